@@ -1,0 +1,1 @@
+"""Shipped part tables: one CSV and one schema per table."""

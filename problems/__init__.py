@@ -1,0 +1,1 @@
+"""Design families: one file each, found through the entry point group ``clutchsynth.problems``."""

@@ -1,0 +1,364 @@
+"""Heat of repeated engagements.
+
+Every function takes floats, arrays or CasADi symbols. The switching rate is in 1/s (50 engagements per
+hour are 50/3600 1/s), so that an hourly heat per area is a heat flux in W/m2.
+
+Sources: S1 (lecture), Neale (Tribology Handbook), Carslaw & Jaeger (Conduction of Heat in Solids).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from problems.mechanics import Quantity
+
+
+def cycle_time(switching_rate: Quantity) -> Quantity:
+    """Time from one engagement to the next, t_c = 1/rate.
+
+    Parameters
+    ----------
+    switching_rate : scalar, array or symbol
+        Engagements per second [1/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_c [s].
+
+    References
+    ----------
+    S1 (lecture): the slip time must be shorter.
+
+    Examples
+    --------
+    >>> cycle_time(50 / 3600)
+    72.0
+    """
+    return 1 / switching_rate
+
+
+def hourly_heat(friction_work: Quantity, switching_rate: Quantity) -> Quantity:
+    """Mean heat flow of repeated engagements, W times rate.
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    switching_rate : scalar, array or symbol
+        Engagements per second [1/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Heat flow [W]; 3600 times it is the heat per hour in J.
+
+    References
+    ----------
+    S1 (lecture), hourly heat; S1 prints 1 963 550 J/h with its slightly low W.
+
+    Examples
+    --------
+    >>> 3600 * hourly_heat(39524.1389, 50 / 3600)
+    1976207.
+    """
+    return friction_work * switching_rate
+
+
+def specific_hourly_heat(friction_work: Quantity, switching_rate: Quantity, area: Quantity) -> Quantity:
+    """Mean heat flux into the friction surfaces, w = W rate/A.
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    switching_rate : scalar, array or symbol
+        Engagements per second [1/s].
+    area : scalar, array or symbol
+        All friction surfaces A [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        w [W/m2]; 1 J/(mm2 h) is 277.7778 W/m2.
+
+    References
+    ----------
+    S1 (lecture), specific hourly heat, 5.9 J/(mm2 h) in its example.
+
+    Examples
+    --------
+    >>> specific_hourly_heat(39524.1389, 50 / 3600, 0.334874) / 277.77778
+    5.9013
+    """
+    return friction_work * switching_rate / area
+
+
+def single_heat(friction_work: Quantity, area: Quantity) -> Quantity:
+    """Friction work per engagement and area, Q_A = W/A.
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    area : scalar, array or symbol
+        All friction surfaces A [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Q_A [J/m2].
+
+    References
+    ----------
+    Makers' limit for a single engagement; definition.
+
+    Examples
+    --------
+    S1's example, in J/mm2:
+
+    >>> single_heat(39524.1389, 334874)
+    0.11803
+    """
+    return friction_work / area
+
+
+def power_density(slip_power: Quantity, area: Quantity) -> Quantity:
+    """Friction power per area, q = P/A.
+
+    Parameters
+    ----------
+    slip_power : scalar, array or symbol
+        Peak slip power P [W].
+    area : scalar, array or symbol
+        All friction surfaces A [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        q [W/m2].
+
+    References
+    ----------
+    Neale, Tribology Handbook, Table 7.4 (0.3 to 2.3 W/mm2 by material).
+
+    Examples
+    --------
+    S1's example, in W/mm2:
+
+    >>> power_density(21703.7, 334874)
+    0.064812
+    """
+    return slip_power / area
+
+
+def mean_temperature_rise(
+    friction_work: Quantity, switching_rate: Quantity, heat_transfer: Quantity, cooled_area: Quantity
+) -> Quantity:
+    """Mean rise over ambient of a body heated at every engagement, W rate/(h A).
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    switching_rate : scalar, array or symbol
+        Engagements per second [1/s].
+    heat_transfer : scalar, array or symbol
+        Surface coefficient h [W/(m2 K)].
+    cooled_area : scalar, array or symbol
+        Surface that gives off heat [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Temperature rise [K].
+
+    References
+    ----------
+    Lumped heat balance.
+
+    Examples
+    --------
+    By hand, 1000 J each 10 s over 0.1 m2 at 20 W/(m2 K) is 100 W over 2 W/K:
+
+    >>> mean_temperature_rise(1000, 0.1, 20, 0.1)
+    50.0
+    """
+    return friction_work * switching_rate / (heat_transfer * cooled_area)
+
+
+def thermal_time_constant(heat_capacity: Quantity, heat_transfer: Quantity, cooled_area: Quantity) -> Quantity:
+    """Time constant of a lumped body, tau = C/(h A).
+
+    Parameters
+    ----------
+    heat_capacity : scalar, array or symbol
+        C [J/K].
+    heat_transfer : scalar, array or symbol
+        Surface coefficient h [W/(m2 K)].
+    cooled_area : scalar, array or symbol
+        Surface that gives off heat [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        tau [s].
+
+    References
+    ----------
+    Lumped heat balance.
+
+    Examples
+    --------
+    By hand:
+
+    >>> thermal_time_constant(4800, 20, 0.1)
+    2400.0
+    """
+    return heat_capacity / (heat_transfer * cooled_area)
+
+
+def peak_temperature_rise(
+    friction_work: Quantity,
+    switching_rate: Quantity,
+    heat_capacity: Quantity,
+    heat_transfer: Quantity,
+    cooled_area: Quantity,
+) -> Quantity:
+    """Rise over ambient just after an engagement, in steady repetition, (W/C)/(1 - exp(-t_c/tau)).
+
+    Written with expm1, because t_c is often much shorter than tau; at a low rate it is the single adiabatic rise W/C.
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    switching_rate : scalar, array or symbol
+        Engagements per second, 1/t_c [1/s].
+    heat_capacity : scalar, array or symbol
+        C [J/K].
+    heat_transfer : scalar, array or symbol
+        Surface coefficient h [W/(m2 K)].
+    cooled_area : scalar, array or symbol
+        Surface that gives off heat [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Temperature rise [K].
+
+    References
+    ----------
+    Lumped heat balance of a body heated in steps of W/C and cooling with tau = C/(h A).
+
+    Examples
+    --------
+    By hand, steps of 10 K each time constant: 10/(1 - 1/e):
+
+    >>> float(peak_temperature_rise(1000, 0.02, 100, 20, 0.1))
+    15.8198
+    """
+    cooled = heat_transfer * cooled_area / (heat_capacity * switching_rate)
+    return -friction_work / heat_capacity / np.expm1(-cooled)
+
+
+def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quantity, share: Quantity = 1.0) -> Quantity:
+    """Rise of a body that takes a share of the work without losing heat, share W/(m c_p).
+
+    Parameters
+    ----------
+    friction_work : scalar, array or symbol
+        Work per engagement W [J].
+    mass : scalar, array or symbol
+        m [kg].
+    specific_heat : scalar, array or symbol
+        c_p [J/(kg K)].
+    share : scalar, array or symbol
+        Part of W that enters the body [-]; 1/2 for the hottest pressure plate of a single or twin disc.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Temperature rise [K].
+
+    References
+    ----------
+    Heat balance.
+
+    Examples
+    --------
+    By hand:
+
+    >>> adiabatic_rise(40000, 5, 500, 0.5)
+    8.0
+    """
+    return share * friction_work / (mass * specific_heat)
+
+
+def flash_rise(
+    heat_flux: Quantity, slip_time: Quantity, conductivity: Quantity, density: Quantity, specific_heat: Quantity
+) -> Quantity:
+    """Largest surface rise under a flux that falls linearly to zero, (2 sqrt2/3) q0 sqrt(t_s/pi)/e, at t_s/2.
+
+    Parameters
+    ----------
+    heat_flux : scalar, array or symbol
+        Flux q0 at the start [W/m2].
+    slip_time : scalar, array or symbol
+        t_s [s].
+    conductivity : scalar, array or symbol
+        k [W/(m K)].
+    density : scalar, array or symbol
+        rho [kg/m3].
+    specific_heat : scalar, array or symbol
+        c [J/(kg K)]; effusivity e = sqrt(k rho c).
+
+    Returns
+    -------
+    scalar, array or symbol
+        Temperature rise [K].
+
+    References
+    ----------
+    Carslaw & Jaeger, Conduction of Heat in Solids, half space with a prescribed flux.
+
+    Examples
+    --------
+    Computed here, 1 W/mm2 for 1 s on steel (e = 13 726 W s0.5/(m2 K)):
+
+    >>> float(flash_rise(1e6, 1.0, 50, 7850, 480))
+    38.7533
+    """
+    effusivity = np.sqrt(conductivity * density * specific_heat)
+    return 2 * np.sqrt(2.0) / 3 * heat_flux * np.sqrt(slip_time / np.pi) / effusivity
+
+
+def allowed_work_at_rate(single_work: Quantity, transition_rate: Quantity, switching_rate: Quantity) -> Quantity:
+    """Work per engagement allowed at a switching rate, Q = Q_E (1 - exp(-S_hu/S_h)).
+
+    Parameters
+    ----------
+    single_work : scalar, array or symbol
+        Allowed work of a single engagement Q_E [J].
+    transition_rate : scalar, array or symbol
+        Transition rate S_hu [1/s].
+    switching_rate : scalar, array or symbol
+        Engagements per second S_h [1/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Q [J].
+
+    References
+    ----------
+    VDI 2241 (recalled; the text itself was not at hand).
+
+    Examples
+    --------
+    By hand, at the transition rate 1 - 1/e of the single work:
+
+    >>> float(allowed_work_at_rate(1000, 0.1, 0.1))
+    632.12
+    """
+    return -single_work * np.expm1(-transition_rate / switching_rate)

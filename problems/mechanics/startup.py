@@ -1,0 +1,667 @@
+"""Start-up of a driven inertia through a slipping clutch: closed forms in every regime.
+
+The driver keeps its speed omega1. The clutch torque rises in proportion to time and stays constant after the ramp,
+M_k(t) = T min(t/t_r, 1), until the driven side, inertia J and load torque L, has caught up (lock). Two kinds of load:
+
+* reactive: the load only resists; the driven side stands still until M_k has reached L (a load on the
+  ground with the rope just taut, dry friction);
+* active: the load acts from the beginning and turns the driven side backwards until M_k has reached L.
+
+Both are valid where T > L only; otherwise the clutch never starts the load (:func:`never_starts`). Every
+function takes floats, arrays or CasADi symbols, in SI. Each regime (lock before or after the end of the
+ramp, greatest power inside or at the end of the ramp) is chosen by its condition; the formulas agree on the border.
+
+Source: S1 (lecture), start-up by the clutch; the lecture integrates graphically, the closed forms are derived from its
+equations of motion M1 - M_k = J1 domega1/dt (J1 infinite) and M_k - M2 = J2 domega2/dt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from problems.mechanics import Quantity
+from synth.errors import InputError
+
+LOAD_KINDS = ("reactive", "active")
+
+
+def _is_active(load_kind: str) -> bool:
+    if load_kind not in LOAD_KINDS:
+        raise InputError("load_kind", load_kind, "reactive or active")
+    return load_kind == "active"
+
+
+def never_starts(torque: Quantity, load_torque: Quantity) -> Quantity:
+    """Whether the clutch cannot move the load, T <= L.
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        Clutch torque at the end of the ramp T [N m].
+    load_torque : scalar, array or symbol
+        L [N m].
+
+    Returns
+    -------
+    bool, array or symbol
+        True where the clutch slips for ever.
+
+    References
+    ----------
+    S1 (lecture), start-up.
+
+    Examples
+    --------
+    >>> never_starts(1080, 1200), never_starts(1080, 600)
+    (True, False)
+    """
+    return torque <= load_torque
+
+
+def burn_out_time(
+    torque: Quantity, driver_speed: Quantity, heat_capacity: Quantity, temperature_rise: Quantity
+) -> Quantity:
+    """Time in which a clutch that never starts its load reaches a temperature rise, C dT/(T omega1).
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        T [N m].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    heat_capacity : scalar, array or symbol
+        C [J/K].
+    temperature_rise : scalar, array or symbol
+        Allowed rise [K].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Time [s].
+
+    References
+    ----------
+    Heat balance: all the driver's power becomes heat.
+
+    Examples
+    --------
+    By hand, 5000 x 100/(1000 x 25):
+
+    >>> burn_out_time(1000, 25, 5000, 100)
+    20.0
+    """
+    return heat_capacity * temperature_rise / (torque * driver_speed)
+
+
+def locks_after_ramp(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> Quantity:
+    """Whether lock-up comes after the end of the ramp.
+
+    Reactive: (T-L)**2 t_r < 2 J T omega1. Active: t_r (T - 2 L) <= 2 J omega1.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    bool, array or symbol
+        True where the ramp ends before lock-up.
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture): "check omega2C <= omega1".
+
+    Examples
+    --------
+    S1's start-up, with its inertia and with 5 kg m2:
+
+    >>> locks_after_ramp(1080, 600, 30, 26.6, 2), locks_after_ramp(1080, 600, 5, 26.6, 2)
+    (True, False)
+    """
+    if _is_active(load_kind):
+        return ramp_time * (torque - 2 * load_torque) <= 2 * driven_inertia * driver_speed
+    return (torque - load_torque) ** 2 * ramp_time < 2 * driven_inertia * torque * driver_speed
+
+
+def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity) -> Quantity:
+    """Time at which the clutch torque reaches the load torque, t_B = L t_r/T.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_B [s].
+
+    References
+    ----------
+    S1 (lecture), end of the first phase (prints 1.11 s).
+
+    Examples
+    --------
+    >>> load_start_time(1080, 600, 2)
+    1.11111
+    """
+    return load_torque * ramp_time / torque
+
+
+def slip_time(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> Quantity:
+    """Time from the first touch to lock-up, t_D.
+
+    Reactive: J omega1/(T-L) + t_r (T+L)/(2T) after the ramp, L t_r/T + sqrt(2 J omega1 t_r/T) inside it. Active:
+    (J omega1 + T t_r/2)/(T-L) after, (L t_r + sqrt(L**2 t_r**2 + 2 T J omega1 t_r))/T inside.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s]; 0 for a step.
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_D [s].
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture), start-up, phases 1 to 3 (its T1 + T2 + T3 = 1.11 + 0.89 + 1.22 s).
+
+    Examples
+    --------
+    S1, then lock inside the ramp and the active load (computed here):
+
+    >>> float(slip_time(1080, 600, 30, 26.6, 2))
+    3.21806
+    >>> float(slip_time(1080, 600, 5, 26.6, 2)), float(slip_time(1080, 600, 30, 26.6, 2, "active"))
+    (1.81296, 3.91250)
+    """
+    excess = torque - load_torque
+    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
+    momentum = driven_inertia * driver_speed
+    if _is_active(load_kind):
+        after = (momentum + torque * ramp_time / 2) / excess
+        inside = _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+    else:
+        after = momentum / excess + ramp_time * (torque + load_torque) / (2 * torque)
+        inside = load_torque * ramp_time / torque + np.sqrt(2 * momentum * ramp_time / torque)
+    return np.where(after_ramp, after, inside)
+
+
+def _active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quantity, ramp_time: Quantity) -> Quantity:
+    """Time of lock inside the ramp under an active load: T t**2/(2 t_r) - L t = J omega1."""
+    impulse = load_torque * ramp_time
+    return (impulse + np.sqrt(impulse**2 + 2 * torque * momentum * ramp_time)) / torque
+
+
+def friction_work(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> Quantity:
+    """Friction work of one engagement, W.
+
+    Reactive, with E = J omega1**2/2: E T/(T-L) + L omega1 t_r/2 - L (T-L)**3 t_r**2/(24 J T**2) after the ramp,
+    E + L**2 omega1 t_r/(2T) + 2/3 L omega1 sqrt(2 J omega1 t_r/T) inside it. Active:
+    T/(T-L) (E + L omega1 t_r/2 + L (4L-T) t_r**2/(24 J)) after, (J omega1 + L t_D)(omega1/2 + L t_D/(6J)) inside.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s]; 0 for a step.
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    scalar, array or symbol
+        W [J], never below J omega1**2/2.
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture), work of friction; its 39 271 J takes the cubic kinetic power as a parabola, 39 524.1 J is right.
+
+    Examples
+    --------
+    S1, then lock inside the ramp and the active load (computed here):
+
+    >>> float(friction_work(1080, 600, 30, 26.6, 2))
+    39524.1
+    >>> float(friction_work(1080, 600, 5, 26.6, 2)), float(friction_work(1080, 600, 30, 26.6, 2, "active"))
+    (18103.2, 69690.2)
+    """
+    excess = torque - load_torque
+    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
+    momentum = driven_inertia * driver_speed
+    energy = momentum * driver_speed / 2
+    ramp_work = load_torque * driver_speed * ramp_time / 2
+    if _is_active(load_kind):
+        bend = load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
+        after = torque / excess * (energy + ramp_work + bend)
+        impulse = load_torque * _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+        inside = (momentum + impulse) * (driver_speed / 2 + impulse / (6 * driven_inertia))
+    else:
+        bend = load_torque * excess**3 * ramp_time**2 / (24 * driven_inertia * torque**2)
+        after = energy * torque / excess + ramp_work - bend
+        length = np.sqrt(2 * momentum * ramp_time / torque)
+        inside = energy + ramp_work * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
+    return np.where(after_ramp, after, inside)
+
+
+def _speed_at_load_start(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity, load_kind: str
+) -> Quantity:
+    """Driven speed when the clutch torque reaches the load torque: 0, or backwards under an active load."""
+    return lowest_driven_speed(torque, load_torque, driven_inertia, ramp_time) if _is_active(load_kind) else 0.0
+
+
+def lowest_driven_speed(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Greatest backward speed of an active load without brake or backstop, -L**2 t_r/(2 J T), at t_B.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Speed [rad/s], negative.
+
+    References
+    ----------
+    Integral of (T t/t_r - L)/J from 0 to t_B.
+
+    Examples
+    --------
+    Computed here with S1's data:
+
+    >>> lowest_driven_speed(1080, 600, 30, 2)
+    -11.1111
+    """
+    return -(load_torque**2) * ramp_time / (2 * driven_inertia * torque)
+
+
+def peak_slip_power(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> Quantity:
+    """Greatest friction power M_k (omega1 - omega2).
+
+    Counted from t_B it would be reached at x* = (-L + sqrt(L**2 + 6 s J omega))/(3 s), with s = T/t_r and omega the
+    slip speed at t_B (omega1, plus the backward speed of an active load). If that is before the end of the
+    ramp, 2 T J omega < t_r (T-L)(3T-L), the power is (L + s x*)**2 x*/J, otherwise T (omega - (T-L)**2 t_r/(2JT)).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0 (a step has T omega1).
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    scalar, array or symbol
+        P [W].
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture), equations of motion; the maximum is derived.
+
+    Examples
+    --------
+    Computed here with S1's data:
+
+    >>> float(peak_slip_power(1080, 600, 30, 26.6, 2))
+    21703.7
+    """
+    excess = torque - load_torque
+    slip_speed = driver_speed - _speed_at_load_start(torque, load_torque, driven_inertia, ramp_time, load_kind)
+    interior = 2 * torque * driven_inertia * slip_speed < ramp_time * excess * (3 * torque - load_torque)
+    root = np.sqrt(load_torque**2 + 6 * torque * driven_inertia * slip_speed / ramp_time)
+    torque_at_peak = (2 * load_torque + root) / 3
+    # x* = 2 J omega/(L + root): the rationalised form does not cancel when the load is large
+    power_inside = 2 * slip_speed / (load_torque + root) * torque_at_peak**2
+    power_at_end = torque * slip_speed - excess**2 * ramp_time / (2 * driven_inertia)
+    return np.where(interior, power_inside, power_at_end)
+
+
+def lock_torque(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> Quantity:
+    """Clutch torque just before lock-up: T after the ramp, M_k(t_D) inside it.
+
+    Inside the ramp it is L + sqrt(2 J omega1 T/t_r) (reactive) or L + sqrt(L**2 + 2 J omega1 T/t_r) (active).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0.
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Torque [N m]; less the load torque, over the inertia, it is the greatest acceleration.
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture), equations of motion.
+
+    Examples
+    --------
+    Computed here: 1080 after the ramp, 979.0 inside it:
+
+    >>> float(lock_torque(1080, 600, 30, 26.6, 2)), float(lock_torque(1080, 600, 5, 26.6, 2))
+    (1080.0, 979.0)
+    """
+    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
+    square = 2 * driven_inertia * driver_speed * torque / ramp_time
+    if _is_active(load_kind):
+        square = square + load_torque**2
+    return np.where(after_ramp, torque, load_torque + np.sqrt(square))
+
+
+def torque_rate_per_inertia(torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity) -> Quantity:
+    """Jerk of the driven side during the ramp, T/(t_r J).
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        T [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Jerk [rad/s3].
+
+    References
+    ----------
+    S1 (lecture), derivative of the equation of motion.
+
+    Examples
+    --------
+    By hand with S1's data:
+
+    >>> torque_rate_per_inertia(1080, 30, 2)
+    18.0
+    """
+    return torque / (ramp_time * driven_inertia)
+
+
+@dataclass(frozen=True)
+class StartupPhases:
+    """Times, speeds, powers and works of a start-up at the points B, C and D.
+
+    B: the clutch torque reaches the load torque. C: the ramp ends, or lock-up if that is earlier. D: lock-up, just
+    before the clutch torque drops. Powers and works: driver M_k omega1, load M2 omega2, kinetic (M_k - M2) omega2;
+    works count from the first touch. All SI.
+    """
+
+    duration_1: Quantity
+    duration_2: Quantity
+    duration_3: Quantity
+    lock_time: Quantity
+    speed_b: Quantity
+    speed_c: Quantity
+    torque_c: Quantity
+    acceleration_c: Quantity
+    driver_power_b: Quantity
+    driver_power_c: Quantity
+    driver_power_d: Quantity
+    load_power_c: Quantity
+    load_power_d: Quantity
+    kinetic_power_c: Quantity
+    kinetic_power_d: Quantity
+    driver_work_b: Quantity
+    driver_work_c: Quantity
+    driver_work_d: Quantity
+    load_work_b: Quantity
+    load_work_c: Quantity
+    load_work_d: Quantity
+    kinetic_work_c: Quantity
+    kinetic_work_d: Quantity
+    friction_work: Quantity
+    peak_slip_power: Quantity
+
+
+def startup_phases(
+    torque: Quantity,
+    load_torque: Quantity,
+    driven_inertia: Quantity,
+    driver_speed: Quantity,
+    ramp_time: Quantity,
+    load_kind: str = "reactive",
+) -> StartupPhases:
+    """Compute times, speeds, powers and works of the phases of a start-up.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0.
+    load_kind : str
+        reactive or active.
+
+    Returns
+    -------
+    StartupPhases
+        Quantities at the points B, C and D.
+
+    Raises
+    ------
+    InputError
+        When load_kind is not known.
+
+    References
+    ----------
+    S1 (lecture), table of powers and works. The kinetic power is cubic in phase 2: a quarter, not a third.
+
+    Examples
+    --------
+    S1 prints 8867, 28728 and 63720 J:
+
+    >>> phases = startup_phases(1080, 600, 30, 26.6, 2)
+    >>> phases.driver_work_b, float(phases.driver_work_c), float(phases.driver_work_d)
+    (8866.67, 28728.0, 63720.3)
+    """
+    inertia, rate = driven_inertia, torque / ramp_time
+    after_ramp = locks_after_ramp(torque, load_torque, inertia, driver_speed, ramp_time, load_kind)
+    excess = torque - load_torque
+    time_b = load_start_time(torque, load_torque, ramp_time)
+    speed_b = _speed_at_load_start(torque, load_torque, inertia, ramp_time, load_kind)
+    angle_b = load_torque * time_b**2 / (-3 * inertia) if _is_active(load_kind) else 0.0 * time_b
+
+    to_ramp_end = ramp_time * excess / torque
+    to_lock = np.sqrt(2 * inertia * (driver_speed - speed_b) / rate)
+    duration_2 = np.where(after_ramp, to_ramp_end, to_lock)
+    time_c = time_b + duration_2
+    torque_c = rate * time_c
+    speed_c = speed_b + rate * duration_2**2 / (2 * inertia)
+    angle_c = angle_b + speed_b * duration_2 + rate * duration_2**3 / (6 * inertia)
+
+    to_speed = (driver_speed - speed_b - rate * to_ramp_end**2 / (2 * inertia)) * inertia / excess
+    duration_3 = np.where(after_ramp, to_speed, 0.0)
+    angle_d = angle_c + (speed_c + driver_speed) / 2 * duration_3
+
+    driver_work_c = driver_speed * rate * time_c**2 / 2
+    driver_work_d = driver_work_c + torque_c * driver_speed * duration_3
+    load_work_d = load_torque * angle_d
+    kinetic_work_d = inertia * driver_speed**2 / 2
+    # A reactive load takes up the clutch torque without moving before B, so that no work is missed there.
+    return StartupPhases(
+        duration_1=time_b,
+        duration_2=duration_2,
+        duration_3=duration_3,
+        lock_time=time_c + duration_3,
+        speed_b=speed_b,
+        speed_c=speed_c,
+        torque_c=torque_c,
+        acceleration_c=(torque_c - load_torque) / inertia,
+        driver_power_b=load_torque * driver_speed,
+        driver_power_c=torque_c * driver_speed,
+        driver_power_d=torque_c * driver_speed,
+        load_power_c=load_torque * speed_c,
+        load_power_d=load_torque * driver_speed,
+        kinetic_power_c=(torque_c - load_torque) * speed_c,
+        kinetic_power_d=(torque_c - load_torque) * driver_speed,
+        driver_work_b=driver_speed * rate * time_b**2 / 2,
+        driver_work_c=driver_work_c,
+        driver_work_d=driver_work_d,
+        load_work_b=load_torque * angle_b,
+        load_work_c=load_torque * angle_c,
+        load_work_d=load_work_d,
+        kinetic_work_c=inertia * speed_c**2 / 2,
+        kinetic_work_d=kinetic_work_d,
+        friction_work=driver_work_d - load_work_d - kinetic_work_d,
+        peak_slip_power=peak_slip_power(torque, load_torque, inertia, driver_speed, ramp_time, load_kind),
+    )
+
+
+def constant_torque_slip(
+    slip_speed: Quantity,
+    torque: Quantity,
+    driver_torque: Quantity,
+    load_torque: Quantity,
+    driver_inertia: Quantity,
+    driven_inertia: Quantity,
+) -> tuple[Quantity, Quantity]:
+    """Slip time and friction work of two finite inertias under constant torques (step engagement).
+
+    t = domega/((T-M1)/J1 + (T-M2)/J2), W = T domega t/2.
+
+    Parameters
+    ----------
+    slip_speed : scalar, array or symbol
+        Speed difference at the start [rad/s].
+    torque, driver_torque, load_torque : scalar, array or symbol
+        T, M1, M2 [N m].
+    driver_inertia, driven_inertia : scalar, array or symbol
+        J1, J2 [kg m2].
+
+    Returns
+    -------
+    tuple
+        Slip time [s] and friction work [J].
+
+    References
+    ----------
+    S1 (lecture), equations of motion (1), (2).
+
+    Examples
+    --------
+    By hand, without outer torques J1 J2/(J1+J2) domega**2/2 = 0.5 x 2 x 100:
+
+    >>> constant_torque_slip(10, 50, 0, 0, 3, 6)
+    (0.4, 100.0)
+    """
+    deceleration = (torque - driver_torque) / driver_inertia + (torque - load_torque) / driven_inertia
+    time = slip_speed / deceleration
+    return time, torque * slip_speed * time / 2

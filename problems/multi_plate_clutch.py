@@ -1,0 +1,124 @@
+"""Multi-plate clutch: torque through many rings in a drum, with friction in the plate guides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from problems import blocks
+from problems.mechanics import plates
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+
+class MultiPlateClutch(DesignProblem):
+    """Multi-plate clutch, dry or in oil, both end plates being inner plates.
+
+    The torque fades along the pack by friction in the plate guides (S0); start-up, heat and sizing follow S1.
+    """
+
+    name = "multi_plate_clutch"
+    title = "Multi-plate clutch"
+    sources = (
+        "S0: B. Szoke, Engagement and release of the multi-plate clutch (in Hungarian), 1966; appendix by I. Lipka",
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        lubrication = blocks.declare_lubrication(d)
+        duty = blocks.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
+        options = blocks.declare_pack_options(d)
+        wants = blocks.declare_pack_requirements(d, options, lubrication)
+        ring = blocks.declare_ring(d, 0.10, 0.25)
+        force = self._declare_force(d)
+        ramp_time = blocks.declare_ramp_time(d)
+        pair = blocks.declare_friction_pair(d, self.name, duty, lubrication)
+        pack = blocks.declare_pack(d, options, wants, ring)
+
+        required = blocks.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
+        self._refuse_impossible(d, duty, options, wants, ring, pack, required)
+        torque = blocks.declare_pack_torque(d, options, wants, ring, pair, pack, force)
+        torques = blocks.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=("guide_jams",))
+        start = blocks.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        blocks.declare_surface_loads(
+            d, duty, pair, start, area, pack.aid.area_factor * area, torque.pressure, ring.outer_radius
+        )
+        size = blocks.pack_size(duty, wants, ring, pair, pack)
+        blocks.declare_pack_temperature(d, duty, pair, start, size)
+        self._declare_size(d, size)
+        blocks.declare_drag(d, duty, wants, ring, pack)
+        blocks.declare_envelope(d, duty, force, size.diameter, size.length)
+        blocks.declare_pack_remarks(d, options, duty, lubrication)
+        self._declare_objectives(d)
+
+    def _declare_force(self, d: Declaration) -> Any:
+        return d.variable(
+            "actuation_force", "N", 50, 200000, symbol="F0",
+            text="Axial force of the actuator on the first plate", source="S0 (Szoke 1966), F0",
+        )  # fmt: skip
+
+    def _declare_size(self, d: Declaration, size: blocks.PackSize) -> None:
+        d.derive(
+            "outer_diameter", "mm", size.diameter, symbol="D",
+            text="Outside of the drum", source="geometry, 2 (b + s_drum)",
+        )  # fmt: skip
+        d.derive(
+            "length", "mm", size.length, symbol="L",
+            text="Length of the released pack, without actuator and end stops", source="geometry",
+        )  # fmt: skip
+        d.derive(
+            "volume", "dm3", plates.cylinder_volume(size.diameter, size.length), symbol="V",
+            text="Enveloping cylinder", source="geometry, pi D**2 L/4",
+        )  # fmt: skip
+        d.derive("mass", "kg", size.mass, symbol="m", text="Plates with linings", source="geometry")
+
+    def _refuse_impossible(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        options: blocks.PackOptions,
+        wants: blocks.PackRequirements,
+        ring: blocks.Ring,
+        pack: blocks.Pack,
+        required: Any,
+    ) -> None:
+        """Refuse requirements that no design can meet, whatever the unknowns."""
+        if wants.hub_bore_diameter is not None and duty.outer_diameter_limit is not None:
+            least_inner = wants.hub_bore_diameter + 2 * wants.lug_clearance
+            least_outer = least_inner * (1 + ring.ratio_min) / (1 - ring.ratio_min)
+            d.refuse(
+                "no_room_for_ring",
+                least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
+                "no friction ring of at least ring_ratio_min fits between hub_bore_diameter and outer_diameter_limit "
+                "with lug_clearance and drum_wall",
+            )
+        # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
+        saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
+        if duty.actuation_force_limit is not None and saturates:
+            outer_spline = blocks.RING_OUTER_DIAMETER_MAX / 2000 + wants.lug_clearance
+            if duty.outer_diameter_limit is not None:
+                outer_spline = np.minimum(outer_spline, duty.outer_diameter_limit / 2 - wants.drum_wall)
+            outer_radius = outer_spline - wants.lug_clearance
+            inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - wants.lug_clearance
+            net_force = duty.actuation_force_limit * (1 - pack.aid.force_fraction)
+            d.refuse(
+                "torque_above_guide_limit",
+                np.logical_and(
+                    inner_spline > 0,
+                    required * wants.guide_friction * (inner_spline + outer_spline)
+                    > net_force * inner_spline * outer_spline,
+                ),
+                "the friction in the guides lets no number of plates pass the sizing torque at actuation_force_limit, "
+                "not even with the largest splines that fit; raise actuation_force_limit or outer_diameter_limit, "
+                "or lower guide_friction",
+            )
+
+    def _declare_objectives(self, d: Declaration) -> None:
+        d.objective("mass")
+        d.objective("actuation_force")
+        for name in ("outer_diameter", "volume", "friction_work", "drag_torque"):
+            d.objective(name, default=False)

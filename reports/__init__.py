@@ -1,0 +1,1 @@
+"""Writers: they take results and return files, and recompute nothing."""

@@ -1,0 +1,434 @@
+"""Analysis of single designs: no search, no rounding, every limit told."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from scipy.optimize import least_squares
+
+from synth.declaration import Variable
+from synth.errors import InputError
+from synth.feasibility import Status, holds, residual, utilisation
+from synth.instance import Instance, as_catalogs
+from synth.model import Evaluation, Model, part_column_value
+from synth.problem import DesignProblem, load
+from synth.results import Design, Frame, PartRow
+from synth.units import format_quantity, parse_quantity
+
+ON_GRID = 1e-9
+
+
+def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
+    """Return what all designs of one question share."""
+    model, d = instance.model, instance.model.declaration
+    limit_units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in instance.extra}
+    limit_senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in instance.extra}
+    return Frame(
+        family=instance.problem.name,
+        title=instance.problem.title or instance.problem.name,
+        options={name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options},
+        requirements={
+            name: format_quantity(instance.requirements[name], d.requirements[name].unit, None)
+            for name in d.requirements
+            if name in instance.given
+        },
+        requirement_values=dict(instance.requirements),
+        not_asked=tuple(instance.not_asked),
+        objectives=dict(objectives),
+        units=dict(model.units),
+        kinds={name: kind for name, _, kind in d.quantities()},
+        limit_units=limit_units,
+        limit_senses=limit_senses,
+    )
+
+
+def make_design(
+    instance: Instance,
+    frame: Frame,
+    variables: np.ndarray,
+    data: Sequence[Any],
+    parts: Mapping[str, PartRow],
+    choices: Mapping[str, str],
+    **more: Any,
+) -> Design:
+    """Evaluate one design completely.
+
+    Parameters
+    ----------
+    variables : array (variables,)
+        SI.
+    data : list of float
+        Data inputs of its combination.
+    parts, choices : mapping
+        What fills the slots and choices.
+    **more
+        Fields of Design that the search knows (gap, elasticity, ...).
+    """
+    model = instance.model
+    result = model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
+    values = {name: float(v[0]) for name, v in result.values.items()}
+    limits, residuals, used, broken, unchecked = _limits(instance, result, values)
+    advice = [
+        _message(a.code, a.message, a.source)
+        for k, a in enumerate(model.declaration.advices)
+        if bool(result.advice[k][0])
+    ]
+    status = more.pop("status", Status.INFEASIBLE if broken else Status.FEASIBLE)
+    return Design(
+        frame=frame,
+        values=values,
+        parts=dict(parts),
+        choices=dict(choices),
+        objectives={name: values[name] for name in frame.objectives},
+        limits=limits,
+        residuals=residuals,
+        utilisation=used,
+        status=status,
+        advice=(*advice, *more.pop("remarks", ())),
+        violated=tuple(broken),
+        not_checked=tuple(unchecked),
+        off_grid=off_grid(model.variables, variables),
+        **more,
+    )
+
+
+def _message(code: str, message: str, source: str) -> str:
+    return f"{code}: {message}" + (f" [{source}]" if source else "")
+
+
+def _limits(
+    instance: Instance, result: Evaluation, values: Mapping[str, float]
+) -> tuple[dict[str, tuple[float, float]], dict[str, float], dict[str, float | None], list[str], list[str]]:
+    model = instance.model
+    limits, residuals, used = dict[str, tuple[float, float]](), dict[str, float](), dict[str, float | None]()
+    broken, unchecked = list[str](), list[str]()
+    for limit in model.limits:
+        value, bound = (float(side[0]) for side in result.limits[limit.name])
+        r = float(result.residuals[limit.name][0])
+        exists = not bool(result.void[limit.name][0]) and not np.isnan(r)
+        limits[limit.name], residuals[limit.name] = (value, bound), r
+        used[limit.name] = float(utilisation(value, bound, limit.sense)) if exists else None
+        if not bool(result.holds[limit.name][0]):
+            broken.append(limit.name)
+        if bool(result.void[limit.name][0]):
+            columns = ", ".join(model.data_inputs[k].label for k in model.void_inputs[limit.name])
+            unchecked.append(f"not checked: {limit.name}, no {columns}")
+    for extra in instance.extra:
+        value = values[extra.quantity]
+        r = float(residual(value, extra.limit, extra.sense, 1e-9))
+        limits[extra.name], residuals[extra.name] = (value, extra.limit), r
+        used[extra.name] = None if np.isnan(r) else float(utilisation(value, extra.limit, extra.sense))
+        if not np.isnan(r) and not holds(r, guard=False):
+            broken.append(extra.name)
+    return limits, residuals, used, broken, unchecked
+
+
+def off_grid(variables: Sequence[Variable], values: np.ndarray) -> dict[str, str]:
+    """Return the variables that are off their grid, with the nearest makeable value."""
+    result = {}
+    for variable, value in zip(variables, values, strict=True):
+        if len(variable.grid):
+            nearest = variable.grid[np.argmin(np.abs(variable.grid - value))]
+            if abs(nearest - value) > ON_GRID * abs(nearest):
+                result[variable.name] = f"nearest makeable {format_quantity(float(nearest), variable.unit)}"
+    return result
+
+
+def part_row(table: Any, index: int) -> PartRow:
+    """Return the row of a table as results show it."""
+    return PartRow(table.name, table.hashes[index], table.row(index))
+
+
+def evaluate(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    design: Any = None,
+    *,
+    values: Mapping[str, Any] | None = None,
+    parts: Mapping[str, str] | None = None,
+    catalogs: Any = None,
+    limits: Mapping[str, Any] | None = None,
+    objectives: Any = None,
+) -> Design:
+    """Analyse one design: every quantity, every limit; nothing is searched or rounded.
+
+    Parameters
+    ----------
+    p : family name, DesignProblem subclass or instance
+    requirements : mapping
+        As for ``synthesize``.
+    design : Design or mapping, optional
+        A Design, or a mapping with ``values`` and ``parts`` (strings with units).
+    values, parts : mapping, optional
+        The same two, given directly. Derived quantities may stand for as many variables.
+    catalogs, limits, objectives : optional
+        As for ``synthesize``.
+
+    Returns
+    -------
+    Design
+        With ``status`` feasible or infeasible, and ``violated`` naming every limit that fails.
+
+    Raises
+    ------
+    InputError
+        When something is missing, unknown, or more is given than needed.
+    """
+    if design is not None and (values is not None or parts is not None):
+        raise InputError("design", "design and values/parts", "either a design, or values= and parts=")
+    if isinstance(design, Design):
+        values = {n: design.values[n] for n, k in design.frame.kinds.items() if k in ("variable", "count")}
+        si = {**values, **design.choices}
+        parts = {slot: str(row) for slot, row in design.parts.items()}
+        return _evaluate(p, requirements, si, parts, catalogs, limits, objectives, in_si=True)
+    if design is not None:
+        if not isinstance(design, Mapping):
+            raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'")
+        values, parts = design.get("values"), design.get("parts")
+    return _evaluate(p, requirements, values or {}, parts or {}, catalogs, limits, objectives, in_si=False)
+
+
+def _evaluate(
+    p: Any,
+    requirements: Mapping[str, Any],
+    values: Mapping[str, Any],
+    parts: Mapping[str, str],
+    catalogs: Any,
+    limits: Mapping[str, Any] | None,
+    objectives: Any,
+    in_si: bool,
+) -> Design:
+    problem = load(p)
+    instance = Instance(problem, requirements, as_catalogs(catalogs), limits=limits, restrict=False)
+    model = instance.model
+    rows = _chosen_rows(instance, parts)
+    known, choices, derived = _read_values(model, values, in_si)
+    data = _data(instance, rows, known, choices)
+    remarks = _refuse_discrete(instance, data, rows)
+    variables = _complete_variables(model, known, derived, data)
+    frame = make_frame(instance, chosen_objectives(model, objectives))
+    part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
+    return make_design(instance, frame, variables, data, part_rows, choices, remarks=remarks)
+
+
+def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
+    """Return the objectives by name with their sense: those asked for, or the family's defaults.
+
+    Raises
+    ------
+    InputError
+        When a name is unknown, a sense is not min or max, or there is none at all.
+    """
+    declared = model.declaration.objectives
+    if asked is None:
+        chosen = {o.name: o.sense for o in declared.values() if o.default}
+        if not chosen:
+            raise InputError("objectives", None, "at least one of " + ", ".join(declared or model.quantity_sx))
+        return chosen
+    if isinstance(asked, str):
+        asked = [asked]
+    pairs = asked.items() if isinstance(asked, Mapping) else [(name, None) for name in asked]
+    result: dict[str, str] = {}
+    for word, sense in pairs:
+        name = model.name_of(str(word), "objectives", list(model.quantity_sx), "a quantity")
+        if sense is None:
+            if name not in declared:
+                raise InputError(f"objectives: {name}", None, f"a sense, for example {{{name}: min}}; declared are {', '.join(declared)}")
+            sense = declared[name].sense
+        if sense not in ("min", "max"):
+            raise InputError(f"objectives: {name}", sense, "min or max")
+        if name in result:
+            raise InputError("objectives", word, "each objective once")
+        result[name] = str(sense)
+    if not result:
+        raise InputError("objectives", None, "at least one of " + ", ".join(declared))
+    return result
+
+
+def _chosen_rows(instance: Instance, parts: Mapping[str, str]) -> dict[str, tuple[Any, int]]:
+    model = instance.model
+    slots = model.declaration.slots
+    asked = {model.name_of(str(word), "parts", list(slots), "a slot"): str(d) for word, d in parts.items()}
+    result = {}
+    for slot, part in slots.items():
+        if slot not in asked:
+            raise InputError(f"parts: {slot}", None, f"a designation of table {part.table}")
+        table = instance.catalogs.table(part.table)
+        result[slot] = (table, table.row_index(asked[slot]))
+    return result
+
+
+def _read_values(
+    model: Model, values: Mapping[str, Any], in_si: bool
+) -> tuple[dict[str, float], dict[str, str], dict[str, float]]:
+    d = model.declaration
+    known, choices, derived = dict[str, float](), dict[str, str](), dict[str, float]()
+    for word, value in values.items():
+        among = [*model.quantity_sx, *d.choices]
+        name = model.name_of(str(word), "values", among, "a variable, count, choice or derived quantity")
+        if name in known or name in choices or name in derived:
+            raise InputError(f"values: {name}", word, "each quantity once (name and symbol mean the same)")
+        if name in d.choices:
+            label = ("yes" if value else "no") if isinstance(value, bool) else str(value)
+            if label not in d.choices[name].labels:
+                raise InputError(f"values: {name}", value, "one of " + ", ".join(d.choices[name].labels))
+            choices[name] = label
+            continue
+        si = float(value) if in_si else parse_quantity(value, model.units[name], f"values: {name}")
+        (derived if name in d.derived else known)[name] = si
+    for name, choice in d.choices.items():
+        if name not in choices:
+            raise InputError(f"values: {name}", None, "one of " + ", ".join(choice.labels))
+    for name, count in d.counts.items():
+        if name not in known:
+            raise InputError(f"values: {name}", None, f"a value from {count.values[0]:g} to {count.values[-1]:g}")
+        if np.min(np.abs(count.values - known[name])) > 1e-9:
+            step = count.values[1] - count.values[0] if len(count.values) > 1 else 1
+            raise InputError(
+                f"values: {name}",
+                values.get(name, known[name]),
+                f"a value from {count.values[0]:g} to {count.values[-1]:g} in steps of {step:g}",
+            )
+    return known, choices, derived
+
+
+def _data(
+    instance: Instance, rows: Mapping[str, tuple[Any, int]], known: Mapping[str, float], choices: Mapping[str, str]
+) -> list[float]:
+    labels = instance.model.declaration.choices
+    result = []
+    for entry in instance.model.data_inputs:
+        if entry.kind == "requirement":
+            value = instance.requirements[entry.name]
+        elif entry.kind == "row":
+            value = instance.row_values[str(entry.sx)]
+        elif entry.kind == "part":
+            table, index = rows[entry.name]
+            numbers = {
+                c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in entry.columns
+            }
+            value = float(part_column_value(entry, numbers)[0])
+            if np.isnan(value) and entry.required:
+                designation = table.designations[index]
+                raise InputError(f"parts: {entry.name}", designation, f"a row with a value in {' or '.join(entry.columns)}")
+        elif entry.kind == "count":
+            value = known[entry.name]
+        else:
+            value = float(labels[entry.name].labels.index(choices[entry.name]))
+        result.append(float(value))
+    return result
+
+
+def _refuse_discrete(
+    instance: Instance, data: Sequence[float], rows: Mapping[str, tuple[Any, int]]
+) -> tuple[str, ...]:
+    """Refuse parts and counts that must not be used; remark on rows that the slot would not offer."""
+    model = instance.model
+    symbols = {str(e.sx): v for e, v in zip(model.data_inputs, data, strict=True)}
+    for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
+        if kinds:
+            used = ca.symvar(refusal.when)
+            function = ca.Function("refused", used, [refusal.when])
+            if float(function(*[symbols[str(s)] for s in used])) > 0.5:
+                raise InputError(refusal.code, ", ".join(sorted(kinds)), refusal.message)
+    remarks = []
+    for slot, (table, index) in rows.items():
+        part = model.declaration.slots[slot]
+        if not instance.offers(part, table)[index]:
+            remarks.append(f"unusual_part: {slot} {table.designations[index]} does not meet {' and '.join(part.where)}")
+    return tuple(remarks)
+
+
+def _complete_variables(
+    model: Model, known: Mapping[str, float], derived: Mapping[str, float], data: Sequence[float]
+) -> np.ndarray:
+    """Return all variables, solving for those that derived quantities stand for."""
+    missing = [k for k, v in enumerate(model.variables) if v.name not in known]
+    if len(derived) != len(missing):
+        names = [model.variables[k].name for k in missing]
+        if not names:
+            raise InputError("values", ", ".join(derived), "no derived quantities: all variables are given already")
+        if not derived:
+            v = model.variables[missing[0]]
+            low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
+            raise InputError(f"values: {v.name}", None, f"a value ({low} to {high}), or a derived quantity in its place")
+        raise InputError(
+            "values", ", ".join(derived), f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
+        )
+    variables = np.array([known.get(v.name, np.nan) for v in model.variables])
+    for v, value in zip(model.variables, variables, strict=True):
+        if np.isfinite(value) and not v.lower * (1 - 1e-9) <= value <= v.upper * (1 + 1e-9):
+            low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
+            raise InputError(f"values: {v.name}", format_quantity(value, v.unit), f"{low} to {high}")
+    if missing:
+        variables[missing] = _solve_for(model, missing, derived, variables, data)
+    return variables
+
+
+def _solve_for(
+    model: Model, missing: list[int], derived: Mapping[str, float], variables: np.ndarray, data: Sequence[float]
+) -> np.ndarray:
+    unknown = [model.variables[k] for k in missing]
+    names = list(derived)
+    target = np.array([derived[n] for n in names])
+    scale = np.maximum(np.abs(target), 1e-12)
+    function = model.function(
+        ("solve", tuple(missing), tuple(names)),
+        lambda: _derived_function(model, missing, names),
+    )
+    lower, upper = np.array([v.lower for v in unknown]), np.array([v.upper for v in unknown])
+
+    def difference(x: np.ndarray) -> np.ndarray:
+        return (np.asarray(function(x, variables, data)[0]).ravel() - target) / scale
+
+    def slope(x: np.ndarray) -> np.ndarray:
+        return np.asarray(function(x, variables, data)[1]) / scale[:, None]
+
+    rng = np.random.default_rng(0)
+    starts = [np.sqrt(np.maximum(lower, 1e-9) * upper)]
+    starts += list(lower + (upper - lower) * rng.random((24, len(unknown))))
+    with np.errstate(all="ignore"):
+        for start in starts:
+            try:
+                answer = least_squares(
+                    difference, np.clip(start, lower, upper), jac=slope, bounds=(lower, upper),
+                    xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=upper,
+                )  # fmt: skip
+            except (ValueError, np.linalg.LinAlgError):
+                continue  # this start left the domain of a formula
+            x = _polish(answer.x, difference, slope, lower, upper)
+            if np.max(np.abs(difference(x))) <= 1e-12:
+                return x
+    wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
+    ranges = ", ".join(f"{v.name} {format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}" for v in unknown)
+    raise InputError("values", wanted, f"quantities that some {ranges} can give")
+
+
+def _derived_function(model: Model, missing: list[int], names: list[str]) -> Any:
+    x = ca.SX.sym("x", len(missing))
+    inputs = list(model.inputs)
+    known = ca.SX.sym("known", len(model.variables))
+    data = ca.SX.sym("data", len(model.data_inputs))
+    replaced = [x[missing.index(k)] if k in missing else known[k] for k in range(len(model.variables))]
+    replaced += [data[k] for k in range(len(model.data_inputs))]
+    outputs = ca.substitute(
+        ca.vertcat(*[model.quantity_sx[n] for n in names]), ca.vertcat(*inputs), ca.vertcat(*replaced)
+    )
+    return ca.Function("derived", [x, known, data], [outputs, ca.jacobian(outputs, x)])
+
+
+def _polish(x: np.ndarray, difference: Any, slope: Any, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+    """Finish with Newton steps: least squares stops at the square root of what is reachable."""
+    for _ in range(8):
+        try:
+            step = np.linalg.solve(slope(x), difference(x))
+        except np.linalg.LinAlgError:
+            return x
+        moved = np.clip(x - step, lower, upper)
+        if np.max(np.abs(difference(moved))) >= np.max(np.abs(difference(x))):
+            return x
+        x = moved
+    return x

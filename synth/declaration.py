@@ -1,0 +1,559 @@
+"""What a design problem declares: the verbs of ``DesignProblem.declare`` and the records they leave."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from synth.errors import InputError
+from synth.units import parse_unit, to_si
+
+if TYPE_CHECKING:
+    from synth.tables import Catalogs
+
+# Formulas are plain NumPy functions; in this mode NumPy calls on symbols return plain symbols.
+ca.GlobalOptions.setNumpyMode(-1)
+
+RENARD_STEPS = {"R5": 5, "R10": 10, "R20": 20, "R40": 40}
+# ISO 3 rounds the exact tenth-powers; the rounded mantissas are the preferred numbers themselves.
+RENARD_R40 = (
+    1.00, 1.06, 1.12, 1.18, 1.25, 1.32, 1.40, 1.50, 1.60, 1.70, 1.80, 1.90, 2.00, 2.12, 2.24, 2.36, 2.50, 2.65, 2.80,
+    3.00, 3.15, 3.35, 3.55, 3.75, 4.00, 4.25, 4.50, 4.75, 5.00, 5.30, 5.60, 6.00, 6.30, 6.70, 7.10, 7.50, 8.00, 8.50,
+    9.00, 9.50,
+)  # fmt: skip
+
+
+class DeclarationError(TypeError):
+    """A family declares something that cannot be: a fault of the family, never of its user."""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    default: Any
+    lower: float
+    upper: float
+    optional: bool
+    given: bool
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Option:
+    """A structural choice of the user, fixed before the search."""
+
+    name: str
+    symbol: str
+    text: str
+    source: str
+    choices: tuple[str, ...]
+    default: str
+    chosen: str
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An unknown of the search with bounds in SI; ``grid`` holds the makeable values in SI, or is empty."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    lower: float
+    upper: float
+    grid: np.ndarray
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Count:
+    """A stepped integer (or half-integer) unknown; ``values`` are all its steps."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    values: np.ndarray
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A discrete unknown that the search decides; its symbol is the index of the label."""
+
+    name: str
+    symbol: str
+    text: str
+    source: str
+    labels: tuple[str, ...]
+    sx: Any
+
+    def select(self, values: Mapping[str, Any]) -> Any:
+        """Return the value that belongs to the chosen label.
+
+        Parameters
+        ----------
+        values : mapping
+            One expression or number for every label.
+
+        Raises
+        ------
+        DeclarationError
+            When the labels do not match those of the choice.
+        """
+        if set(values) != set(self.labels):
+            raise DeclarationError(f"choice {self.name}: select() must name exactly the labels {self.labels}")
+        result: Any = ca.SX(values[self.labels[-1]])
+        for index, label in reversed(list(enumerate(self.labels[:-1]))):
+            result = ca.if_else(self.sx == index, values[label], result)
+        return result
+
+
+@dataclass
+class Part:
+    """One row of a catalogue table, seen through symbols.
+
+    Attribute access gives the SI symbol of a number column.
+    """
+
+    slot: str
+    table: str
+    where: tuple[str, ...]
+    symbol: str
+    text: str
+    source: str
+    is_slot: bool
+    known: frozenset[str]
+    columns: dict[str, PartColumn] = field(default_factory=dict)
+
+    def __getattr__(self, column: str) -> Any:
+        if column.startswith("_"):
+            raise AttributeError(column)
+        if column not in self.known:
+            raise InputError(
+                f"table {self.table}", column, f"a number column of this name, which slot {self.slot} uses"
+            )
+        return self._symbol((column,), required=True)
+
+    def optional(self, column: str) -> Any:
+        """Return a column that table or row may lack; limits that use it are void there."""
+        return self._symbol((column,), required=False)
+
+    def first_of(self, *columns: str) -> Any:
+        """Return the first of several columns that the row has a value for."""
+        return self._symbol(columns, required=True)
+
+    def _symbol(self, columns: tuple[str, ...], required: bool) -> Any:
+        key = "|".join(columns)
+        if key not in self.columns:
+            self.columns[key] = PartColumn(self.slot, columns, required, ca.SX.sym(f"{self.slot}.{key}"))
+        return self.columns[key].sx
+
+
+@dataclass(frozen=True)
+class PartColumn:
+    """A column (or first of several) used by the problem, and its symbol."""
+
+    slot: str
+    columns: tuple[str, ...]
+    required: bool
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A named, reported quantity; it exists only where the guards in ``needs`` hold."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    needs: tuple[str, ...]
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
+
+    name: str
+    sense: str
+    unit: str
+    text: str
+    source: str
+    value: Any
+    limit: Any
+    guard: bool
+    scale: float
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A quantity to be made small ("min") or large ("max")."""
+
+    name: str
+    sense: str
+    default: bool
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Input that must be refused when the condition holds."""
+
+    code: str
+    when: Any
+    message: str
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A remark printed on the designs for which the condition holds."""
+
+    code: str
+    when: Any
+    message: str
+    source: str
+
+
+class Declaration:
+    """Collects what a problem declares, for one set of options and of optional requirements given.
+
+    Parameters
+    ----------
+    problem : str
+        Name of the problem, for messages.
+    options : mapping
+        Options the user has set.
+    given : set of str
+        Names of the requirements the user has given.
+    catalogs : Catalogs
+        The part tables in force.
+    """
+
+    def __init__(
+        self, problem: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs
+    ) -> None:
+        self.problem = problem
+        self.catalogs = catalogs
+        self._asked_options = dict(options)
+        self._given = given
+        self.requirements: dict[str, Requirement] = {}
+        self.options: dict[str, Option] = {}
+        self.variables: dict[str, Variable] = {}
+        self.counts: dict[str, Count] = {}
+        self.choices: dict[str, Choice] = {}
+        self.slots: dict[str, Part] = {}
+        self.rows: dict[str, Part] = {}
+        self.derived: dict[str, Derived] = {}
+        self.limits: dict[str, Limit] = {}
+        self.objectives: dict[str, Objective] = {}
+        self.refusals: list[Refusal] = []
+        self.advices: list[Advice] = []
+        self._symbols: dict[str, str] = {}
+
+    # -- names ---------------------------------------------------------------------------------
+
+    def _claim(self, name: str, symbol: str | None) -> str:
+        symbol = name if symbol is None else symbol
+        for word in {name, symbol}:
+            if word in self._symbols:
+                raise DeclarationError(
+                    f"{self.problem}: {word!r} of {name} is already the name or symbol of {self._symbols[word]}"
+                )
+        self._symbols[name] = self._symbols[symbol] = name
+        return symbol
+
+    def names(self) -> dict[str, str]:
+        """Return every accepted spelling (name or symbol) and the name it stands for."""
+        return dict(self._symbols)
+
+    # -- verbs ---------------------------------------------------------------------------------
+
+    def requirement(
+        self,
+        name: str,
+        unit: str,
+        default: Any = None,
+        lower: float | None = None,
+        upper: float | None = None,
+        optional: bool = False,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare a quantity that the user states; bare numbers are in ``unit``, expressions in SI.
+
+        Returns
+        -------
+        symbol, or None for an optional requirement that was not given.
+        """
+        symbol = self._claim(name, symbol)
+        parsed = parse_unit(unit)
+        numeric = default is None or isinstance(default, (int, float))
+        given = name in self._given
+        record = Requirement(
+            name=name,
+            unit=unit,
+            symbol=symbol,
+            text=text,
+            source=source,
+            default=float(to_si(default, parsed)) if numeric and default is not None else default,
+            lower=-np.inf if lower is None else float(to_si(lower, parsed)),
+            upper=np.inf if upper is None else float(to_si(upper, parsed)),
+            optional=optional,
+            given=given,
+            sx=None if optional and not given else ca.SX.sym(name),
+        )
+        self.requirements[name] = record
+        return record.sx
+
+    def option(
+        self, name: str, choices: Sequence[str], default: str, symbol: str | None = None, text: str = "", source: str = ""
+    ) -> str:
+        """Declare a structural choice of the user and return the chosen string."""
+        symbol = self._claim(name, symbol)
+        labels = tuple(choices)
+        if default not in labels:
+            raise DeclarationError(f"{self.problem}: default {default!r} of option {name} is not one of {labels}")
+        asked = self._asked_options.get(symbol, default) if symbol in self._asked_options else None
+        chosen = self._asked_options.get(name, asked if asked is not None else default)
+        if isinstance(chosen, bool):
+            chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
+        if chosen not in labels:
+            raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels))
+        self.options[name] = Option(name, symbol, text, source, labels, default, chosen)
+        return str(chosen)
+
+    def designations(self, table: str) -> tuple[str, ...]:
+        """Return the designations of a catalogue table, for options that are rows of a table."""
+        return tuple(self.catalogs.table(table).designations)
+
+    def variable(
+        self,
+        name: str,
+        unit: str,
+        lower: float,
+        upper: float,
+        grid: float | str | Sequence[float] | None = None,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol."""
+        symbol = self._claim(name, symbol)
+        parsed = parse_unit(unit)
+        if not lower < upper:
+            raise DeclarationError(f"{self.problem}: variable {name} needs lower < upper")
+        record = Variable(
+            name=name,
+            unit=unit,
+            symbol=symbol,
+            text=text,
+            source=source,
+            lower=float(to_si(lower, parsed)),
+            upper=float(to_si(upper, parsed)),
+            grid=np.asarray(to_si(grid_values(grid, lower, upper), parsed), dtype=float),
+            sx=ca.SX.sym(name),
+        )
+        self.variables[name] = record
+        return record.sx
+
+    def count(
+        self,
+        name: str,
+        lower: float,
+        upper: float,
+        step: float = 1,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare a stepped unknown; return its symbol."""
+        symbol = self._claim(name, symbol)
+        values = lower + step * np.arange(int(np.floor((upper - lower) / step + 1e-9)) + 1)
+        record = Count(name, "-", symbol, text, source, values.astype(float), ca.SX.sym(name))
+        self.counts[name] = record
+        return record.sx
+
+    def choice(
+        self, name: str, labels: Sequence[str], symbol: str | None = None, text: str = "", source: str = ""
+    ) -> Choice:
+        """Declare a discrete unknown that the search decides."""
+        symbol = self._claim(name, symbol)
+        record = Choice(name, symbol, text, source, tuple(labels), ca.SX.sym(name))
+        self.choices[name] = record
+        return record
+
+    def part(
+        self,
+        slot: str,
+        table: str,
+        where: str | Sequence[str] = (),
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Part:
+        """Declare a slot filled by one row of a catalogue table; columns are attributes of the result."""
+        symbol = self._claim(slot, symbol)
+        conditions = (where,) if isinstance(where, str) else tuple(where)
+        part = self._part(slot, table, tuple(c for c in conditions if c), symbol, text, source, True)
+        self.slots[slot] = part
+        return part
+
+    def row(self, table: str, designation: str) -> Part:
+        """Return one fixed row of a table (not a slot), for options whose figures stand in a table."""
+        self.catalogs.table(table).row_index(designation)
+        part = self._part(f"{table}:{designation}", table, (f"designation == {designation!r}",), "", "", "", False)
+        self.rows[part.slot] = part
+        return part
+
+    def _part(
+        self, slot: str, table: str, where: tuple[str, ...], symbol: str, text: str, source: str, is_slot: bool
+    ) -> Part:
+        columns = self.catalogs.table(table).columns
+        known = frozenset(c for c, column in columns.items() if column.type in ("number", "integer", "flag"))
+        return Part(slot, table, where, symbol, text, source, is_slot, known)
+
+    def derive(
+        self,
+        name: str,
+        unit: str,
+        expr: Any,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+        needs: str | Sequence[str] = (),
+    ) -> Any:
+        """Declare a named, reported quantity and return its expression.
+
+        ``needs`` names the guards (limits with ``guard=True``) without which it does not exist;
+        it and all that depends on it are null where one of them fails.
+        """
+        symbol = self._claim(name, symbol)
+        parse_unit(unit)
+        guards = (needs,) if isinstance(needs, str) else tuple(needs)
+        record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr))
+        self.derived[name] = record
+        return record.sx
+
+    def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""
+        self._limit(name, "at_most", value, limit, unit, **details)
+
+    def at_least(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value >= limit``."""
+        self._limit(name, "at_least", value, limit, unit, **details)
+
+    def equal(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value == limit``."""
+        self._limit(name, "equal", value, limit, unit, **details)
+
+    def _limit(
+        self,
+        name: str,
+        sense: str,
+        value: Any,
+        limit: Any,
+        unit: str,
+        guard: bool = False,
+        text: str = "",
+        source: str = "",
+        scale: float | None = None,
+    ) -> None:
+        if name in self.limits:
+            raise DeclarationError(f"{self.problem}: limit {name} is declared twice")
+        if guard and sense == "equal":
+            raise DeclarationError(f"{self.problem}: an equality ({name}) cannot be a guard")
+        parsed = parse_unit(unit)
+        size = 1e-9 if scale is None else float(to_si(scale, parsed))
+        self.limits[name] = Limit(name, sense, unit, text, source, ca.SX(value), ca.SX(limit), guard, size)
+
+    def objective(self, name: str, sense: str = "min", default: bool = True) -> None:
+        """Offer a named quantity as objective."""
+        if sense not in ("min", "max"):
+            raise DeclarationError(f"{self.problem}: objective {name} has sense {sense!r}; write 'min' or 'max'")
+        self.objectives[name] = Objective(name, sense, default)
+
+    def refuse(self, code: str, when: Any, message: str) -> None:
+        """Refuse input (or leave out rows) for which ``when`` holds."""
+        self.refusals.append(Refusal(code, ca.SX(when), message))
+
+    def advise(self, code: str, when: Any, message: str, source: str = "") -> None:
+        """Print a remark on the designs for which ``when`` holds."""
+        self.advices.append(Advice(code, ca.SX(when), message, source))
+
+    # -- views ---------------------------------------------------------------------------------
+
+    def quantities(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (name, unit, kind) of every numeric quantity, in the order of reports."""
+        for variable in self.variables.values():
+            yield variable.name, variable.unit, "variable"
+        for count in self.counts.values():
+            yield count.name, "-", "count"
+        for derived in self.derived.values():
+            yield derived.name, derived.unit, "derived"
+
+    def finish(self) -> None:
+        """Check what can only be checked when everything is declared."""
+        known = {name for name, _, _ in self.quantities()}
+        for objective in self.objectives.values():
+            if objective.name not in known:
+                raise DeclarationError(f"{self.problem}: objective {objective.name} is no variable, count or derived quantity")
+        for derived in self.derived.values():
+            for guard in derived.needs:
+                if guard not in self.limits or not self.limits[guard].guard:
+                    raise DeclarationError(f"{self.problem}: {derived.name} needs {guard!r}, which is no guard")
+        for option in self._asked_options:
+            if option not in self.options and option not in {o.symbol for o in self.options.values()}:
+                known_options = ", ".join(self.options) or "none"
+                raise InputError("options", option, f"an option of {self.problem}: {known_options}")
+
+
+def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper: float) -> np.ndarray:
+    """Return the makeable values inside ``lower .. upper``.
+
+    Parameters
+    ----------
+    grid : step, name of a preferred number series, list of values, or None
+        ``1`` = whole units, ``"R20"`` = ISO 3 series, or the values themselves.
+    lower, upper : float
+        Bounds in the same unit.
+
+    Returns
+    -------
+    numpy.ndarray
+        Sorted values; empty for a continuous variable.
+
+    Examples
+    --------
+    >>> grid_values("R10", 10, 32)
+    array([10. , 12.5, 16. , 20. , 25. , 31.5])
+    """
+    if grid is None:
+        return np.empty(0)
+    if isinstance(grid, str):
+        if grid not in RENARD_STEPS:
+            raise DeclarationError(f"unknown preferred number series {grid!r}; known are {', '.join(RENARD_STEPS)}")
+        mantissas = RENARD_R40[:: 40 // RENARD_STEPS[grid]]
+        decades = np.arange(np.floor(np.log10(lower)), np.ceil(np.log10(upper)) + 1)
+        values = np.array([float(f"{m}e{int(d)}") for d in decades for m in mantissas])
+    elif isinstance(grid, (int, float)):
+        first, last = np.ceil(lower / grid - 1e-9), np.floor(upper / grid + 1e-9)
+        # Division by the reciprocal of a fractional step keeps 0.1 mm ladders free of 0.30000000000000004.
+        values = np.arange(first, last + 1) / round(1 / grid) if grid < 1 else np.arange(first, last + 1) * grid
+    else:
+        values = np.sort(np.asarray(grid, dtype=float))
+    return values[(values >= lower * (1 - 1e-12)) & (values <= upper * (1 + 1e-12))]

@@ -1,0 +1,496 @@
+"""One question to a model: requirement values, restrictions, and the combinations that remain."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.conditions import parse_condition
+from synth.declaration import Part
+from synth.errors import InputError
+from synth.model import Model, part_column_value
+from synth.problem import DesignProblem
+from synth.tables import Catalogs, Table
+from synth.units import format_quantity, from_si, parse_quantity, parse_unit
+
+SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
+CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*(.+)$", re.DOTALL)
+
+_shipped: dict[str, Catalogs] = {}
+
+
+def as_catalogs(spec: Any) -> Catalogs:
+    """Return catalogues for what the user gave; the shipped ones are made once."""
+    if isinstance(spec, Catalogs):
+        return spec
+    if spec is None:
+        if "shipped" not in _shipped:
+            _shipped["shipped"] = Catalogs()
+        return _shipped["shipped"]
+    return Catalogs(spec)
+
+
+@dataclass(frozen=True)
+class ExtraLimit:
+    """A limit on a named quantity that the user added to this question."""
+
+    name: str
+    quantity: str
+    sense: str
+    limit: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class SlotRows:
+    """The rows of a table that may fill a slot, and their numbers for the model."""
+
+    slot: str
+    table: Table
+    rows: np.ndarray
+    columns: dict[str, np.ndarray]
+
+
+@dataclass
+class Selection:
+    """What remains of the discrete unknowns, and why the rest was left out."""
+
+    slots: list[SlotRows] = field(default_factory=list)
+    counts: dict[str, np.ndarray] = field(default_factory=dict)
+    choices: dict[str, np.ndarray] = field(default_factory=dict)
+    left_out: list[dict[str, str]] = field(default_factory=list)
+    offered: dict[str, int] = field(default_factory=dict)
+
+
+def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs) -> dict[str, Any]:
+    """Return the requirements by public name; values of None count as not given.
+
+    Raises
+    ------
+    InputError
+        When a name is unknown or given twice.
+    """
+    model = problem.model(frozenset(), catalogs)
+    result: dict[str, Any] = {}
+    for word, value in requirements.items():
+        name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
+        if name in result:
+            raise InputError(f"requirement {name}", word, "each requirement once (name and symbol mean the same)")
+        if value is not None:
+            result[name] = value
+    return result
+
+
+class Instance:
+    """A model with its requirement values and restrictions.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    requirements : mapping
+        Names or symbols; text with units, or bare numbers in the declared unit.
+    catalogs : Catalogs
+    parts, limits, fix : mapping, optional
+        Restrictions as in ``synth.synthesize``.
+    grid : bool
+        Whether makeable values are asked for.
+    restrict : bool
+        False for the analysis of a given design: then rows are not filtered.
+    """
+
+    def __init__(
+        self,
+        problem: DesignProblem,
+        requirements: Mapping[str, Any],
+        catalogs: Catalogs,
+        parts: Mapping[str, Any] | None = None,
+        limits: Mapping[str, Any] | None = None,
+        fix: Mapping[str, Any] | None = None,
+        grid: bool = True,
+        restrict: bool = True,
+    ) -> None:
+        asked = known_requirements(problem, requirements, catalogs)
+        self.problem = problem
+        self.catalogs = catalogs
+        self.model = problem.model(frozenset(asked), catalogs)
+        self.grid = grid
+        d = self.model.declaration
+        self.requirements = self._requirement_values(asked)
+        self.given = frozenset(asked)
+        self.not_asked = [r.name for r in d.requirements.values() if r.sx is None]
+        self._refuse_requirements()
+        self.lower = np.array([v.lower for v in self.model.variables])
+        self.upper = np.array([v.upper for v in self.model.variables])
+        self.pinned = np.zeros(len(self.model.variables), dtype=bool)
+        self.extra: list[ExtraLimit] = []
+        self._fixed_discrete: dict[str, Any] = {}
+        self._count_bounds: list[tuple[str, str, float]] = []
+        for word, conditions in (limits or {}).items():
+            self._add_limit(str(word), conditions)
+        for word, value in (fix or {}).items():
+            self._pin(str(word), value)
+        self.selection = Selection()
+        if restrict:
+            self._select_rows(parts or {})
+            self._select_counts()
+            self._refuse_rows()
+        self.radix = [len(s.rows) for s in self.selection.slots]
+        self.radix += [len(v) for v in self.selection.counts.values()]
+        self.radix += [len(v) for v in self.selection.choices.values()]
+        self.combinations = math.prod(self.radix)
+
+    # -- requirements --------------------------------------------------------------------------
+
+    def _requirement_values(self, asked: Mapping[str, Any]) -> dict[str, float]:
+        model, values = self.model, dict[str, float]()
+        row_values = self._row_values()
+        for r in model.declaration.requirements.values():
+            if r.sx is None:
+                continue
+            if r.name in asked:
+                values[r.name] = parse_quantity(asked[r.name], r.unit, f"requirement {r.name}")
+                self._check_range(r.name, asked[r.name], values[r.name], r.lower, r.upper, r.unit)
+            elif r.default is None:
+                raise InputError(f"requirement {r.name}", None, f"a value in {r.unit}, for example {self._example(r)}")
+            elif isinstance(r.default, float):
+                values[r.name] = r.default
+            else:
+                known = {**{str(model.declaration.requirements[n].sx): v for n, v in values.items()}, **row_values}
+                values[r.name] = number(r.default, known)
+        return values
+
+    @staticmethod
+    def _example(requirement: Any) -> str:
+        finite = [x for x in (requirement.lower, requirement.upper) if np.isfinite(x) and x > 0]
+        middle = math.sqrt(finite[0] * finite[1]) if len(finite) == 2 else (finite[0] if finite else 1.0)
+        shown = float(f"{from_si(middle, parse_unit(requirement.unit)):.1g}")
+        return f"'{shown:g} {requirement.unit}'"
+
+    @staticmethod
+    def _check_range(name: str, typed: Any, value: float, lower: float, upper: float, unit: str) -> None:
+        slack = 1e-12
+        if value < lower - slack * abs(lower) or value > upper + slack * abs(upper):
+            low, high = format_quantity(lower, unit), format_quantity(upper, unit)
+            expected = f"{low} to {high}" if np.isfinite(lower) and np.isfinite(upper) else (
+                f"at least {low}" if np.isfinite(lower) else f"at most {high}"
+            )
+            raise InputError(f"requirement {name}", typed, expected)
+
+    def _row_values(self) -> dict[str, float]:
+        values: dict[str, float] = {}
+        for row in self.model.declaration.rows.values():
+            table = self.catalogs.table(row.table)
+            designation = row.slot.split(":", 1)[1]
+            index = table.row_index(designation)
+            for key, column in row.columns.items():
+                numbers = {c: table.number(c)[[index]] for c in column.columns}
+                value = float(part_column_value(column, numbers)[0])
+                if math.isnan(value) and column.required:
+                    raise InputError(f"table {row.table}, row {designation}, column {key}", None, "a number")
+                values[str(column.sx)] = value
+        self.row_values = values
+        return values
+
+    def _refuse_requirements(self) -> None:
+        model = self.model
+        known = self._symbol_values()
+        for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
+            if not kinds and number(refusal.when, known) > 0.5:
+                raise InputError(refusal.code, self._involved(refusal.when), refusal.message)
+
+    def _symbol_values(self) -> dict[str, float]:
+        requirements = self.model.declaration.requirements
+        return {**{str(requirements[n].sx): v for n, v in self.requirements.items()}, **self.row_values}
+
+    def _involved(self, expression: Any) -> str:
+        used = {str(s) for s in ca.symvar(expression)}
+        shown = [
+            f"{r.name} = {format_quantity(self.requirements[r.name], r.unit)}"
+            for r in self.model.declaration.requirements.values()
+            if r.name in self.requirements and str(r.sx) in used
+        ]
+        return ", ".join(shown)
+
+    # -- limits and fix ------------------------------------------------------------------------
+
+    def _add_limit(self, word: str, conditions: Any) -> None:
+        model = self.model
+        name = model.name_of(word, "limits", list(model.quantity_sx), "a quantity")
+        unit = model.units[name]
+        for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
+            for sense, bound in self._read_limit(name, unit, text):
+                self._apply_limit(name, unit, sense, bound)
+
+    @staticmethod
+    def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+        label = f"limits: {name}"
+        if isinstance(text, str) and ".." in text:
+            first, last = text.split("..", 1)
+            low, high = parse_quantity(first, unit, label), parse_quantity(last, unit, label)
+            if low > high:
+                raise InputError(label, text, "the smaller value first, for example '200 mm .. 260 mm'")
+            return [("at_least", low), ("at_most", high)]
+        match = CONDITION.match(text) if isinstance(text, str) else None
+        if match is None:
+            raise InputError(label, text, f"a comparison, for example '<= 260 {unit}' or '200 {unit} .. 260 {unit}'")
+        return [(SENSES[match.group(1)], parse_quantity(match.group(2), unit, label))]
+
+    def _apply_limit(self, name: str, unit: str, sense: str, bound: float) -> None:
+        model = self.model
+        variable = next((k for k, v in enumerate(model.variables) if v.name == name), None)
+        if variable is not None:
+            if sense in ("at_most", "equal"):
+                self.upper[variable] = min(self.upper[variable], bound)
+            if sense in ("at_least", "equal"):
+                self.lower[variable] = max(self.lower[variable], bound)
+            if self.lower[variable] > self.upper[variable]:
+                v = model.variables[variable]
+                allowed = f"{format_quantity(v.lower, unit)} to {format_quantity(v.upper, unit)}"
+                raise InputError(f"limits: {name}", format_quantity(bound, unit), f"limits that leave something of {allowed}")
+        elif name in model.declaration.counts:
+            self._count_bounds.append((name, sense, bound))
+        else:
+            sign = {"at_most": "<=", "at_least": ">=", "equal": "=="}[sense]
+            label = f"{name} {sign} {format_quantity(bound, unit, None)}"
+            self.extra.append(ExtraLimit(label, name, sense, bound, unit))
+
+    def _pin(self, word: str, value: Any) -> None:
+        model, d = self.model, self.model.declaration
+        among = [*model.quantity_sx, *d.choices, *d.slots]
+        name = model.name_of(word, "fix", among, "a variable, count, choice, slot or derived quantity")
+        if name in d.slots or name in d.choices:
+            self._fixed_discrete[name] = value
+            return
+        unit = model.units[name]
+        number_si = parse_quantity(value, unit, f"fix: {name}")
+        for k, v in enumerate(model.variables):
+            if v.name == name:
+                self._check_range_of_variable(k, value, number_si)
+                self.lower[k] = self.upper[k] = number_si
+                self.pinned[k] = True
+        if name in d.counts:
+            self._fixed_discrete[name] = number_si
+        elif name in d.derived:
+            self._apply_limit(name, unit, "equal", number_si)
+
+    def _check_range_of_variable(self, k: int, typed: Any, value: float) -> None:
+        v = self.model.variables[k]
+        if not v.lower * (1 - 1e-12) <= value <= v.upper * (1 + 1e-12):
+            allowed = f"{format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}"
+            raise InputError(f"fix: {v.name}", typed, allowed)
+
+    # -- parts, counts, choices ----------------------------------------------------------------
+
+    def _select_rows(self, parts: Mapping[str, Any]) -> None:
+        d = self.model.declaration
+        wanted: dict[str, Any] = {}
+        for word, rule in parts.items():
+            wanted[self.model.name_of(str(word), "parts", list(d.slots), "a slot")] = rule
+        for part in d.slots.values():
+            table = self.catalogs.table(part.table)
+            self.selection.offered[part.slot] = len(table)
+            keep = self.offers(part, table)
+            if part.slot in wanted:
+                keep &= self._part_rule(part, table, wanted[part.slot])
+            if part.slot in self._fixed_discrete:
+                keep &= self._part_rule(part, table, [self._fixed_discrete[part.slot]])
+            keep = self._complete_rows(part, table, keep)
+            rows = np.flatnonzero(keep)
+            if not len(rows):
+                reasons = {e["reason"] for e in self.selection.left_out if e["slot"] == part.slot}
+                why = "; ".join(sorted(reasons)) or "the conditions " + " and ".join(
+                    [*part.where, *([str(wanted[part.slot])] if part.slot in wanted else [])]
+                )
+                raise InputError(f"slot {part.slot}", None, f"at least one row of table {part.table}; none is left by {why}")
+            columns = {
+                key: part_column_value(column, {c: table.number(c)[rows] for c in column.columns if table.has(c)} | {
+                    c: np.full(len(rows), np.nan) for c in column.columns if not table.has(c)
+                })
+                for key, column in part.columns.items()
+            }
+            self.selection.slots.append(SlotRows(part.slot, table, rows, columns))
+
+    @staticmethod
+    def offers(part: Part, table: Table) -> np.ndarray:
+        """Return which rows of the table meet the conditions of the slot."""
+        keep = np.ones(len(table), dtype=bool)
+        for text in part.where:
+            condition = parse_condition(text)
+            missing = [c for c in condition.columns if not table.has(c)]
+            if missing and table.user_rows.all():
+                continue  # a user's own table need not have the columns that sort the shipped one
+            mask = condition.mask(table)
+            if "family_hint" in condition.columns:
+                hints = np.array([not h for h in table.text("family_hint")])
+                mask |= table.user_rows & hints
+            keep &= mask
+        return keep
+
+    @staticmethod
+    def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
+        keep = np.zeros(len(table), dtype=bool)
+        if isinstance(rule, str) and rule not in table.designations:
+            return parse_condition(rule).mask(table)
+        for designation in [rule] if isinstance(rule, str) else rule:
+            keep[table.row_index(str(designation))] = True
+        return keep
+
+    def _complete_rows(self, part: Part, table: Table, keep: np.ndarray) -> np.ndarray:
+        for column in part.columns.values():
+            if not column.required:
+                continue
+            present = np.zeros(len(table), dtype=bool)
+            for name in column.columns:
+                if table.has(name):
+                    present |= ~np.isnan(table.number(name))
+            for row in np.flatnonzero(keep & ~present):
+                self._leave_out(part.slot, table.designations[row], f"no value in column {' or '.join(column.columns)}")
+            keep = keep & present
+        return keep
+
+    def _leave_out(self, slot: str, designation: str, reason: str) -> None:
+        self.selection.left_out.append({"slot": slot, "designation": designation, "reason": reason})
+
+    def _select_counts(self) -> None:
+        d = self.model.declaration
+        for count in d.counts.values():
+            values = count.values
+            for name, sense, bound in self._count_bounds:
+                if name == count.name:
+                    values = values[_compare(values, sense, bound)]
+            if count.name in self._fixed_discrete:
+                values = values[np.abs(values - self._fixed_discrete[count.name]) < 1e-9]
+            if not len(values):
+                low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
+                asked = self._fixed_discrete.get(count.name, [(s, b) for n, s, b in self._count_bounds if n == count.name])
+                raise InputError(count.name, asked, f"a value from {low:g} to {high:g} in steps of {step:g}")
+            self.selection.counts[count.name] = values
+        for choice in d.choices.values():
+            indices = np.arange(len(choice.labels))
+            if choice.name in self._fixed_discrete:
+                label = self._fixed_discrete[choice.name]
+                label = ("yes" if label else "no") if isinstance(label, bool) else str(label)
+                if label not in choice.labels:
+                    raise InputError(f"fix: {choice.name}", label, "one of " + ", ".join(choice.labels))
+                indices = np.array([choice.labels.index(label)])
+            self.selection.choices[choice.name] = indices.astype(float)
+
+    def _refuse_rows(self) -> None:
+        """Leave out rows, counts and choices that a refusal over one of them forbids."""
+        model = self.model
+        known = self._symbol_values()
+        self.joint_refusals: list[Any] = []
+        for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
+            if len(kinds) > 1:
+                self.joint_refusals.append(refusal)
+            elif kinds:
+                self._refuse_one(refusal, next(iter(kinds)), known)
+
+    def _refuse_one(self, refusal: Any, name: str, known: Mapping[str, float]) -> None:
+        model, selection = self.model, self.selection
+        slot = next((s for s in selection.slots if s.slot == name), None)
+        if slot is not None:
+            sx = {key: str(c.sx) for key, c in model.declaration.slots[name].columns.items()}
+            size, columns = len(slot.rows), {sx[key]: values for key, values in slot.columns.items()}
+        else:
+            values = (selection.counts | selection.choices)[name]
+            size, columns = len(values), {name: values}
+        bad = np.array(
+            [number(refusal.when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5 for k in range(size)],
+            dtype=bool,
+        )
+        if not bad.any():
+            return
+        labels = (
+            [slot.table.designations[r] for r in slot.rows] if slot is not None
+            else [f"{v:g}" for v in (selection.counts | selection.choices)[name]]
+        )
+        for k in np.flatnonzero(bad):
+            self._leave_out(name, labels[k], f"{refusal.code}: {refusal.message}")
+        if bad.all():
+            raise InputError(refusal.code, ", ".join(labels[:5]), refusal.message)
+        if slot is not None:
+            position = selection.slots.index(slot)
+            selection.slots[position] = SlotRows(
+                slot.slot, slot.table, slot.rows[~bad], {key: v[~bad] for key, v in slot.columns.items()}
+            )
+        elif name in selection.counts:
+            selection.counts[name] = selection.counts[name][~bad]
+        else:
+            selection.choices[name] = selection.choices[name][~bad]
+
+    # -- combinations --------------------------------------------------------------------------
+
+    def digits(self, combinations: np.ndarray) -> list[np.ndarray]:
+        """Return, per slot, count and choice, the position of each combination in what remains of it."""
+        result, rest = [], np.asarray(combinations, dtype=np.int64)
+        for size in reversed(self.radix):
+            result.append(rest % size)
+            rest = rest // size
+        return result[::-1]
+
+    def data(self, combinations: np.ndarray) -> list[Any]:
+        """Return the data inputs of the model for combinations given by number."""
+        digits = self.digits(combinations)
+        slots = {s.slot: (s, digits[k]) for k, s in enumerate(self.selection.slots)}
+        rest = digits[len(slots) :]
+        stepped = {**self.selection.counts, **self.selection.choices}
+        values = {name: v[rest[k]] for k, (name, v) in enumerate(stepped.items())}
+        result: list[Any] = []
+        for entry in self.model.data_inputs:
+            if entry.kind == "requirement":
+                result.append(self.requirements[entry.name])
+            elif entry.kind == "row":
+                result.append(self.row_values[str(entry.sx)])
+            elif entry.kind == "part":
+                slot, position = slots[entry.name]
+                result.append(slot.columns["|".join(entry.columns)][position])
+            else:
+                result.append(values[entry.name])
+        return result
+
+    def describe(self, combination: int) -> tuple[dict[str, tuple[Table, int]], dict[str, float], dict[str, str]]:
+        """Return parts (table and row), counts and choices of one combination."""
+        digits = [int(x[0]) for x in self.digits(np.array([combination]))]
+        slots = self.selection.slots
+        parts = {s.slot: (s.table, int(s.rows[digits[k]])) for k, s in enumerate(slots)}
+        rest = digits[len(slots) :]
+        counts = {n: float(v[rest[k]]) for k, (n, v) in enumerate(self.selection.counts.items())}
+        rest = rest[len(counts) :]
+        labels = self.model.declaration.choices
+        choices = {n: labels[n].labels[int(v[rest[k]])] for k, (n, v) in enumerate(self.selection.choices.items())}
+        return parts, counts, choices
+
+    def grids(self) -> list[np.ndarray]:
+        """Return, per variable, the makeable values in force; empty where it is continuous."""
+        result = []
+        for k, v in enumerate(self.model.variables):
+            values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
+            inside = (values >= self.lower[k] * (1 - 1e-12)) & (values <= self.upper[k] * (1 + 1e-12))
+            if len(values) and not inside.any():
+                low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
+                raise InputError(f"limits: {v.name}", f"{low} .. {high}", "a range that holds a makeable value (or grid: false)")
+            result.append(values[inside])
+        return result
+
+
+def number(expression: Any, values: Mapping[str, float]) -> float:
+    """Evaluate an expression whose symbols all have values."""
+    symbols = ca.symvar(ca.SX(expression))
+    function = ca.Function("number", symbols, [ca.SX(expression)])
+    return float(function(*[values[str(s)] for s in symbols]))
+
+
+def _compare(values: np.ndarray, sense: str, bound: float) -> np.ndarray:
+    slack = 1e-9 * max(1.0, abs(bound))
+    if sense == "at_most":
+        return values <= bound + slack
+    if sense == "at_least":
+        return values >= bound - slack
+    return np.abs(values - bound) <= slack

@@ -1,0 +1,244 @@
+"""A declaration traced into one program, from which everything else is read."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.declaration import Declaration, DeclarationError, Limit, Part, PartColumn
+from synth.errors import InputError
+from synth.feasibility import holds, residual
+from synth.program import Program
+
+
+@dataclass(frozen=True)
+class DataInput:
+    """One input of the program that is fixed by the combination or the requirements."""
+
+    kind: str  # requirement, row, count, choice, part
+    name: str  # requirement, count, choice, slot or row
+    columns: tuple[str, ...]  # of part and row: the columns, first one given counts
+    required: bool
+    sx: Any
+
+    @property
+    def label(self) -> str:
+        """Return a readable name, ``slot.column`` for parts."""
+        return f"{self.name}.{'|'.join(self.columns)}" if self.columns else self.name
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What the program says for a batch of designs; every value is an array over the batch, in SI."""
+
+    values: dict[str, np.ndarray]
+    limits: dict[str, tuple[np.ndarray, np.ndarray]]
+    residuals: dict[str, np.ndarray]
+    holds: dict[str, np.ndarray]
+    void: dict[str, np.ndarray]
+    advice: dict[int, np.ndarray]
+    feasible: np.ndarray
+
+
+class Model:
+    """One traced problem: its symbols, its program and the evaluators made from it.
+
+    Parameters
+    ----------
+    title : str
+        Name of the problem, for messages.
+    declaration : Declaration
+        What the family declared.
+    """
+
+    def __init__(self, title: str, declaration: Declaration) -> None:
+        declaration.finish()
+        self.title = title
+        self.declaration = declaration
+        self.variables = list(declaration.variables.values())
+        self.limits = list(declaration.limits.values())
+        self.data_inputs = self._data_inputs(declaration)
+        self.inputs = [v.sx for v in self.variables] + [i.sx for i in self.data_inputs]
+        self.units = {name: unit for name, unit, _ in declaration.quantities()}
+        self._check_symbols()
+        named: dict[str, Any] = {v.name: v.sx for v in self.variables}
+        named |= {c.name: c.sx for c in declaration.counts.values()}
+        named |= {q.name: q.sx for q in declaration.derived.values()}
+        self.quantity_sx = named
+        outputs = list(named.values())
+        outputs += [side for limit in self.limits for side in (limit.value, limit.limit)]
+        outputs += [a.when for a in declaration.advices]
+        self.program = Program(self.inputs, outputs)
+        numbers = iter(self.program.outputs)
+        self.quantity_node = {name: next(numbers) for name in named}
+        self.limit_nodes = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+        self.advice_nodes = [next(numbers) for _ in declaration.advices]
+        self._evaluate = self.program.compile()
+        self.void_inputs = self._void_inputs()
+        self.refusal_kinds = [self._refusal_inputs(r.code, r.when) for r in declaration.refusals]
+        self._function_cache: dict[Any, Any] = {}
+        self._null_values, self._null_limits = self._behind_guards()
+
+    # -- the trace -----------------------------------------------------------------------------
+
+    def _data_inputs(self, d: Declaration) -> list[DataInput]:
+        inputs = [
+            DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None
+        ]
+
+        def columns(kind: str, part: Part) -> list[DataInput]:
+            return [DataInput(kind, part.slot, c.columns, c.required, c.sx) for c in part.columns.values()]
+
+        for row in d.rows.values():
+            inputs += columns("row", row)
+        inputs += [DataInput("count", c.name, (), True, c.sx) for c in d.counts.values()]
+        inputs += [DataInput("choice", c.name, (), True, c.sx) for c in d.choices.values()]
+        for slot in d.slots.values():
+            inputs += columns("part", slot)
+        return inputs
+
+    def _check_symbols(self) -> None:
+        known = {str(s) for s in self.inputs}
+        d = self.declaration
+        sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
+        named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
+        when = [(f"refusal {r.code}", r.when) for r in d.refusals] + [(f"advice {a.code}", a.when) for a in d.advices]
+        for label, expression in sides + named + when:
+            strange = sorted({str(s) for s in ca.symvar(expression)} - known)
+            if strange:
+                raise DeclarationError(f"{self.title}: {label} uses {strange}, which the declaration does not make")
+
+    def _void_inputs(self) -> dict[str, list[int]]:
+        """Return, per limit, the optional data inputs that make it void where they have no value."""
+        first = len(self.variables)
+        optional = [first + k for k, i in enumerate(self.data_inputs) if not i.required]
+        result: dict[str, list[int]] = {limit.name: [] for limit in self.limits}
+        for k in optional:
+            marked = self.program.dependence([k])
+            for limit in self.limits:
+                if any(marked[n] for n in self.limit_nodes[limit.name]):
+                    result[limit.name].append(k - first)
+        return result
+
+    def _refusal_inputs(self, code: str, when: Any) -> frozenset[str]:
+        """Return the discrete unknowns (slots, counts, choices) that a refusal speaks of."""
+        used = {str(s) for s in ca.symvar(when)}
+        if used & {str(v.sx) for v in self.variables}:
+            raise DeclarationError(f"{self.title}: refusal {code} speaks of a continuous variable; that is a limit")
+        return frozenset(
+            i.name for i in self.data_inputs if i.kind in ("count", "choice", "part") and str(i.sx) in used
+        )
+
+    def _behind_guards(self) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+        """Return, per quantity and per limit, the guards without which it does not exist."""
+        values: dict[str, list[str]] = {name: [] for name in self.quantity_node}
+        limits: dict[str, list[str]] = {limit.name: [] for limit in self.limits}
+        needs = [(q.name, g) for q in self.declaration.derived.values() for g in q.needs]
+        for guard in sorted({g for _, g in needs}):
+            marked = self.program.downstream(self.quantity_node[name] for name, g in needs if g == guard)
+            for name, node in self.quantity_node.items():
+                if marked[node]:
+                    values[name].append(guard)
+            for name, nodes in self.limit_nodes.items():
+                if name != guard and any(marked[n] for n in nodes):
+                    limits[name].append(guard)
+        return values, limits
+
+    # -- names ---------------------------------------------------------------------------------
+
+    def name_of(self, word: str, field: str, among: Sequence[str], what: str) -> str:
+        """Return the public name for a name or symbol; refuse with the closest spellings otherwise."""
+        spellings = self.declaration.names()
+        name = spellings.get(word)
+        if name in among:
+            return str(name)
+        if name is not None:
+            raise InputError(field, word, f"{what}; {name} is {self.kind_of(name)}")
+        allowed = [s for s, n in spellings.items() if n in among]
+        close = difflib.get_close_matches(word, allowed, n=3, cutoff=0.6)
+        hint = f" (did you mean {' or '.join(close)}?)" if close else ""
+        raise InputError(field, word, f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them")
+
+    def kind_of(self, name: str) -> str:
+        """Return what a declared name is, with its article."""
+        d = self.declaration
+        kinds = {
+            "a requirement": d.requirements,
+            "an option": d.options,
+            "a variable": d.variables,
+            "a count": d.counts,
+            "a choice": d.choices,
+            "a slot": d.slots,
+            "a derived quantity": d.derived,
+        }
+        return next(kind for kind, members in kinds.items() if name in members)
+
+    # -- numbers -------------------------------------------------------------------------------
+
+    def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
+        """Evaluate a batch of designs.
+
+        Parameters
+        ----------
+        variables : array (batch, variables)
+            SI values in the declared order.
+        data : list of numbers or arrays (batch,)
+            One entry per data input.
+
+        Returns
+        -------
+        Evaluation
+        """
+        count = len(variables)
+        with np.errstate(all="ignore"):
+            raw = self._evaluate([variables[:, k] for k in range(len(self.variables))] + list(data))
+            numbers = iter([np.broadcast_to(np.asarray(x, dtype=float), (count,)) for x in raw])
+            values = {name: next(numbers) for name in self.quantity_node}
+            limits = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+            advice = {k: next(numbers) > 0.5 for k in range(len(self.advice_nodes))}
+            residuals = {x.name: residual(*limits[x.name], x.sense, x.scale) for x in self.limits}
+            held = {x.name: holds(residuals[x.name], x.guard) for x in self.limits}
+            void = {x.name: self._void(x.name, data, count) for x in self.limits}
+            for name, guards in self._null_values.items():
+                for guard in guards:
+                    values[name] = np.where(held[guard], values[name], np.nan)
+            feasible = np.ones(count, dtype=bool)
+            for limit in self.limits:
+                name = limit.name
+                for guard in self._null_limits[name]:
+                    residuals[name] = np.where(held[guard], residuals[name], np.nan)
+                    held[name] = held[name] | ~held[guard]  # the guard alone tells why
+                residuals[name] = np.where(void[name], np.nan, residuals[name])
+                held[name] = held[name] | void[name]
+                feasible &= held[name]
+        return Evaluation(values, limits, residuals, held, void, advice, feasible)
+
+    def _void(self, limit: str, data: Sequence[Any], count: int) -> np.ndarray:
+        gone = np.zeros(count, dtype=bool)
+        for k in self.void_inputs[limit]:
+            gone |= np.isnan(np.asarray(data[k], dtype=float))
+        return gone
+
+    def function(self, key: Any, make: Callable[[], Any]) -> Any:
+        """Return an object that is built once per model, for example a CasADi function or a solver."""
+        if key not in self._function_cache:
+            self._function_cache[key] = make()
+        return self._function_cache[key]
+
+
+def part_column_value(column: DataInput | PartColumn, numbers: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the column of a table, or the first of several that has a value, row by row."""
+    result = numbers[column.columns[0]]
+    for name in column.columns[1:]:
+        result = np.where(np.isnan(result), numbers[name], result)
+    return result
+
+
+def limit_direction(limit: Limit) -> int:
+    """Return +1 for an upper, -1 for a lower limit, 0 for an equality."""
+    return {"at_most": 1, "at_least": -1, "equal": 0}[limit.sense]

@@ -1,0 +1,112 @@
+"""The base class of all design problems, and the registry that finds them."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from importlib.metadata import entry_points
+from typing import Any
+
+from synth.declaration import Declaration, DeclarationError
+from synth.errors import InputError
+from synth.model import Model
+from synth.tables import Catalogs
+
+ENTRY_POINT_GROUP = "clutchsynth.problems"
+
+
+class DesignProblem:
+    """A design problem, written once: subclass it, name it, and declare it.
+
+    Parameters
+    ----------
+    **options : str
+        Structural choices of the user; ``describe`` lists them.
+
+    Raises
+    ------
+    InputError
+        When an option is unknown or has an unknown value.
+
+    Examples
+    --------
+    >>> class Rod(DesignProblem):
+    ...     name, title = "rod", "Tension rod"
+    ...     def declare(self, d):
+    ...         force = d.requirement("force", "N")
+    ...         diameter = d.variable("diameter", "mm", 1, 100)
+    ...         d.at_most("stress", force / (0.785398 * diameter**2), 100e6, "N/mm2")
+    ...         d.objective("diameter", "min")
+    >>> import synth
+    >>> front = synth.synthesize(Rod(), {"force": "10 kN"})
+    >>> round(front.designs[0].values["diameter"] * 1e3, 3)
+    11.284
+    """
+
+    name: str = ""
+    title: str = ""
+    sources: tuple[str, ...] = ()
+
+    def __init__(self, **options: str) -> None:
+        if not self.name:
+            raise DeclarationError(f"{type(self).__name__} needs a class attribute 'name'")
+        self.options = dict(options)
+        self._models: dict[tuple[frozenset[str], int], tuple[Model, Catalogs]] = {}
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, parts, limits and objectives on ``d``."""
+        raise DeclarationError(f"{type(self).__name__} does not define declare(self, d)")
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> Any:
+        """Return curves for reports as DataFrames by name, or None where a family has none."""
+        return None
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> Any:
+        """Return a simulation in time as DataFrame, or None where a family has none."""
+        return None
+
+    def model(self, given: frozenset[str], catalogs: Catalogs) -> Model:
+        """Trace the problem once for the set of requirements given and the catalogues in force."""
+        key = (given, id(catalogs))
+        if key not in self._models:
+            declaration = Declaration(self.name, self.options, given, catalogs)
+            self.declare(declaration)
+            # The catalogues are kept with the model, so that their id stays theirs.
+            self._models[key] = (Model(self.name, declaration), catalogs)
+        return self._models[key][0]
+
+
+def families() -> list[str]:
+    """Return the names of all registered families, sorted."""
+    return sorted({point.name for point in entry_points(group=ENTRY_POINT_GROUP)})
+
+
+def load(problem: str | type[DesignProblem] | DesignProblem, **options: str) -> DesignProblem:
+    """Return a problem ready to use.
+
+    Parameters
+    ----------
+    problem : str, subclass or instance of DesignProblem
+        A registered name, or a problem of your own.
+    **options : str
+        Structural choices; only with a name or a class.
+
+    Raises
+    ------
+    InputError
+        When the name is not registered, or options are given for a finished instance.
+    """
+    if isinstance(problem, DesignProblem):
+        if options:
+            raise InputError("options", sorted(options), "no options here: the instance was made with its own")
+        return problem
+    if isinstance(problem, type) and issubclass(problem, DesignProblem):
+        return problem(**options)
+    if not isinstance(problem, str):
+        raise InputError("family", problem, "the name of a family, or a subclass or instance of DesignProblem")
+    for point in entry_points(group=ENTRY_POINT_GROUP):
+        if point.name == problem:
+            return load(point.load(), **options)
+    close = difflib.get_close_matches(problem, families(), n=2)
+    hint = f"did you mean {' or '.join(close)}?" if close else "one of " + ", ".join(families())
+    raise InputError("family", problem, hint)

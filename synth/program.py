@@ -1,0 +1,211 @@
+"""The traced formulas as a list of instructions, and the NumPy code generated from it.
+
+CasADi records what a family computes; here the record becomes a value-numbered list (each distinct
+sub-expression once), which everything else reads: the batch evaluator below, the interval
+propagation of the search, the splitting of min, max and where into smooth branches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+ARITY_TWO = {
+    ca.OP_ADD: "({0} + {1})",
+    ca.OP_SUB: "({0} - {1})",
+    ca.OP_MUL: "({0} * {1})",
+    ca.OP_DIV: "({0} / {1})",
+    ca.OP_POW: "({0} ** {1})",
+    ca.OP_CONSTPOW: "({0} ** {1})",
+    ca.OP_LT: "np.less({0}, {1}).astype(float)",
+    ca.OP_LE: "np.less_equal({0}, {1}).astype(float)",
+    ca.OP_EQ: "np.equal({0}, {1}).astype(float)",
+    ca.OP_NE: "np.not_equal({0}, {1}).astype(float)",
+    ca.OP_AND: "np.logical_and({0}, {1}).astype(float)",
+    ca.OP_OR: "np.logical_or({0}, {1}).astype(float)",
+    ca.OP_FMOD: "np.fmod({0}, {1})",
+    ca.OP_COPYSIGN: "np.copysign({0}, {1})",
+    ca.OP_IF_ELSE_ZERO: "np.where({0}, {1}, 0.0)",
+    ca.OP_FMIN: "np.minimum({0}, {1})",
+    ca.OP_FMAX: "np.maximum({0}, {1})",
+    ca.OP_ATAN2: "np.arctan2({0}, {1})",
+    ca.OP_HYPOT: "np.hypot({0}, {1})",
+}
+ARITY_ONE = {
+    ca.OP_NEG: "(-{0})",
+    ca.OP_EXP: "np.exp({0})",
+    ca.OP_LOG: "np.log({0})",
+    ca.OP_SQRT: "np.sqrt({0})",
+    ca.OP_SQ: "({0} * {0})",
+    ca.OP_TWICE: "(2.0 * {0})",
+    ca.OP_SIN: "np.sin({0})",
+    ca.OP_COS: "np.cos({0})",
+    ca.OP_TAN: "np.tan({0})",
+    ca.OP_ASIN: "np.arcsin({0})",
+    ca.OP_ACOS: "np.arccos({0})",
+    ca.OP_ATAN: "np.arctan({0})",
+    ca.OP_NOT: "np.logical_not({0}).astype(float)",
+    ca.OP_FLOOR: "np.floor({0})",
+    ca.OP_CEIL: "np.ceil({0})",
+    ca.OP_FABS: "np.abs({0})",
+    ca.OP_SIGN: "np.sign({0})",
+    ca.OP_ERF: "erf({0})",
+    ca.OP_INV: "(1.0 / {0})",
+    ca.OP_SINH: "np.sinh({0})",
+    ca.OP_COSH: "np.cosh({0})",
+    ca.OP_TANH: "np.tanh({0})",
+    ca.OP_ASINH: "np.arcsinh({0})",
+    ca.OP_ACOSH: "np.arccosh({0})",
+    ca.OP_ATANH: "np.arctanh({0})",
+    ca.OP_LOG1P: "np.log1p({0})",
+    ca.OP_EXPM1: "np.expm1({0})",
+}
+# CasADi writes where(c, a, b) as (c ? a : 0) + (!c ? b : 0); read back as one instruction, the value is
+# known to be one of two, not the sum of two.
+OP_SELECT = -1
+COMMUTATIVE = {ca.OP_ADD, ca.OP_MUL, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_FMIN, ca.OP_FMAX, ca.OP_HYPOT}
+TEMPLATES = {**ARITY_ONE, **ARITY_TWO, OP_SELECT: "np.where({0}, {1}, {2})"}
+COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR}
+
+
+class UnsupportedOperation(TypeError):
+    """A formula uses an operation that cannot be evaluated over arrays."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """One instruction: its operation, the nodes it reads, and its constant or input number."""
+
+    op: int
+    args: tuple[int, ...]
+    constant: float = 0.0
+
+
+class Program:
+    """A value-numbered instruction list with scalar inputs and outputs.
+
+    Parameters
+    ----------
+    inputs : list of SX
+        Scalar symbols, in the order in which values are handed over.
+    outputs : list of SX
+        Scalar expressions.
+    """
+
+    def __init__(self, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
+        function = ca.Function("program", [ca.vertcat(*inputs)], [ca.vertcat(*outputs)])
+        self.function = function
+        self.n_inputs = len(inputs)
+        self.nodes: list[Node] = []
+        self._numbers: dict[tuple[int, tuple[int, ...], float], int] = {}
+        self.outputs: list[int] = [self._number(ca.OP_CONST, (), 0.0)] * len(outputs)
+        self.input_nodes = [self._number(ca.OP_INPUT, (), float(k)) for k in range(self.n_inputs)]
+        self._read(function)
+
+    def _number(self, op: int, args: tuple[int, ...], constant: float = 0.0) -> int:
+        if op == ca.OP_ADD and (select := self._as_select(*args)):
+            op, args = OP_SELECT, select
+        elif op in COMMUTATIVE:
+            args = tuple(sorted(args))
+        key = (op, args, constant)
+        if key not in self._numbers:
+            self._numbers[key] = len(self.nodes)
+            self.nodes.append(Node(op, args, constant))
+        return self._numbers[key]
+
+    def _as_select(self, first: int, second: int) -> tuple[int, int, int] | None:
+        yes, no = self.nodes[first], self.nodes[second]
+        if yes.op != ca.OP_IF_ELSE_ZERO or no.op != ca.OP_IF_ELSE_ZERO:
+            return None
+        if self.nodes[no.args[0]] == Node(ca.OP_NOT, (yes.args[0],)):
+            return yes.args[0], yes.args[1], no.args[1]
+        if self.nodes[yes.args[0]] == Node(ca.OP_NOT, (no.args[0],)):
+            return no.args[0], no.args[1], yes.args[1]
+        return None
+
+    def _read(self, function: Any) -> None:
+        work: dict[int, int] = {}
+        for k in range(function.n_instructions()):
+            op = function.instruction_id(k)
+            source, target = function.instruction_input(k), function.instruction_output(k)
+            if op == ca.OP_CONST:
+                work[target[0]] = self._number(op, (), float(function.instruction_constant(k)))
+            elif op == ca.OP_INPUT:
+                work[target[0]] = self.input_nodes[source[1]]
+            elif op == ca.OP_OUTPUT:
+                self.outputs[target[1]] = work[source[0]]
+            elif op in ARITY_TWO:
+                work[target[0]] = self._number(op, (work[source[0]], work[source[1]]))
+            elif op in ARITY_ONE:
+                work[target[0]] = self._number(op, (work[source[0]],))
+            elif op == ca.OP_ASSIGN:
+                work[target[0]] = work[source[0]]
+            else:
+                raise UnsupportedOperation(f"a formula uses CasADi operation number {op}, which has no NumPy form")
+
+    def dependence(self, inputs: Sequence[int]) -> np.ndarray:
+        """Return, for every node, whether it depends on any of the inputs (given by number)."""
+        return self.downstream([self.input_nodes[k] for k in inputs])
+
+    def downstream(self, sources: Iterable[int]) -> np.ndarray:
+        """Return, for every node, whether it is one of the given nodes or depends on one."""
+        marked = np.zeros(len(self.nodes), dtype=bool)
+        wanted = set(sources)
+        for k, node in enumerate(self.nodes):
+            marked[k] = k in wanted or any(marked[a] for a in node.args)
+        return marked
+
+    def needed(self, outputs: Sequence[int]) -> list[int]:
+        """Return the nodes needed for the given nodes, in order of evaluation."""
+        wanted = set(outputs)
+        for k in range(len(self.nodes) - 1, -1, -1):
+            if k in wanted:
+                wanted.update(self.nodes[k].args)
+        return sorted(wanted)
+
+    def compile(self, outputs: Sequence[int] | None = None) -> Callable[[Sequence[Any]], list[Any]]:
+        """Return a NumPy function of a list of inputs (numbers or arrays that broadcast).
+
+        Parameters
+        ----------
+        outputs : list of node numbers, optional
+            What to compute; all outputs of the program by default.
+        """
+        wanted = list(self.outputs if outputs is None else outputs)
+        order = self.needed(wanted)
+        last_use = {a: k for k in order for a in self.nodes[k].args}
+        last_use.update(dict.fromkeys(wanted, len(self.nodes)))
+        register: dict[int, int] = {}
+        free: list[int] = []
+        names: dict[int, str] = {}
+        lines = ["def evaluate(inputs):"]
+        for k in order:
+            node = self.nodes[k]
+            if node.op == ca.OP_CONST:
+                names[k] = f"({node.constant!r})" if np.isfinite(node.constant) else f"float('{node.constant}')"
+                continue
+            if node.op == ca.OP_INPUT:
+                names[k] = f"inputs[{int(node.constant)}]"
+                continue
+            template = TEMPLATES[node.op]
+            code = template.format(*(names[a] for a in node.args))
+            # Registers are handed on as soon as their last reader is done, so big batches stay small in memory.
+            for a in set(node.args):
+                if a in register and last_use[a] == k:
+                    free.append(register.pop(a))
+            slot = free.pop() if free else len(register) + len(free)
+            while slot in register.values():
+                slot += 1
+            register[k] = slot
+            names[k] = f"r{slot}"
+            lines.append(f"    r{slot} = {code}")
+        lines.append("    return [" + ", ".join(names[k] for k in wanted) + "]")
+        from scipy.special import erf  # only generated code calls it
+
+        scope: dict[str, Any] = {"np": np, "erf": erf}
+        exec(compile("\n".join(lines), "<generated from the trace>", "exec"), scope)
+        return scope["evaluate"]  # type: ignore[no-any-return]

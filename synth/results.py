@@ -1,0 +1,410 @@
+"""Results: designs and fronts, immutable, and the files they are saved to."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from synth.errors import InputError
+from synth.feasibility import Status
+from synth.units import format_quantity, from_si, header
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMAT = 1
+RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
+
+
+class PartRow(Mapping[str, Any]):
+    """One catalogue row that fills a slot: designation, columns in SI, source, confidence, table.
+
+    ``str()`` is the designation.
+    """
+
+    def __init__(self, table: str, digest: str, columns: Mapping[str, Any]) -> None:
+        self._columns = {**columns, "table": table, "hash": digest}
+
+    def __getitem__(self, key: str) -> Any:
+        return self._columns[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __str__(self) -> str:
+        return str(self._columns["designation"])
+
+    def __repr__(self) -> str:
+        return f"PartRow({self._columns['table']}: {self})"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the designs of one front share: how to show them and how to state them again."""
+
+    family: str
+    title: str
+    options: Mapping[str, str]
+    requirements: Mapping[str, str]
+    requirement_values: Mapping[str, float]
+    not_asked: tuple[str, ...]
+    objectives: Mapping[str, str]
+    units: Mapping[str, str]
+    kinds: Mapping[str, str]
+    limit_units: Mapping[str, str]
+    limit_senses: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Design:
+    """One evaluated design.
+
+    ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
+    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI.
+    """
+
+    frame: Frame
+    values: Mapping[str, float]
+    parts: Mapping[str, PartRow]
+    choices: Mapping[str, str]
+    objectives: Mapping[str, float]
+    limits: Mapping[str, tuple[float, float]]
+    residuals: Mapping[str, float]
+    utilisation: Mapping[str, float | None]
+    status: Status
+    elasticity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    gap: float | None = None
+    rank: int | None = None
+    score: float | None = None
+    note: str = ""
+    alternatives: tuple[str, ...] = ()
+    off_grid: Mapping[str, str] = field(default_factory=dict)
+    advice: tuple[str, ...] = ()
+    violated: tuple[str, ...] = ()
+    not_checked: tuple[str, ...] = ()
+
+    def to_spec(self) -> dict[str, Any]:
+        """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""
+        frame = self.frame
+        named = [n for n, kind in frame.kinds.items() if kind in ("variable", "count")]
+        values: dict[str, str] = {n: format_quantity(self.values[n], frame.units[n], None) for n in named}
+        values.update(self.choices)
+        spec: dict[str, Any] = {"family": frame.family}
+        if frame.options:
+            spec["options"] = dict(frame.options)
+        spec["requirements"] = dict(frame.requirements)
+        spec["values"] = values
+        spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
+        return spec
+
+    def _as_json(self) -> dict[str, Any]:
+        return {
+            "rank": self.rank,
+            "score": self.score,
+            "status": self.status.value,
+            "gap": self.gap,
+            "note": self.note,
+            "alternatives": list(self.alternatives),
+            "objectives": _clean(self.objectives),
+            "values": _clean(self.values),
+            "choices": dict(self.choices),
+            "parts": {slot: f"{row['table']}/{row}" for slot, row in self.parts.items()},
+            "limits": {n: [_finite(v), _finite(x)] for n, (v, x) in self.limits.items()},
+            "residuals": _clean(self.residuals),
+            "utilisation": {n: None if u is None else _finite(u) for n, u in self.utilisation.items()},
+            "elasticity": {o: _clean(e) for o, e in self.elasticity.items()},
+            "off_grid": dict(self.off_grid),
+            "advice": list(self.advice),
+            "violated": list(self.violated),
+            "not_checked": list(self.not_checked),
+        }
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How far a front is proven.
+
+    ``kind`` is ``global`` (valid bounds prove the gap), ``exhaustive`` (every combination that no valid
+    bound excludes was solved from several starts) or ``heuristic``.
+    """
+
+    kind: str
+    gap: float | None
+    combinations: int
+    excluded_by_bound: int
+    solved: int
+    unresolved: int = 0
+
+    def sentence(self) -> str:
+        """Return the certificate in words."""
+        n = f"{self.combinations:,}".replace(",", " ")
+        if self.kind == "global":
+            return (
+                f"proven: over all {n} combinations of parts and counts no design improves one listed here "
+                f"by more than {100 * (self.gap or 0):.3g} % in every objective"
+            )
+        if self.kind == "exhaustive":
+            return (
+                f"exhaustive: of {n} combinations {self.excluded_by_bound} are excluded by bounds; every other one "
+                f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds)"
+            )
+        return f"not proven: stopped before all of {n} combinations were covered; gap {_percent(self.gap)}"
+
+
+@dataclass(frozen=True)
+class ParetoFront:
+    """The ranked non-dominated designs for one requirement."""
+
+    frame: Frame
+    designs: tuple[Design, ...]
+    status: Status
+    complete: bool
+    statistics: Mapping[str, Any]
+    certificate: Certificate
+    explanation: Mapping[str, Any] | None
+    settings: Mapping[str, Any]
+    interrupted: str = ""
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, with units in the headers."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self._table()
+        frame = pd.DataFrame(rows, columns=columns)
+        return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
+
+    def save(self, folder: str | Path) -> Path:
+        """Write designs.csv, front.json and one design_NN.yaml per design; return the folder.
+
+        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        """
+        target = Path(folder)
+        if target.exists() and not target.is_dir():
+            raise InputError("output", str(folder), "a folder; this is a file")
+        try:
+            target.mkdir(parents=True, exist_ok=True)
+            write_atomically(target / "designs.csv", self._csv())
+            write_atomically(target / "front.json", self._json())
+            width = max(2, len(str(len(self.designs))))
+            wanted = {f"design_{d.rank:0{width}d}.yaml": d for d in self.designs}
+            for stale in target.glob("design_*.yaml"):
+                if stale.name not in wanted:
+                    stale.unlink()
+            for name, design in wanted.items():
+                text = yaml.safe_dump(design.to_spec(), sort_keys=False, allow_unicode=True, width=120)
+                write_atomically(target / name, text)
+        except OSError as error:
+            raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
+        return target
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        frame = self.frame
+        kinds = frame.kinds
+        shown = [n for n in frame.objectives]
+        for kind in ("variable", "count", "derived"):
+            shown += [n for n, k in kinds.items() if k == kind and n not in frame.objectives]
+        order = [n for n in shown if n in frame.objectives or kinds[n] != "derived"]
+        late = [n for n in shown if n not in order]
+        slots = list(self.designs[0].parts) if self.designs else []
+        choices = list(self.designs[0].choices) if self.designs else []
+        columns = ["rank", "score", "status", "gap", "note", "alternatives"]
+        columns += [header(n, frame.units[n]) for n in order] + choices + slots
+        columns += [header(n, frame.units[n]) for n in late]
+        columns += [f"utilisation: {n}" for n in frame.limit_units]
+        rows = []
+        for d in self.designs:
+            row: list[Any] = [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives)]
+            row += [_shown(d.values[n], frame.units[n]) for n in order]
+            row += [d.choices[c] for c in choices] + [str(d.parts[s]) for s in slots]
+            row += [_shown(d.values[n], frame.units[n]) for n in late]
+            row += [d.utilisation.get(n) for n in frame.limit_units]
+            rows.append(row)
+        return columns, rows
+
+    def _csv(self) -> str:
+        columns, rows = self._table()
+        buffer = io.StringIO()
+        writer = csv.writer(buffer, lineterminator="\n")
+        writer.writerow(columns)
+        for row in rows:
+            writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
+        return buffer.getvalue()
+
+    def _json(self) -> str:
+        rows: dict[str, dict[str, Any]] = {}
+        for design in self.designs:
+            for row in design.parts.values():
+                rows.setdefault(f"{row['table']}/{row}", {k: _finite(v) for k, v in row.items()})
+        frame = self.frame
+        content = {
+            "format": FORMAT,
+            "family": frame.family,
+            "title": frame.title,
+            "options": dict(frame.options),
+            "requirements": dict(frame.requirements),
+            "requirement_values_si": dict(frame.requirement_values),
+            "not_asked": list(frame.not_asked),
+            "objectives": dict(frame.objectives),
+            "units": dict(frame.units),
+            "kinds": dict(frame.kinds),
+            "limit_units": dict(frame.limit_units),
+            "limit_senses": dict(frame.limit_senses),
+            "settings": dict(self.settings),
+            "versions": installed_versions(),
+            "status": self.status.value,
+            "interrupted": self.interrupted,
+            "complete": self.complete,
+            "certificate": self.certificate.__dict__ | {"gap": _finite(self.certificate.gap)},
+            "statistics": _plain(self.statistics),
+            "explanation": _plain(self.explanation),
+            "parts": rows,
+            "designs": [d._as_json() for d in self.designs],
+        }
+        return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def load_front(folder: str | Path) -> ParetoFront:
+    """Rebuild a front from the files that ``save`` wrote.
+
+    Parameters
+    ----------
+    folder : path
+        The folder, or its front.json.
+
+    Raises
+    ------
+    InputError
+        When there is no front, or it is of another format.
+    """
+    path = Path(folder)
+    path = path / "front.json" if path.is_dir() else path
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, json.JSONDecodeError) as error:
+        raise InputError("front", str(path), f"a front.json that clutchsynth wrote ({error})") from error
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}")
+    frame = Frame(
+        family=content["family"],
+        title=content["title"],
+        options=content["options"],
+        requirements=content["requirements"],
+        requirement_values=content["requirement_values_si"],
+        not_asked=tuple(content["not_asked"]),
+        objectives=content["objectives"],
+        units=content["units"],
+        kinds=content["kinds"],
+        limit_units=content["limit_units"],
+        limit_senses=content["limit_senses"],
+    )
+    rows = content["parts"]
+    designs = tuple(_design_from_json(frame, d, rows) for d in content["designs"])
+    return ParetoFront(
+        frame=frame,
+        designs=designs,
+        status=Status(content["status"]),
+        complete=content["complete"],
+        statistics=content["statistics"],
+        certificate=Certificate(**content["certificate"]),
+        explanation=content["explanation"],
+        settings=content["settings"],
+        interrupted=content["interrupted"],
+    )
+
+
+def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str, Any]]) -> Design:
+    parts = {}
+    for slot, key in d["parts"].items():
+        row = rows[key]
+        parts[slot] = PartRow(row["table"], row["hash"], {k: v for k, v in row.items() if k not in ("table", "hash")})
+    return Design(
+        frame=frame,
+        values={n: _number(v) for n, v in d["values"].items()},
+        parts=parts,
+        choices=d["choices"],
+        objectives=d["objectives"],
+        limits={n: (_number(v), _number(x)) for n, (v, x) in d["limits"].items()},
+        residuals={n: _number(v) for n, v in d["residuals"].items()},
+        utilisation={n: None if u is None else float(u) for n, u in d["utilisation"].items()},
+        status=Status(d["status"]),
+        elasticity=d["elasticity"],
+        gap=d["gap"],
+        rank=d["rank"],
+        score=d["score"],
+        note=d["note"],
+        alternatives=tuple(d["alternatives"]),
+        off_grid=d["off_grid"],
+        advice=tuple(d["advice"]),
+        violated=tuple(d["violated"]),
+        not_checked=tuple(d["not_checked"]),
+    )
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Write a text file so that it is either the old one or the whole new one."""
+    temporary = path.with_name(f".{path.name}.{hashlib.sha256(str(path).encode()).hexdigest()[:8]}.tmp")
+    try:
+        temporary.write_text(text, encoding="utf-8", newline="")
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def installed_versions() -> dict[str, str]:
+    """Return the versions of the packages that decide the numbers."""
+    result = {}
+    for name in RECORDED_PACKAGES:
+        try:
+            result[name] = version(name)
+        except PackageNotFoundError:
+            result[name] = "not installed"
+    return result
+
+
+def frozen(mapping: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a read-only view of a copy."""
+    return MappingProxyType(dict(mapping))
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _shown(value: float, unit: str) -> float | None:
+    return float(from_si(value, unit)) if math.isfinite(value) else None
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float) and math.isinf(value):
+        return "inf" if value > 0 else "-inf"  # JSON has no infinity; float() reads these words back
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _clean(mapping: Mapping[str, Any]) -> dict[str, Any]:
+    return {k: _finite(float(v)) for k, v in mapping.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return _finite(value)
+
+
+def _percent(gap: float | None) -> str:
+    return "unknown" if gap is None or not math.isfinite(gap) else f"{100 * gap:.3g} %"

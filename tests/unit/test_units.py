@@ -1,0 +1,467 @@
+"""Units: the grammar, the kinds, the number gate, exact conversion."""
+
+from __future__ import annotations
+
+import csv
+import math
+import pickle
+import re
+from pathlib import Path
+
+import numpy as np
+import pint
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from synth.errors import InputError
+from synth.units import (
+    check_number,
+    format_quantity,
+    from_si,
+    header,
+    number_to_si,
+    parse_quantity,
+    parse_unit,
+    split_header,
+    to_si,
+)
+
+CATALOGS = Path(__file__).parents[2] / "catalogs"
+QUICK = settings(deadline=None, derandomize=True, max_examples=300)
+
+# every unit the declarations use, each with its kind
+DECLARED = {
+    "-": "dimensionless",
+    "1/h": "frequency",
+    "1/min": "angular_speed",
+    "A": "current",
+    "A/(m*T)": "quantity in s2*A2/(kg m)",
+    "A/mm2": "current_density",
+    "GPa": "pressure",
+    "J": "energy",
+    "J/(kg*K)": "specific_heat",
+    "J/(mm2*h)": "power_per_area",
+    "J/mm2": "energy_per_area",
+    "K": "temperature_rise",
+    "N": "force",
+    "N*m": "torque",
+    "N/mm": "stiffness",
+    "N/mm2": "pressure",
+    "Pa*s": "viscosity",
+    "T": "flux_density",
+    "V": "voltage",
+    "W": "power",
+    "W/(m2*K)": "heat_transfer",
+    "W/mm2": "power_per_area",
+    "cm2": "area",
+    "deg": "angle",
+    "degC": "temperature",
+    "dm3": "volume",
+    "kPa": "pressure",
+    "kg": "mass",
+    "kg*m2": "inertia",
+    "kg/m3": "density",
+    "m/s": "speed",
+    "mm": "length",
+    "mm2": "area",
+    "rad": "angle",
+    "rad/s2": "angular_acceleration",
+    "rad/s3": "angular_jerk",
+    "s": "time",
+}
+# further units that people type, as the independent library spells them
+TYPED = {
+    "%": "percent",
+    "kNm": "kN*m",
+    "Nm": "N*m",
+    "Nmm": "N*mm",
+    "mkp": "kgf*m",
+    "kpm": "kgf*m",
+    "kp": "kgf",
+    "kp/cm2": "kgf/cm^2",
+    "mm²": "mm^2",
+    "mm^3": "mm^3",
+    "m³": "m^3",
+    "mm4": "mm^4",
+    "°": "degree",
+    "deg/s": "degree/s",
+    "rad/s": "rad/s",
+    "rpm": "revolution/minute",
+    "rev/min": "revolution/minute",
+    "rev/s": "revolution/s",
+    "µm": "um",
+    "N·mm": "N*mm",
+    "N mm": "N*mm",
+    "N * mm": "N*mm",
+    "g/cm3": "g/cm^3",
+    "kg/dm3": "kg/dm^3",
+    "g cm2": "g*cm^2",
+    "kp m s2": "kgf*m*s^2",
+    "km/h": "km/h",
+    "N*m/rad": "N*m/rad",
+    "N*m/deg": "N*m/degree",
+    "J/mm2/h": "J/mm^2/h",
+    "J/(mm2 h)": "J/(mm^2*h)",
+    "W/(m2 K)": "W/(m^2*kelvin)",
+    "um/(m K)": "um/(m*kelvin)",
+    "mm3/MJ": "mm^3/MJ",
+    "mkp/cm2": "kgf*m/cm^2",
+    "Hz": "1/s",
+    "kHz": "1000/s",
+    "1/K": "1/kelvin",
+    "ohm": "ohm",
+    "N/mm2 m/s": "N/mm^2*m/s",
+} | {
+    u: u
+    for u in (
+        "um mm cm dm m km g kg t ms s min h mN N kN MN Pa kPa bar MPa GPa mJ J kJ MJ Wh kWh W kW MW rad mA A kA mV V mT T"
+    ).split()
+}
+
+
+@pytest.fixture(scope="module")
+def registry() -> pint.UnitRegistry:
+    return pint.UnitRegistry()
+
+
+def header_units() -> list[str]:
+    units = set()
+    for path in sorted(CATALOGS.glob("*.csv")):
+        if not path.name.endswith(".schema.csv"):
+            with path.open(encoding="utf-8", newline="") as file:
+                units |= {unit for _, unit in map(split_header, next(csv.reader(file))) if unit is not None}
+    return sorted(units)
+
+
+def pint_text(unit: str) -> str:
+    """Write a header unit in the grammar of the independent library."""
+    text = re.sub(r"([A-Za-z])([2-9])", r"\1^\2", unit).replace(" ", "*")
+    text = re.sub(r"\bK\b", "kelvin", text)
+    return re.sub(r"\bdeg\b", "degree", text)
+
+
+@pytest.mark.parametrize(("unit", "kind"), DECLARED.items())
+def test_declared_units_and_their_kinds(unit: str, kind: str) -> None:
+    parsed = parse_unit(unit)
+    assert parsed.kind == kind
+    assert parse_unit(unit, kind) == parsed
+    assert pickle.loads(pickle.dumps(parsed)) == parsed
+
+
+def test_the_tables_use_the_documented_set_of_units() -> None:
+    documented = (
+        "-|1/h|1/min|Hz|J|J/(kg K)|J/(mm2 h)|J/mm2|N|N m|N/mm|N/mm2|T|W/(m K)|W/(m2 K)|W/mm2|deg|degC|kPa|kW|kg|kg m2|"
+        "kg/m3|m/s|mm|mm2|mm3/MJ|mm4|rad/s|s|um/(m K)"
+    )
+    assert set(header_units()) == set(documented.split("|"))
+
+
+@pytest.mark.parametrize("unit", sorted({*header_units(), *DECLARED, *TYPED} - {"degC", "°C", "-"}))
+def test_factor_and_dimension_agree_with_an_independent_library(unit: str, registry: pint.UnitRegistry) -> None:
+    parsed = parse_unit(unit)
+    theirs = (registry.Quantity(1.0) * registry.parse_expression(TYPED.get(unit, pint_text(unit)))).to_base_units()
+    revolutions = 2 * math.pi if unit == "1/min" else 1.0
+    assert parsed.factor == pytest.approx(theirs.magnitude * revolutions, rel=1e-12)
+    powers = [
+        theirs.dimensionality.get(f"[{name}]", 0) for name in ("mass", "length", "time", "temperature", "current")
+    ]
+    assert parsed.dimension == tuple(powers)
+
+
+def test_temperature_agrees_with_an_independent_library(registry: pint.UnitRegistry) -> None:
+    for celsius in (-273.15, -40.0, 0.0, 20.0, 37.5, 1500.0):
+        theirs = registry.Quantity(celsius, "degC").to("kelvin").magnitude
+        assert parse_quantity(celsius, "degC", "t") == pytest.approx(theirs, rel=1e-15)
+
+
+# ---- the number gate ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "si"),
+    [
+        (600, "N*m", 600.0),
+        (600.5, "N*m", 600.5),
+        (np.int64(600), "N*m", 600.0),
+        (np.float64(254), "mm", 0.254),
+        (np.float32(0.5), "mm", 0.0005),
+        ("600", "N*m", 600.0),
+        (" 600 N*m ", "N*m", 600.0),
+        ("600Nm", "N*m", 600.0),
+        ("6e2 N m", "N*m", 600.0),
+        ("+0.6 kNm", "N*m", 600.0),
+        ("60 mkp", "N*m", 588.399),
+        ("60 mkp", "J", 588.399),
+        ("60 kp*m", "J", 588.399),
+        ("1 kp/cm2", "N/mm2", 98066.5),
+        ("1 kg*m2/s2", "N*m", 1.0),
+        ("1 kg*m2/s2", "J", 1.0),
+        ("2 mkp/cm2", "J/mm2", 196133.0),
+        ("75 mkp/s", "W", 735.49875),
+        ("1 N/mm2*m/s", "W/mm2", 1e6),
+        ("3.6 J/(mm2 h)", "W/mm2", 1000.0),
+        ("1 W/mm2", "J/(mm2*h)", 1e6),
+        ("60 1/min", "1/min", 2 * math.pi),
+        ("60 rpm", "1/min", 2 * math.pi),
+        ("1 rev/s", "1/min", 2 * math.pi),
+        ("1 1/s", "1/min", 1.0),
+        ("1 1/s", "rad/s", 1.0),
+        ("180 deg/s", "1/min", math.pi),
+        (60, "1/min", 2 * math.pi),
+        ("60 1/min", "1/h", 1.0),
+        ("1 Hz", "1/h", 1.0),
+        ("1 1/s", "Hz", 1.0),
+        (3600, "1/h", 1.0),
+        ("5 1/s2", "rad/s2", 5.0),
+        ("5 1/s3", "rad/s3", 5.0),
+        ("20 degC", "degC", 293.15),
+        ("293.15 K", "degC", 293.15),
+        ("20 °C", "degC", 293.15),
+        ("-40 degC", "degC", 233.15),
+        ("20 K", "K", 20.0),
+        ("20 %", "-", 0.2),
+        ("0.2 -", "-", 0.2),
+        ("180 °", "rad", math.pi),
+        ("10 mm3/(N m)", "mm3/MJ", 1e-8),
+        ("2.5\u00a0mm", "mm", 0.0025),
+        ("0.02 N*s/m2", "Pa*s", 0.02),
+    ],
+)
+def test_quantities_that_are_right(value: object, unit: str, si: float) -> None:
+    got = parse_quantity(value, unit, "x")
+    assert type(got) is float
+    assert got == pytest.approx(si, rel=3e-16)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "says"),
+    [
+        ("6,5 bar", "N/mm2", "decimal point instead of a decimal comma"),
+        (",5", "N", "decimal point instead of a decimal comma"),
+        ("1.000,5 N", "N", "decimal point instead of a decimal comma"),
+        ("1,000 N", "N", "nothing between thousands"),
+        ("1 000 N", "N", "separator between the thousands"),
+        ("1\u202f000 N", "N", "separator between the thousands"),
+        ("1'000 N", "N", "separator between the thousands"),
+        ("1_000", "N", "separator between the thousands"),
+        ("1.000.000", "N", "at most one decimal point"),
+        ("nan", "N", "finite"),
+        ("-inf N", "N", "finite"),
+        (".inf", "N", "finite"),
+        (float("nan"), "N", "finite"),
+        (float("inf"), "N", "finite"),
+        (np.float64("nan"), "N", "finite"),
+        (10**400, "N", "finite"),
+        ("1e999", "N", "computer can hold"),
+        ("1e999 rpm", "1/min", "computer can hold"),
+        (1e308, "MPa", "computer can hold"),
+        ("−5 degC", "degC", "keyboard's minus"),
+        ("–5", "degC", "keyboard's minus"),
+        ("1e−5", "N", "keyboard's minus"),
+        ("- 5", "degC", "no blank between the sign"),
+        ("N*m", "N*m", "a number before the unit"),
+        ("abc", "N", "a number, with a unit"),
+        ("", "N", "not an empty text"),
+        ("  ", "N", "not an empty text"),
+        (None, "N", "is missing"),
+        (True, "N", "a number"),
+        (np.True_, "N", "a number"),
+        ([600], "N", "a number"),
+        (b"600", "N", "a number"),
+        (1 + 0j, "N", "a number"),
+        ("٣ N", "N", "a number, with a unit"),
+        ("9" * 200, "N", "at most 100 characters"),
+        ("-300 degC", "degC", "absolute zero"),
+        ("-1 K", "degC", "absolute zero"),
+        # kinds
+        ("600 J", "N*m", "a torque, for example in N*m, kNm or mkp; J measures an energy"),
+        ("600 N*m", "J", "an energy, for example in J, kJ or mkp; N*m measures a torque"),
+        ("1 N*m/s", "W", "a power"),
+        ("1 N/mm", "J/mm2", "an energy per area"),
+        ("1 J/mm2", "N/mm", "a stiffness"),
+        ("1 J/mm3", "N/mm2", "a pressure"),
+        ("1 J/mm2 h", "W/mm2", "J/(mm2 h)"),
+        ("50 Hz", "1/min", "type 1/min or rpm"),
+        ("50 1/h", "1/min", "type 1/min or rpm"),
+        ("5 kg", "1/min", "an angular speed"),
+        ("50 rpm", "1/h", "type 1/h, 1/min, 1/s or Hz"),
+        ("50 rad/s", "1/h", "type 1/h, 1/min, 1/s or Hz"),
+        ("20 degC", "K", "typed as 20 K"),
+        ("5 mm", "-", "without a unit"),
+        ("5 rad", "-", "without a unit"),
+        ("5 %", "mm", "a length"),
+        ("5 kg", "A/(m*T)", "a quantity in"),
+        # tokens
+        ("600 NM", "N*m", "Nm instead of NM (capitals"),
+        ("3 KW", "kW", "kW instead of KW (capitals"),
+        ("254 Rpm", "1/min", "rpm instead of Rpm (capitals"),
+        ("5 mn", "N", "mN or MN instead of mn (capitals"),
+        ("5 sec", "s", "s instead of sec"),
+        ("5 furlong", "mm", "a known unit instead of furlong"),
+        ("5 /min", "1/min", "1/min"),
+        ("5 s^-1", "1/h", "1/min"),
+        ("5 mm**2", "mm2", "mm2"),
+        ("5 (N m)/s", "W", "brackets in a denominator only"),
+        ("5 J/(mm2/h)", "W/mm2", "a product of tokens in the bracket"),
+        ("5 J/(mm2", "W/mm2", "a closing bracket"),
+        ("5 W/(m2 degC)", "W/(m2*K)", "K inside a compound unit"),
+        ("5 W/%", "W", "stand alone"),
+        ("5 mm^", "mm", "an exponent 2 to 9"),
+    ],
+)
+def test_quantities_that_are_wrong(value: object, unit: str, says: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_quantity(value, unit, "the_field")
+    assert caught.value.field == "the_field"
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "N//m", "J/(mm2 h", " N", "mm 2", "kg m^1", "N/", "*N", "N)", "()", "N/()", "1", "1*m", "m1", "m0", "m10", "Nm²²",
+     "N  m", "1e-6/K", "switchings", "5", "m_2", "J/((m))", "-/s", "degC/s", "x" * 200, "km9 km9 km9 km9 km9 km9"],
+)  # fmt: skip
+def test_texts_that_are_no_unit(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_unit(text)
+    assert caught.value.field == "unit"
+    assert caught.value.value == text
+
+
+def test_a_unit_is_text() -> None:
+    with pytest.raises(InputError, match="a unit as text"):
+        parse_unit(5)  # type: ignore[arg-type]
+
+
+def test_check_number_refuses_a_unit() -> None:
+    assert check_number(" 1.5e3 ", "cell") == "1.5e3"
+    with pytest.raises(InputError, match="without a unit"):
+        check_number("1.5 mm", "cell")
+
+
+# ---- conversion -----------------------------------------------------------------------------------------------------
+
+UNITS = sorted(
+    {*DECLARED, "rpm", "bar", "kp/cm2", "mkp", "h", "min", "%", "degC", "um", "km/h", "deg/s", "mm4", "mm3/MJ"}
+)
+
+
+@QUICK
+@given(st.floats(-1e12, 1e12), st.sampled_from(UNITS))
+@example(0.0023, "mm")
+@example(298.65, "degC")
+def test_from_si_and_back_is_within_two_units_in_the_last_place(si: float, unit: str) -> None:
+    back = to_si(from_si(si, unit), unit)
+    # near the zero of degC the last place is that of the offset
+    assert abs(back - si) <= 2 * math.ulp(max(abs(si), parse_unit(unit).offset, 1e-290))
+
+
+@QUICK
+@given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(UNITS))
+@example(5e-324, "mm")
+@example(1.7e308, "mm")
+@example(273.15, "degC")
+@example(0.0, "degC")
+def test_full_text_reads_back_as_the_same_float(si: float, unit: str) -> None:
+    if unit == "degC":
+        si = abs(si)
+    text = format_quantity(si, unit, digits=None)
+    assert parse_quantity(text, unit, "x") == si
+
+
+@QUICK
+@given(st.decimals(min_value=-100000, max_value=100000, places=3), st.sampled_from(UNITS))
+def test_what_was_typed_is_shown_again(number: object, unit: str) -> None:
+    typed = f"{number} {unit}".removesuffix(" -")
+    if unit == "degC" and float(str(number)) < -273.15:
+        return
+    si = parse_quantity(typed, unit, "x")
+    shown = format_quantity(si, unit, digits=None)
+    assert float(shown.removesuffix(unit)) == float(str(number))
+    assert from_si(si, unit) == float(str(number))
+    assert format_quantity(si, unit, digits=12) == shown
+
+
+@QUICK
+@given(st.floats(-1e6, 1e6), st.sampled_from(UNITS))
+def test_scalars_and_arrays_are_converted_alike(value: float, unit: str) -> None:
+    cells = np.array([[value, np.nan]])
+    assert to_si(cells, unit)[0, 0] == to_si(value, unit)
+    assert from_si(cells, unit)[0, 0] == from_si(value, unit)
+    assert np.isnan(from_si(cells, unit)[0, 1])
+    assert np.isnan(to_si(cells, unit)[0, 1])
+
+
+@QUICK
+@given(st.text(), st.sampled_from(UNITS))
+@example("9" * 5000, "1/min")
+@example("1e" + "9" * 5000, "mm")
+@example("1e" + "9" * 90, "1/min")
+@example("5 " + "m9*" * 30 + "m", "mm")
+def test_no_text_makes_anything_but_an_input_error(text: str, unit: str) -> None:
+    try:
+        assert math.isfinite(parse_quantity(text, unit, "x"))
+    except InputError as error:
+        assert error.field == "x"
+        assert error.expected
+
+
+@QUICK
+@given(
+    st.from_regex(r"[+-]?[0-9.,' ]{0,8}([eE][+-]?[0-9]{0,6})? ?[ANJWKmkp1sh2-9*/()·^ °%-]{0,10}", fullmatch=True),
+    st.sampled_from(UNITS),
+)
+def test_no_likely_text_makes_anything_but_an_input_error(text: str, unit: str) -> None:
+    try:
+        assert math.isfinite(parse_quantity(text, unit, "x"))
+    except InputError as error:
+        assert error.field == "x"
+
+
+def test_exact_conversion_is_rounded_once() -> None:
+    # 0.3/1000 rounds twice and misses the float nearest to 0.0003
+    assert parse_quantity("0.3 mm", "m", "x") == 0.0003
+    assert parse_quantity(0.3, "mm", "x") == 0.0003
+    assert number_to_si("0.1", parse_unit("kPa")) == 100.0
+    assert parse_quantity("40 degC", "degC", "x") == 313.15
+    assert math.isinf(number_to_si("1e999", parse_unit("1/min")))
+
+
+@pytest.mark.parametrize(
+    ("si", "unit", "digits", "text"),
+    [
+        (600.0, "N*m", 6, "600 N*m"),
+        (600.0000000001, "N*m", 6, "600 N*m"),
+        (0.26, "mm", 6, "260 mm"),
+        (1 / 3, "-", 6, "0.333333"),
+        (1 / 3, "-", 2, "0.33"),
+        (206e9, "N/mm2", 6, "206000 N/mm2"),
+        (1e-9, "m", 6, "1e-9 m"),
+        (-1.5e20, "N", 6, "-1.5e20 N"),
+        (math.pi, "°", 6, "180°"),
+        (0.0, "mm", None, "0 mm"),
+        (0.2, "%", None, "20 %"),
+        (293.15, "degC", None, "20 degC"),
+        (math.inf, "mm", 6, "inf mm"),
+    ],
+)
+def test_format(si: float, unit: str, digits: int | None, text: str) -> None:
+    assert format_quantity(si, unit, digits) == text
+
+
+def test_headers() -> None:
+    assert header("mass", "kg") == "mass [kg]"
+    assert header("ratio", parse_unit("-")) == "ratio [-]"
+    assert split_header("mass [kg]") == ("mass", "kg")
+    assert split_header(" heat flux [ J/(mm2 h) ] ") == ("heat flux", "J/(mm2 h)")
+    assert split_header("mass") == ("mass", None)
+    for wrong in ("mass [kg", "mass kg]", "[kg]", "", "a [b] [c]", "mass [kg] x"):
+        with pytest.raises(InputError):
+            split_header(wrong)
+
+
+@QUICK
+@given(st.from_regex(r"[a-z][a-z_0-9 ]*[a-z]", fullmatch=True), st.sampled_from(UNITS))
+def test_a_header_splits_into_what_it_was_made_of(name: str, unit: str) -> None:
+    assert split_header(header(name, unit)) == (name, unit)
