@@ -6,6 +6,7 @@ so that one thing has one name, one text and one formula everywhere.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from problems.mechanics import guide_friction, heat, plates, startup
 from problems.mechanics import ring as ring_formulas
+from synth.errors import InputError
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part
@@ -75,6 +77,11 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
     -------
     Duty
         Symbols of the block.
+
+    Raises
+    ------
+    InputError
+        When the cooling does not go with the lubrication.
     """
     load_kind = d.option(
         "load_kind",
@@ -109,12 +116,8 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
         source="table friction_materials",
     )
     cooling_row = d.row("cooling_options", cooling)
-    if lubrication is not None:
-        d.refuse(
-            "lubrication_mismatch",
-            _row_text(d, "cooling_options", cooling, "lubrication") not in ("", lubrication),
-            f"cooling {cooling} does not go with lubrication {lubrication}; choose a cooling that does",
-        )
+    if lubrication is not None and _row_text(d, "cooling_options", cooling, "lubrication") not in ("", lubrication):
+        raise InputError("lubrication_mismatch", f"cooling {cooling}", f"a cooling for lubrication {lubrication}")
     load_torque = d.requirement(
         "load_torque", "N*m", lower=0.1, upper=1e6, symbol="M_load",
         text="Torque of the load during start-up", source=f"{S1}, M2",
@@ -210,7 +213,7 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
         d.refuse(
             "never_starts",
             duty.startup_torque <= duty.load_torque,
-            "startup_torque must be above load_torque, otherwise the load never starts",
+            "a startup_torque above load_torque; otherwise the load never starts",
         )
     if duty.load_kind == "active":
         d.advise(
@@ -408,8 +411,8 @@ def declare_torque(
         d.refuse(
             "capacity_window_empty",
             duty.overload_torque < required,
-            "overload_torque is below the sizing torque safety_factor*load_torque/(c_m*c_v*c_z): "
-            "no torque satisfies both; raise overload_torque or lower safety_factor",
+            "an overload_torque of at least the sizing torque, safety_factor * load_torque over the factors "
+            "switching_factor, speed_factor and surface_factor; otherwise no torque satisfies both",
         )
     return torques
 
@@ -588,6 +591,7 @@ class Ring:
     mean_diameter: Any
     ratio: Any
     friction_radius: Any
+    width: Any
     inner_radius: Any
     outer_radius: Any
     area: Any
@@ -619,7 +623,7 @@ def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
     d.refuse(
         "bad_ratio",
         least > most,
-        "ring_ratio_min is above ring_ratio_max: no ring satisfies both",
+        "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both",
     )
     outer = d.variable(
         "ring_outer_diameter", "mm", 40, RING_OUTER_DIAMETER_MAX, grid=1, symbol="d_out",
@@ -655,6 +659,8 @@ def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
         mean_diameter=mean,
         ratio=ratio,
         friction_radius=radius,
+        # From the ratio, whose range is known, so that it is surely positive wherever the ratio is.
+        width=mean * ratio,
         # Straight from the variables: a radius formed from mean diameter and ratio would use each of them twice.
         inner_radius=inner / 2,
         outer_radius=outer / 2,
@@ -711,6 +717,8 @@ class Pack:
     outer_thickness: Any
     inner_spline_radius: Any
     outer_spline_radius: Any
+    inner_mean_diameter: Any
+    inner_width: Any
     inner_lug_count: Any
     inner_lug_height: Any
     aid: ReleaseAid
@@ -864,13 +872,13 @@ def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication:
         d.refuse(
             "double_guide_loss",
             pack.surface_factor < 1,
-            "surface_factor and guide_model series count the friction in the guides twice; "
+            "no surface_factor below 1 with guide_model series, which computes the friction in the guides itself; "
             "leave surface_factor out or choose guide_model cz",
         )
     if lubrication == "dry":
-        d.refuse("lubrication_mismatch", pack.oil_viscosity > 0, "oil_viscosity must be 0 with lubrication dry")
+        d.refuse("lubrication_mismatch", pack.oil_viscosity > 0, "an oil_viscosity of 0 with lubrication dry")
     else:
-        d.refuse("lubrication_mismatch", pack.oil_viscosity <= 0, "oil_viscosity must be above 0 with lubrication oil")
+        d.refuse("lubrication_mismatch", pack.oil_viscosity <= 0, "an oil_viscosity above 0 with lubrication oil")
     return pack
 
 
@@ -910,6 +918,8 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
             "inner_spline", "splines", symbol="is", text="Spline of the inner plates", source="table splines"
         )
         inner_spline_radius = spline.mean_flank_diameter / 2
+        inner_mean_diameter = ring.outer_radius + inner_spline_radius
+        inner_width = ring.outer_radius - inner_spline_radius
         lug_count, lug_height = spline.teeth, spline.flank_height_h
         d.at_least(
             "spline_clearance", ring.inner_radius - inner_spline_radius, wants.lug_clearance, "mm",
@@ -917,6 +927,8 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
         )  # fmt: skip
     else:
         inner_spline_radius = ring.inner_radius - wants.lug_clearance
+        inner_mean_diameter = ring.mean_diameter - wants.lug_clearance
+        inner_width = ring.width + wants.lug_clearance
         lug_count, lug_height = wants.lug_count, wants.lug_height
     aid_row = None if options.release_aid == "none" else d.row("release_aids", options.release_aid)
     d.derive(
@@ -939,6 +951,8 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
             "outer_spline_radius", "mm", ring.outer_radius + wants.lug_clearance, symbol="b",
             text="Mean spline radius of the outer plates", source=f"{S0}, b",
         ),
+        inner_mean_diameter=inner_mean_diameter,
+        inner_width=inner_width,
         inner_lug_count=lug_count,
         inner_lug_height=lug_height,
         aid=ReleaseAid()
@@ -999,12 +1013,14 @@ def declare_pack_torque(
     def sum_factor(mu: Any) -> Any:
         return guide_friction.torque_sum_factor(options.guide_series, surfaces, *ratios(mu)) if series else surfaces
 
-    def contact(surface: int, mu: Any) -> Any:
-        return (
-            guide_friction.contact_force(options.guide_series, net_force, surface, *ratios(mu)) if series else net_force
-        )
+    def share(surface: int, mu: Any) -> Any:
+        """Return the part of the actuation force that reaches a surface."""
+        return guide_friction.contact_force(options.guide_series, 1.0, surface, *ratios(mu)) if series else 1.0
 
     net_force = force * (1 - pack.aid.force_fraction)
+    # M0 = mu r F0 stays one expression for torque and lugs, so that a bound on the torque reaches the lugs.
+    moment_low = pair.mu_low * net_force * radius
+    moment_high = moment_low if pair.mu_high is pair.mu_low else pair.mu_high * net_force * radius
     d.at_least(
         "guide_jams", a, pair.mu_high * wants.guide_friction * radius, "mm", guard=True,
         text="The inner plates slide in their spline and do not jam; their mean spline radius is above 0",
@@ -1044,21 +1060,20 @@ def declare_pack_torque(
             "guide_model series computes the loss for any number",
             source=f"{S1}, c_z",
         )
-    _declare_lugs(d, wants, ring, pair, pack, contact)
+    _declare_lugs(d, wants, pack, moment_high, [share(j, pair.mu_high) for j in (1, 2, 3)])
     return PackTorque(
-        low=ring_formulas.friction_torque(pair.mu_low, net_force, radius, factor),
-        high=ring_formulas.friction_torque(pair.mu_high, net_force, radius, factor_high),
-        pressure=contact(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
+        low=moment_low * factor,
+        high=moment_high * factor_high,
+        pressure=net_force * share(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
     )
 
 
-def _declare_lugs(d: Declaration, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack, contact: Any) -> None:
-    mu = pair.mu_high
-    second = contact(2, mu)
-    outer_torque = guide_friction.plate_torque(mu, ring.friction_radius, contact(1, mu), second)
+def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
+    """Declare the lug pressures; ``moment`` is mu r F0 and ``shares`` the parts of F0 on surfaces 1, 2 and 3."""
+    first, second, third = shares
+    outer_torque = moment * (first + second)
     # With two surfaces both inner plates are end plates, and the first is loaded by surface 1 alone.
-    inner_load = np.where(pack.surfaces > 2, second + contact(3, mu), contact(1, mu))
-    inner_torque = guide_friction.plate_torque(mu, ring.friction_radius, inner_load)
+    inner_torque = moment * np.where(pack.surfaces > 2, second + third, first)
     outer = d.derive(
         "lug_pressure_outer", "N/mm2",
         plates.lug_pressure(
@@ -1120,14 +1135,14 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
         duty.steel_density,
         ring_formulas.inner_plate_count(z),
         pack.inner_thickness,
-        ring.outer_radius,
-        pack.inner_spline_radius,
+        pack.inner_mean_diameter,
+        pack.inner_width,
     ) + plates.annulus_mass(
         duty.steel_density,
         ring_formulas.outer_plate_count(z),
         pack.outer_thickness,
-        pack.outer_spline_radius,
-        ring.inner_radius,
+        ring.mean_diameter + wants.lug_clearance,
+        ring.width + wants.lug_clearance,
     )
     diameter = plates.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
     length = plates.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, duty.plate_gap)

@@ -93,8 +93,8 @@ class MultiPlateClutch(DesignProblem):
             d.refuse(
                 "no_room_for_ring",
                 least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
-                "no friction ring of at least ring_ratio_min fits between hub_bore_diameter and outer_diameter_limit "
-                "with lug_clearance and drum_wall",
+                "room for a friction ring of at least ring_ratio_min between hub_bore_diameter and "
+                "outer_diameter_limit, besides lug_clearance and drum_wall",
             )
         # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
         saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
@@ -112,9 +112,9 @@ class MultiPlateClutch(DesignProblem):
                     required * wants.guide_friction * (inner_spline + outer_spline)
                     > net_force * inner_spline * outer_spline,
                 ),
-                "the friction in the guides lets no number of plates pass the sizing torque at actuation_force_limit, "
-                "not even with the largest splines that fit; raise actuation_force_limit or outer_diameter_limit, "
-                "or lower guide_friction",
+                "a sizing torque that the friction in the guides lets pass at actuation_force_limit with the largest "
+                "splines that fit; more plates do not help: raise actuation_force_limit or outer_diameter_limit, or "
+                "lower guide_friction",
             )
 
     def _declare_objectives(self, d: Declaration) -> None:

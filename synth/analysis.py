@@ -16,6 +16,7 @@ from synth.instance import Instance, as_catalogs
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
+from synth.special import expanded
 from synth.units import format_quantity, parse_quantity
 
 ON_GRID = 1e-9
@@ -29,7 +30,9 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
     return Frame(
         family=instance.problem.name,
         title=instance.problem.title or instance.problem.name,
-        options={name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options},
+        options={
+            name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options
+        },
         requirements={
             name: format_quantity(instance.requirements[name], d.requirements[name].unit, None)
             for name in d.requirements
@@ -236,7 +239,11 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
         name = model.name_of(str(word), "objectives", list(model.quantity_sx), "a quantity")
         if sense is None:
             if name not in declared:
-                raise InputError(f"objectives: {name}", None, f"a sense, for example {{{name}: min}}; declared are {', '.join(declared)}")
+                raise InputError(
+                    f"objectives: {name}",
+                    None,
+                    f"a sense, for example {{{name}: min}}; declared are {', '.join(declared)}",
+                )
             sense = declared[name].sense
         if sense not in ("min", "max"):
             raise InputError(f"objectives: {name}", sense, "min or max")
@@ -307,13 +314,13 @@ def _data(
             value = instance.row_values[str(entry.sx)]
         elif entry.kind == "part":
             table, index = rows[entry.name]
-            numbers = {
-                c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in entry.columns
-            }
+            numbers = {c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in entry.columns}
             value = float(part_column_value(entry, numbers)[0])
             if np.isnan(value) and entry.required:
                 designation = table.designations[index]
-                raise InputError(f"parts: {entry.name}", designation, f"a row with a value in {' or '.join(entry.columns)}")
+                raise InputError(
+                    f"parts: {entry.name}", designation, f"a row with a value in {' or '.join(entry.columns)}"
+                )
         elif entry.kind == "count":
             value = known[entry.name]
         else:
@@ -322,16 +329,15 @@ def _data(
     return result
 
 
-def _refuse_discrete(
-    instance: Instance, data: Sequence[float], rows: Mapping[str, tuple[Any, int]]
-) -> tuple[str, ...]:
+def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[str, tuple[Any, int]]) -> tuple[str, ...]:
     """Refuse parts and counts that must not be used; remark on rows that the slot would not offer."""
     model = instance.model
     symbols = {str(e.sx): v for e, v in zip(model.data_inputs, data, strict=True)}
     for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
         if kinds:
-            used = ca.symvar(refusal.when)
-            function = ca.Function("refused", used, [refusal.when])
+            when = expanded(refusal.when, model.calls)
+            used = ca.symvar(when)
+            function = ca.Function("refused", used, [when])
             if float(function(*[symbols[str(s)] for s in used])) > 0.5:
                 raise InputError(refusal.code, ", ".join(sorted(kinds)), refusal.message)
     remarks = []
@@ -354,7 +360,9 @@ def _complete_variables(
         if not derived:
             v = model.variables[missing[0]]
             low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
-            raise InputError(f"values: {v.name}", None, f"a value ({low} to {high}), or a derived quantity in its place")
+            raise InputError(
+                f"values: {v.name}", None, f"a value ({low} to {high}), or a derived quantity in its place"
+            )
         raise InputError(
             "values", ", ".join(derived), f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
         )
@@ -403,20 +411,20 @@ def _solve_for(
             if np.max(np.abs(difference(x))) <= 1e-12:
                 return x
     wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
-    ranges = ", ".join(f"{v.name} {format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}" for v in unknown)
+    ranges = ", ".join(
+        f"{v.name} {format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}" for v in unknown
+    )
     raise InputError("values", wanted, f"quantities that some {ranges} can give")
 
 
 def _derived_function(model: Model, missing: list[int], names: list[str]) -> Any:
     x = ca.SX.sym("x", len(missing))
-    inputs = list(model.inputs)
     known = ca.SX.sym("known", len(model.variables))
     data = ca.SX.sym("data", len(model.data_inputs))
     replaced = [x[missing.index(k)] if k in missing else known[k] for k in range(len(model.variables))]
     replaced += [data[k] for k in range(len(model.data_inputs))]
-    outputs = ca.substitute(
-        ca.vertcat(*[model.quantity_sx[n] for n in names]), ca.vertcat(*inputs), ca.vertcat(*replaced)
-    )
+    everything = dict(zip(model.quantity_node, model.program.symbolic(replaced), strict=False))
+    outputs = ca.vertcat(*[everything[n] for n in names])
     return ca.Function("derived", [x, known, data], [outputs, ca.jacobian(outputs, x)])
 
 

@@ -219,11 +219,19 @@ def _tokens(text: str) -> list[_Token]:
 def _hint(rest: str) -> str:
     if rest[0] in "'\"":
         return "a closing quote"
-    hints = {"=": "== to compare", "<>": "!=", "&": "and", "|": "or", "!": "not, or !=", "[": "round brackets", "/": _QUOTED}
+    hints = {
+        "=": "== to compare",
+        "<>": "!=",
+        "&": "and",
+        "|": "or",
+        "!": "not, or !=",
+        "[": "round brackets",
+        "/": _QUOTED,
+    }
     for start, right in hints.items():
         if rest.startswith(start):
             return right
-    if rest[0].isdigit() or rest[0] in "+-.":
+    if re.match(r"[+-]|\.?[0-9]", rest):
         return f"a number such as 0.4, or {_QUOTED}"
     return "a column, one of == != < <= > >= in, and a number or a text in quotes"
 

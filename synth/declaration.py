@@ -243,9 +243,7 @@ class Declaration:
         The part tables in force.
     """
 
-    def __init__(
-        self, problem: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs
-    ) -> None:
+    def __init__(self, problem: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs) -> None:
         self.problem = problem
         self.catalogs = catalogs
         self._asked_options = dict(options)
@@ -321,7 +319,13 @@ class Declaration:
         return record.sx
 
     def option(
-        self, name: str, choices: Sequence[str], default: str, symbol: str | None = None, text: str = "", source: str = ""
+        self,
+        name: str,
+        choices: Sequence[str],
+        default: str,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
     ) -> str:
         """Declare a structural choice of the user and return the chosen string."""
         symbol = self._claim(name, symbol)
@@ -511,7 +515,9 @@ class Declaration:
         known = {name for name, _, _ in self.quantities()}
         for objective in self.objectives.values():
             if objective.name not in known:
-                raise DeclarationError(f"{self.problem}: objective {objective.name} is no variable, count or derived quantity")
+                raise DeclarationError(
+                    f"{self.problem}: objective {objective.name} is no variable, count or derived quantity"
+                )
         for derived in self.derived.values():
             for guard in derived.needs:
                 if guard not in self.limits or not self.limits[guard].guard:

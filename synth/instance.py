@@ -16,6 +16,7 @@ from synth.declaration import Part
 from synth.errors import InputError
 from synth.model import Model, part_column_value
 from synth.problem import DesignProblem
+from synth.special import expanded
 from synth.tables import Catalogs, Table
 from synth.units import format_quantity, from_si, parse_quantity, parse_unit
 
@@ -162,7 +163,7 @@ class Instance:
                 values[r.name] = r.default
             else:
                 known = {**{str(model.declaration.requirements[n].sx): v for n, v in values.items()}, **row_values}
-                values[r.name] = number(r.default, known)
+                values[r.name] = number(expanded(r.default, model.calls), known)
         return values
 
     @staticmethod
@@ -177,8 +178,10 @@ class Instance:
         slack = 1e-12
         if value < lower - slack * abs(lower) or value > upper + slack * abs(upper):
             low, high = format_quantity(lower, unit), format_quantity(upper, unit)
-            expected = f"{low} to {high}" if np.isfinite(lower) and np.isfinite(upper) else (
-                f"at least {low}" if np.isfinite(lower) else f"at most {high}"
+            expected = (
+                f"{low} to {high}"
+                if np.isfinite(lower) and np.isfinite(upper)
+                else (f"at least {low}" if np.isfinite(lower) else f"at most {high}")
             )
             raise InputError(f"requirement {name}", typed, expected)
 
@@ -201,7 +204,7 @@ class Instance:
         model = self.model
         known = self._symbol_values()
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
-            if not kinds and number(refusal.when, known) > 0.5:
+            if not kinds and number(expanded(refusal.when, model.calls), known) > 0.5:
                 raise InputError(refusal.code, self._involved(refusal.when), refusal.message)
 
     def _symbol_values(self) -> dict[str, float]:
@@ -209,7 +212,7 @@ class Instance:
         return {**{str(requirements[n].sx): v for n, v in self.requirements.items()}, **self.row_values}
 
     def _involved(self, expression: Any) -> str:
-        used = {str(s) for s in ca.symvar(expression)}
+        used = {str(s) for s in ca.symvar(expanded(expression, self.model.calls))}
         shown = [
             f"{r.name} = {format_quantity(self.requirements[r.name], r.unit)}"
             for r in self.model.declaration.requirements.values()
@@ -252,7 +255,9 @@ class Instance:
             if self.lower[variable] > self.upper[variable]:
                 v = model.variables[variable]
                 allowed = f"{format_quantity(v.lower, unit)} to {format_quantity(v.upper, unit)}"
-                raise InputError(f"limits: {name}", format_quantity(bound, unit), f"limits that leave something of {allowed}")
+                raise InputError(
+                    f"limits: {name}", format_quantity(bound, unit), f"limits that leave something of {allowed}"
+                )
         elif name in model.declaration.counts:
             self._count_bounds.append((name, sense, bound))
         else:
@@ -307,11 +312,15 @@ class Instance:
                 why = "; ".join(sorted(reasons)) or "the conditions " + " and ".join(
                     [*part.where, *([str(wanted[part.slot])] if part.slot in wanted else [])]
                 )
-                raise InputError(f"slot {part.slot}", None, f"at least one row of table {part.table}; none is left by {why}")
+                raise InputError(
+                    f"slot {part.slot}", None, f"at least one row of table {part.table}; none is left by {why}"
+                )
             columns = {
-                key: part_column_value(column, {c: table.number(c)[rows] for c in column.columns if table.has(c)} | {
-                    c: np.full(len(rows), np.nan) for c in column.columns if not table.has(c)
-                })
+                key: part_column_value(
+                    column,
+                    {c: table.number(c)[rows] for c in column.columns if table.has(c)}
+                    | {c: np.full(len(rows), np.nan) for c in column.columns if not table.has(c)},
+                )
                 for key, column in part.columns.items()
             }
             self.selection.slots.append(SlotRows(part.slot, table, rows, columns))
@@ -368,7 +377,9 @@ class Instance:
                 values = values[np.abs(values - self._fixed_discrete[count.name]) < 1e-9]
             if not len(values):
                 low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
-                asked = self._fixed_discrete.get(count.name, [(s, b) for n, s, b in self._count_bounds if n == count.name])
+                asked = self._fixed_discrete.get(
+                    count.name, [(s, b) for n, s, b in self._count_bounds if n == count.name]
+                )
                 raise InputError(count.name, asked, f"a value from {low:g} to {high:g} in steps of {step:g}")
             self.selection.counts[count.name] = values
         for choice in d.choices.values():
@@ -401,14 +412,19 @@ class Instance:
         else:
             values = (selection.counts | selection.choices)[name]
             size, columns = len(values), {name: values}
+        when = expanded(refusal.when, model.calls)
         bad = np.array(
-            [number(refusal.when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5 for k in range(size)],
+            [
+                number(when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5
+                for k in range(size)
+            ],
             dtype=bool,
         )
         if not bad.any():
             return
         labels = (
-            [slot.table.designations[r] for r in slot.rows] if slot is not None
+            [slot.table.designations[r] for r in slot.rows]
+            if slot is not None
             else [f"{v:g}" for v in (selection.counts | selection.choices)[name]]
         )
         for k in np.flatnonzero(bad):
@@ -475,7 +491,9 @@ class Instance:
             inside = (values >= self.lower[k] * (1 - 1e-12)) & (values <= self.upper[k] * (1 + 1e-12))
             if len(values) and not inside.any():
                 low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
-                raise InputError(f"limits: {v.name}", f"{low} .. {high}", "a range that holds a makeable value (or grid: false)")
+                raise InputError(
+                    f"limits: {v.name}", f"{low} .. {high}", "a range that holds a makeable value (or grid: false)"
+                )
             result.append(values[inside])
         return result
 

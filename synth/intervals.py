@@ -21,7 +21,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.program import COMPARISONS, OP_SELECT, Program
+from synth.program import COMPARISONS, OP_SELECT, OP_SPECIAL, Node, Program
 
 SLACK = 2e-6
 
@@ -79,9 +79,7 @@ def _monotone(function: Callable[[Any], Any]) -> Callable[[Interval], Interval]:
     return forward
 
 
-def _on_domain(
-    function: Callable[[Any], Any], low: float, high: float
-) -> Callable[[Interval], Interval]:
+def _on_domain(function: Callable[[Any], Any], low: float, high: float) -> Callable[[Interval], Interval]:
     """Return a monotone function on the part of the interval that lies in its domain."""
 
     def forward(a: Interval) -> Interval:
@@ -409,7 +407,8 @@ class Tightened:
 
     ``alive`` is False where nothing feasible can be (the other rows are then meaningless);
     ``bounds`` are lower bounds of the objectives (with their sign), ``scores`` tell how much each
-    variable still blurs limits and objectives: the one to split.
+    variable still blurs limits and objectives: the one to split. ``positive_cuts`` tells, per limit,
+    whether both sides are surely positive in every box that is alive.
     """
 
     alive: np.ndarray
@@ -417,6 +416,7 @@ class Tightened:
     high: np.ndarray
     bounds: np.ndarray
     scores: np.ndarray
+    positive_cuts: np.ndarray
 
 
 class Propagator:
@@ -497,8 +497,9 @@ class Propagator:
         scores = np.zeros((n, self.n_variables))
         with np.errstate(all="ignore"):
             fixed = self.data(inputs)
+            box: _Box | None = None
             for sweep in range(passes):
-                box = self._forward(low, high, fixed, caps, alive)
+                box = self._forward(low, high, fixed, caps, alive, box)
                 if corners and sweep == passes - 1:
                     slopes = self._slopes(box)
                     self._corner_cuts(box, slopes, inputs, alive)
@@ -510,11 +511,25 @@ class Propagator:
                 for i, k in enumerate(self.variables):
                     low[:, i] = np.fmax(low[:, i], box.low[k])
                     high[:, i] = np.fmin(high[:, i], box.high[k])
-        return Tightened(alive, low, np.maximum(high, low), bounds, scores)
+            positive = np.array([self._surely_positive(cut, box, alive) for cut in self.cuts], dtype=bool)
+        return Tightened(alive, low, np.maximum(high, low), bounds, scores, positive)
+
+    @staticmethod
+    def _surely_positive(cut: Cut, box: _Box, alive: np.ndarray) -> bool:
+        sides = [box.low[cut.value], cut.bound if cut.limit is None else box.low[cut.limit]]
+        # Void sides (not-a-number) do not count.
+        return all(bool(np.all((np.asarray(side) > 0) | np.isnan(side) | ~alive)) for side in sides)
 
     def _forward(
-        self, low: np.ndarray, high: np.ndarray, fixed: list[Any], caps: Sequence[Any] | None, alive: np.ndarray
+        self,
+        low: np.ndarray,
+        high: np.ndarray,
+        fixed: list[Any],
+        caps: Sequence[Any] | None,
+        alive: np.ndarray,
+        before: _Box | None,
     ) -> _Box:
+        """Compute all intervals from the boxes; what an earlier sweep knew of a node stays known."""
         box = _Box(len(self.program.nodes))
         for k, value in zip(self.fixed, fixed, strict=True):
             box.low[k] = box.high[k] = np.asarray(value, dtype=float)
@@ -524,11 +539,30 @@ class Propagator:
             self._cut_node(box, k, caps, alive)
         for k in self.order:
             node = self.program.nodes[k]
-            forward = FORWARD.get(node.op)
             args = [(box.low[a], box.high[a]) for a in node.args]
-            box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
+            if node.op == OP_SPECIAL:
+                box.low[k], box.high[k] = self._special(node, args)
+            else:
+                forward = FORWARD.get(node.op)
+                box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
+            if before is not None:
+                box.cut_low(k, before.low[k], alive)
+                box.cut_high(k, before.high[k], alive)
             self._cut_node(box, k, caps, alive)
         return box
+
+    def _special(self, node: Node, args: Sequence[Interval]) -> Interval:
+        """Return the range of a special function: it is monotone in every argument."""
+        function = self.program.specials[int(node.constant)]
+        rising = [low >= 0 for low, _ in function.elasticity]
+        least = function.formula(*[a[0] if up else a[1] for a, up in zip(args, rising, strict=True)])
+        most = function.formula(*[a[1] if up else a[0] for a, up in zip(args, rising, strict=True)])
+        inside = np.logical_and.reduce(np.broadcast_arrays(*[a[0] >= 0 for a in args]))
+        return np.where(inside, least, -np.inf), np.where(inside, most, np.inf)
+
+    def _special_slopes(self, node: Node, r: Interval, args: Sequence[Interval]) -> tuple[Interval | None, ...]:
+        elasticity = self.program.specials[int(node.constant)].elasticity
+        return tuple(_mul(e, _div(r, _positive_part(a))) for e, a in zip(elasticity, args, strict=True))
 
     def _cut_node(self, box: _Box, k: int, caps: Sequence[Any] | None, alive: np.ndarray) -> None:
         if caps is not None:
@@ -573,7 +607,10 @@ class Propagator:
             if node.op in (ca.OP_IF_ELSE_ZERO, OP_SELECT):
                 self._slopes_of_where(slopes, k, node.args, args)
                 continue
-            local = _local_slopes(node.op, (box.low[k], box.high[k]), args)
+            own = (box.low[k], box.high[k])
+            local = (
+                self._special_slopes(node, own, args) if node.op == OP_SPECIAL else _local_slopes(node.op, own, args)
+            )
             for i in range(n):
                 total: Interval | None = None
                 for a, slope in zip(node.args, local, strict=True):
@@ -649,9 +686,7 @@ class Propagator:
             size = np.maximum(np.maximum(np.abs(box.low[goal.node]), np.abs(box.high[goal.node])), 1e-300)
             spread(goal.node, size, True)
 
-    def _corner(
-        self, k: int, side: int, box: _Box, slopes: list[list[Interval | None]], inputs: Sequence[Any]
-    ) -> Any:
+    def _corner(self, k: int, side: int, box: _Box, slopes: list[list[Interval | None]], inputs: Sequence[Any]) -> Any:
         """Return the bound of node k over the box: least value for side -1, largest for +1."""
         point: list[Any] = [None] * self.n_variables
         correction: Any = 0.0

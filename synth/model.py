@@ -14,6 +14,7 @@ from synth.declaration import Declaration, DeclarationError, Limit, Part, PartCo
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.program import Program
+from synth.special import SpecialCall, expanded
 
 
 @dataclass(frozen=True)
@@ -54,12 +55,15 @@ class Model:
         Name of the problem, for messages.
     declaration : Declaration
         What the family declared.
+    calls : list of SpecialCall
+        Special functions that were used.
     """
 
-    def __init__(self, title: str, declaration: Declaration) -> None:
+    def __init__(self, title: str, declaration: Declaration, calls: Sequence[SpecialCall] = ()) -> None:
         declaration.finish()
         self.title = title
         self.declaration = declaration
+        self.calls = list(calls)
         self.variables = list(declaration.variables.values())
         self.limits = list(declaration.limits.values())
         self.data_inputs = self._data_inputs(declaration)
@@ -73,7 +77,7 @@ class Model:
         outputs = list(named.values())
         outputs += [side for limit in self.limits for side in (limit.value, limit.limit)]
         outputs += [a.when for a in declaration.advices]
-        self.program = Program(self.inputs, outputs)
+        self.program = Program(self.inputs, outputs, calls)
         numbers = iter(self.program.outputs)
         self.quantity_node = {name: next(numbers) for name in named}
         self.limit_nodes = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
@@ -87,9 +91,7 @@ class Model:
     # -- the trace -----------------------------------------------------------------------------
 
     def _data_inputs(self, d: Declaration) -> list[DataInput]:
-        inputs = [
-            DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None
-        ]
+        inputs = [DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None]
 
         def columns(kind: str, part: Part) -> list[DataInput]:
             return [DataInput(kind, part.slot, c.columns, c.required, c.sx) for c in part.columns.values()]
@@ -103,7 +105,7 @@ class Model:
         return inputs
 
     def _check_symbols(self) -> None:
-        known = {str(s) for s in self.inputs}
+        known = {str(s) for s in self.inputs} | {str(c.symbol) for c in self.calls}
         d = self.declaration
         sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
         named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
@@ -127,7 +129,7 @@ class Model:
 
     def _refusal_inputs(self, code: str, when: Any) -> frozenset[str]:
         """Return the discrete unknowns (slots, counts, choices) that a refusal speaks of."""
-        used = {str(s) for s in ca.symvar(when)}
+        used = {str(s) for s in ca.symvar(expanded(when, self.calls))}
         if used & {str(v.sx) for v in self.variables}:
             raise DeclarationError(f"{self.title}: refusal {code} speaks of a continuous variable; that is a limit")
         return frozenset(

@@ -102,8 +102,7 @@ class Branches:
         self.decisions = [
             k
             for k in program.needed(wanted)
-            if dependent[k]
-            and program.nodes[k].op in (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
+            if dependent[k] and program.nodes[k].op in (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
         ]
         sides = [a for k in self.decisions for a in self._sides(k)]
         self._evaluate = program.compile(sides) if sides else None
@@ -204,10 +203,7 @@ class Branches:
                 return values[node.args[2]] if node.op == OP_SELECT else ca.SX(0.0)
             other = values[node.args[2]] if node.op == OP_SELECT else ca.SX(0.0)
             return ca.if_else(values[node.args[0]], values[node.args[1]], other)
-        args = [values[a] for a in node.args]
-        if len(args) == 1:
-            return ca.SX.unary(node.op, args[0])
-        return ca.SX.binary(node.op, args[0], args[1])
+        return self.program.apply(node, [values[a] for a in node.args])
 
 
 class ParametricNlp:
@@ -393,9 +389,7 @@ class ParametricNlp:
         )
         return solution, border
 
-    def _row_sizes(
-        self, task: Task, x0: np.ndarray, data: Sequence[float], bounds: Sequence[float]
-    ) -> np.ndarray:
+    def _row_sizes(self, task: Task, x0: np.ndarray, data: Sequence[float], bounds: Sequence[float]) -> np.ndarray:
         with np.errstate(all="ignore"):
             raw = [abs(float(np.asarray(v).ravel()[0])) for v in self._sizes([*x0, *data])]
         cuts = self.rows.cuts

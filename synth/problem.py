@@ -10,6 +10,7 @@ from typing import Any
 from synth.declaration import Declaration, DeclarationError
 from synth.errors import InputError
 from synth.model import Model
+from synth.special import recorded
 from synth.tables import Catalogs
 
 ENTRY_POINT_GROUP = "clutchsynth.problems"
@@ -70,9 +71,10 @@ class DesignProblem:
         key = (given, id(catalogs))
         if key not in self._models:
             declaration = Declaration(self.name, self.options, given, catalogs)
-            self.declare(declaration)
+            with recorded() as calls:
+                self.declare(declaration)
             # The catalogues are kept with the model, so that their id stays theirs.
-            self._models[key] = (Model(self.name, declaration), catalogs)
+            self._models[key] = (Model(self.name, declaration, calls), catalogs)
         return self._models[key][0]
 
 

@@ -14,6 +14,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.special import SpecialCall
+
 ARITY_TWO = {
     ca.OP_ADD: "({0} + {1})",
     ca.OP_SUB: "({0} - {1})",
@@ -67,6 +69,7 @@ ARITY_ONE = {
 # CasADi writes where(c, a, b) as (c ? a : 0) + (!c ? b : 0); read back as one instruction, the value is
 # known to be one of two, not the sum of two.
 OP_SELECT = -1
+OP_SPECIAL = -2  # a special function; the constant of the node is its position in ``Program.specials``
 COMMUTATIVE = {ca.OP_ADD, ca.OP_MUL, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_FMIN, ca.OP_FMAX, ca.OP_HYPOT}
 TEMPLATES = {**ARITY_ONE, **ARITY_TWO, OP_SELECT: "np.where({0}, {1}, {2})"}
 COMPARISONS = {ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR}
@@ -94,17 +97,23 @@ class Program:
         Scalar symbols, in the order in which values are handed over.
     outputs : list of SX
         Scalar expressions.
+    calls : list of SpecialCall
+        Special functions among the sub-expressions, which stay one instruction each.
     """
 
-    def __init__(self, inputs: Sequence[Any], outputs: Sequence[Any]) -> None:
-        function = ca.Function("program", [ca.vertcat(*inputs)], [ca.vertcat(*outputs)])
-        self.function = function
+    def __init__(self, inputs: Sequence[Any], outputs: Sequence[Any], calls: Sequence[SpecialCall] = ()) -> None:
         self.n_inputs = len(inputs)
         self.nodes: list[Node] = []
         self._numbers: dict[tuple[int, tuple[int, ...], float], int] = {}
-        self.outputs: list[int] = [self._number(ca.OP_CONST, (), 0.0)] * len(outputs)
         self.input_nodes = [self._number(ca.OP_INPUT, (), float(k)) for k in range(self.n_inputs)]
-        self._read(function)
+        self.specials = list(dict.fromkeys(call.function for call in calls))
+        symbols, numbers = list(inputs), list(self.input_nodes)
+        for call in calls:
+            args = self._read(symbols, numbers, call.arguments)
+            position = float(self.specials.index(call.function))
+            symbols.append(call.symbol)
+            numbers.append(self._number(OP_SPECIAL, tuple(args), position))
+        self.outputs = self._read(symbols, numbers, outputs)
 
     def _number(self, op: int, args: tuple[int, ...], constant: float = 0.0) -> int:
         if op == ca.OP_ADD and (select := self._as_select(*args)):
@@ -127,7 +136,11 @@ class Program:
             return no.args[0], no.args[1], yes.args[1]
         return None
 
-    def _read(self, function: Any) -> None:
+    def _read(self, symbols: Sequence[Any], numbers: Sequence[int], expressions: Sequence[Any]) -> list[int]:
+        """Number the nodes of some expressions of symbols whose own nodes are known."""
+        function = ca.Function("trace", [ca.vertcat(*symbols)], [ca.vertcat(*expressions)])
+        # Structural zeros are not instructions, so every output starts as the constant 0.
+        outputs = [self._number(ca.OP_CONST, (), 0.0)] * len(expressions)
         work: dict[int, int] = {}
         for k in range(function.n_instructions()):
             op = function.instruction_id(k)
@@ -135,9 +148,9 @@ class Program:
             if op == ca.OP_CONST:
                 work[target[0]] = self._number(op, (), float(function.instruction_constant(k)))
             elif op == ca.OP_INPUT:
-                work[target[0]] = self.input_nodes[source[1]]
+                work[target[0]] = numbers[source[1]]
             elif op == ca.OP_OUTPUT:
-                self.outputs[target[1]] = work[source[0]]
+                outputs[target[1]] = work[source[0]]
             elif op in ARITY_TWO:
                 work[target[0]] = self._number(op, (work[source[0]], work[source[1]]))
             elif op in ARITY_ONE:
@@ -146,6 +159,29 @@ class Program:
                 work[target[0]] = work[source[0]]
             else:
                 raise UnsupportedOperation(f"a formula uses CasADi operation number {op}, which has no NumPy form")
+        return outputs
+
+    def symbolic(self, inputs: Sequence[Any]) -> list[Any]:
+        """Return the outputs as CasADi expressions of the given inputs, special functions written out."""
+        values: list[Any] = []
+        for node in self.nodes:
+            values.append(self._symbolic_node(node, [values[a] for a in node.args], inputs))
+        return [values[k] for k in self.outputs]
+
+    def _symbolic_node(self, node: Node, args: Sequence[Any], inputs: Sequence[Any]) -> Any:
+        if node.op == ca.OP_CONST:
+            return ca.SX(node.constant)
+        if node.op == ca.OP_INPUT:
+            return inputs[int(node.constant)]
+        return self.apply(node, args)
+
+    def apply(self, node: Node, args: Sequence[Any]) -> Any:
+        """Return one instruction carried out on CasADi symbols."""
+        if node.op == OP_SPECIAL:
+            return self.specials[int(node.constant)].formula(*args)
+        if node.op == OP_SELECT:
+            return ca.if_else(*args)
+        return ca.SX.unary(node.op, args[0]) if len(args) == 1 else ca.SX.binary(node.op, args[0], args[1])
 
     def dependence(self, inputs: Sequence[int]) -> np.ndarray:
         """Return, for every node, whether it depends on any of the inputs (given by number)."""
@@ -191,8 +227,10 @@ class Program:
             if node.op == ca.OP_INPUT:
                 names[k] = f"inputs[{int(node.constant)}]"
                 continue
-            template = TEMPLATES[node.op]
-            code = template.format(*(names[a] for a in node.args))
+            if node.op == OP_SPECIAL:
+                code = f"specials[{int(node.constant)}](" + ", ".join(names[a] for a in node.args) + ")"
+            else:
+                code = TEMPLATES[node.op].format(*(names[a] for a in node.args))
             # Registers are handed on as soon as their last reader is done, so big batches stay small in memory.
             for a in set(node.args):
                 if a in register and last_use[a] == k:
@@ -206,6 +244,6 @@ class Program:
         lines.append("    return [" + ", ".join(names[k] for k in wanted) + "]")
         from scipy.special import erf  # only generated code calls it
 
-        scope: dict[str, Any] = {"np": np, "erf": erf}
+        scope: dict[str, Any] = {"np": np, "erf": erf, "specials": [f.formula for f in self.specials]}
         exec(compile("\n".join(lines), "<generated from the trace>", "exec"), scope)
         return scope["evaluate"]  # type: ignore[no-any-return]

@@ -297,7 +297,9 @@ def load_front(folder: str | Path) -> ParetoFront:
     except (OSError, json.JSONDecodeError) as error:
         raise InputError("front", str(path), f"a front.json that clutchsynth wrote ({error})") from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise InputError(f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}")
+        raise InputError(
+            f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
+        )
     frame = Frame(
         family=content["family"],
         title=content["title"],

@@ -480,6 +480,7 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MINUS = "−‐‑‒–—﹣－"
 _LARGEST_EXPONENT = 1000
+_MOST_DIGITS = 40
 _WIDE = Context(prec=60)
 
 
@@ -814,13 +815,13 @@ def _shortest(si: float, unit: Unit) -> str:
     if number_to_si("0", unit) == si:
         return "0"
     value = _in_unit(si, unit)
-    digits = 1
-    while True:
-        # 17 digits name a float; an offset or a subnormal number only changes how few are enough
+    text = ""
+    # 17 digits name a float; only a temperature within 1e-9 K of absolute zero takes many more
+    for digits in range(1, _MOST_DIGITS + 1):
         text = _as_text(Context(prec=digits).plus(value))
         if number_to_si(text, unit) == si:
-            return text
-        digits += 1
+            break
+    return text
 
 
 def header(name: str, unit: str | Unit) -> str:

@@ -33,6 +33,7 @@ from scipy.special import lambertw
 from problems.mechanics import Quantity
 from problems.mechanics.ring import friction_radius, mean_diameter, ring_ratio
 from synth.errors import InputError
+from synth.special import special
 
 GUIDE_SERIES = ("geometric", "exponential_form", "lipka", "exponential_K", "exact")
 
@@ -131,6 +132,7 @@ def damped_guide_number(guide_number: Quantity) -> Quantity:
     return guide_number / (1 + guide_number)
 
 
+@special((0.0, 1.0), (-1.0, 0.0))
 def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     """Sum factor of the geometric series, E = (1 - (1+S)**-z)/S; z for S = 0.
 
@@ -161,6 +163,7 @@ def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     return -np.expm1(-surfaces * np.log1p(guarded)) / guarded
 
 
+@special((0.0, 1.0), (-1.0, 0.0))
 def sum_lipka(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     """Sum factor with ln(1+S) replaced by S, E = (1 - exp(-z S))/S; z for S = 0.
 
@@ -221,6 +224,7 @@ def sum_exponential_k(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     return -np.expm1(-surfaces * damped) / damped
 
 
+@special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0))
 def sum_exact(surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
     """Sum factor of the plate-by-plate balance, E = (1 - exp(-z (artanh kappa_a + artanh kappa_b)))/S.
 
@@ -251,8 +255,7 @@ def sum_exact(surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) 
     """
     inner = inner_ratio + _TINY_GUIDE_NUMBER / 2
     outer = outer_ratio + _TINY_GUIDE_NUMBER / 2
-    twice_artanh = np.log1p(inner) - np.log1p(-inner) + np.log1p(outer) - np.log1p(-outer)
-    return -np.expm1(-surfaces / 2 * twice_artanh) / (inner + outer)
+    return -np.expm1(-surfaces / 2 * _twice_artanh(inner, outer)) / (inner + outer)
 
 
 def torque_sum_factor(series: str, surfaces: Quantity, inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
@@ -297,6 +300,10 @@ def torque_sum_factor(series: str, surfaces: Quantity, inner_ratio: Quantity, ou
     if series == "exact":
         return sum_exact(surfaces, inner_ratio, outer_ratio)
     raise InputError("guide_series", series, "one of " + ", ".join(GUIDE_SERIES))
+
+
+def _twice_artanh(inner_ratio: Quantity, outer_ratio: Quantity) -> Quantity:
+    return np.log1p(inner_ratio) - np.log1p(-inner_ratio) + np.log1p(outer_ratio) - np.log1p(-outer_ratio)
 
 
 def contact_force(

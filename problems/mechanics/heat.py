@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from problems.mechanics import Quantity
+from synth.special import special
 
 
 def cycle_time(switching_rate: Quantity) -> Quantity:
@@ -258,8 +259,44 @@ def peak_temperature_rise(
     >>> float(peak_temperature_rise(1000, 0.02, 100, 20, 0.1))
     15.8198
     """
+    return friction_work * peak_rise_per_work(switching_rate, heat_capacity, heat_transfer, cooled_area)
+
+
+@special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0))
+def peak_rise_per_work(
+    switching_rate: Quantity, heat_capacity: Quantity, heat_transfer: Quantity, cooled_area: Quantity
+) -> Quantity:
+    """Peak temperature rise in steady repetition per joule of an engagement, 1/(C (1 - exp(-t_c/tau))).
+
+    Parameters
+    ----------
+    switching_rate : scalar, array or symbol
+        Engagements per second, 1/t_c [1/s].
+    heat_capacity : scalar, array or symbol
+        C [J/K].
+    heat_transfer : scalar, array or symbol
+        Surface coefficient h [W/(m2 K)].
+    cooled_area : scalar, array or symbol
+        Surface that gives off heat [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Temperature rise per work [K/J].
+
+    References
+    ----------
+    As :func:`peak_temperature_rise`; it rises with the rate and falls with capacity, coefficient and surface.
+
+    Examples
+    --------
+    By hand, 0.01/(1 - 1/e):
+
+    >>> float(peak_rise_per_work(0.02, 100, 20, 0.1))
+    0.0158198
+    """
     cooled = heat_transfer * cooled_area / (heat_capacity * switching_rate)
-    return -friction_work / heat_capacity / np.expm1(-cooled)
+    return -1 / (heat_capacity * np.expm1(-cooled))
 
 
 def adiabatic_rise(friction_work: Quantity, mass: Quantity, specific_heat: Quantity, share: Quantity = 1.0) -> Quantity:

@@ -14,7 +14,7 @@ from problems.mechanics import Quantity
 
 
 def annulus_mass(
-    density: Quantity, count: Quantity, thickness: Quantity, outer_radius: Quantity, inner_radius: Quantity
+    density: Quantity, count: Quantity, thickness: Quantity, mean_diameter: Quantity, width: Quantity
 ) -> Quantity:
     """Mass of equal flat rings, rho n t pi (ro - ri)(ro + ri).
 
@@ -26,8 +26,10 @@ def annulus_mass(
         Number of rings n [-].
     thickness : scalar, array or symbol
         t [m].
-    outer_radius, inner_radius : scalar, array or symbol
-        Radii [m].
+    mean_diameter : scalar, array or symbol
+        Sum of outer and inner radius [m].
+    width : scalar, array or symbol
+        Outer less inner radius [m].
 
     Returns
     -------
@@ -42,10 +44,10 @@ def annulus_mass(
     --------
     By hand, 7850 pi 0.01 (0.1**2 - 0.05**2):
 
-    >>> annulus_mass(7850, 10, 0.001, 0.1, 0.05)
+    >>> annulus_mass(7850, 10, 0.001, 0.15, 0.05)
     1.8496
     """
-    return density * np.pi * count * thickness * ((outer_radius - inner_radius) * (outer_radius + inner_radius))
+    return density * np.pi * count * thickness * (mean_diameter * width)
 
 
 def lining_mass(density: Quantity, thickness: Quantity, area: Quantity) -> Quantity:

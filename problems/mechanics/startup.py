@@ -11,6 +11,9 @@ Both are valid where T > L only; otherwise the clutch never starts the load (:fu
 function takes floats, arrays or CasADi symbols, in SI. Each regime (lock before or after the end of the
 ramp, greatest power inside or at the end of the ramp) is chosen by its condition; the formulas agree on the border.
 
+The expressions are arranged so that, as far as possible, each factor rises or falls with T and t_r the same way
+(1 + L/(T-L) for T/(T-L), 1 - L/T for (T-L)/T): bounds over a range of designs are then as sharp as the formulas.
+
 Source: S1 (lecture), start-up by the clutch; the lecture integrates graphically, the closed forms are derived from its
 equations of motion M1 - M_k = J1 domega1/dt (J1 infinite) and M_k - M2 = J2 domega2/dt.
 """
@@ -143,7 +146,7 @@ def locks_after_ramp(
     """
     if _is_active(load_kind):
         return ramp_time * (torque - 2 * load_torque) <= 2 * driven_inertia * driver_speed
-    return (torque - load_torque) ** 2 * ramp_time < 2 * driven_inertia * torque * driver_speed
+    return ramp_time * (torque - load_torque) * (1 - load_torque / torque) < 2 * driven_inertia * driver_speed
 
 
 def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity) -> Quantity:
@@ -184,7 +187,7 @@ def slip_time(
     """Time from the first touch to lock-up, t_D.
 
     Reactive: J omega1/(T-L) + t_r (T+L)/(2T) after the ramp, L t_r/T + sqrt(2 J omega1 t_r/T) inside it. Active:
-    (J omega1 + T t_r/2)/(T-L) after, (L t_r + sqrt(L**2 t_r**2 + 2 T J omega1 t_r))/T inside.
+    (J omega1 + T t_r/2)/(T-L) after, t_B + sqrt(t_B**2 + 2 J omega1 t_r/T) inside, with t_B = L t_r/T.
 
     Parameters
     ----------
@@ -226,18 +229,18 @@ def slip_time(
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     momentum = driven_inertia * driver_speed
     if _is_active(load_kind):
-        after = (momentum + torque * ramp_time / 2) / excess
+        after = momentum / excess + ramp_time / 2 * (1 + load_torque / excess)
         inside = _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
     else:
-        after = momentum / excess + ramp_time * (torque + load_torque) / (2 * torque)
+        after = momentum / excess + ramp_time / 2 * (1 + load_torque / torque)
         inside = load_torque * ramp_time / torque + np.sqrt(2 * momentum * ramp_time / torque)
     return np.where(after_ramp, after, inside)
 
 
 def _active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quantity, ramp_time: Quantity) -> Quantity:
     """Time of lock inside the ramp under an active load: T t**2/(2 t_r) - L t = J omega1."""
-    impulse = load_torque * ramp_time
-    return (impulse + np.sqrt(impulse**2 + 2 * torque * momentum * ramp_time)) / torque
+    time_b = load_torque * ramp_time / torque
+    return time_b + np.sqrt(time_b**2 + 2 * momentum * ramp_time / torque)
 
 
 def friction_work(
@@ -297,12 +300,12 @@ def friction_work(
     ramp_work = load_torque * driver_speed * ramp_time / 2
     if _is_active(load_kind):
         bend = load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
-        after = torque / excess * (energy + ramp_work + bend)
+        after = (1 + load_torque / excess) * (energy + ramp_work + bend)
         impulse = load_torque * _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
         inside = (momentum + impulse) * (driver_speed / 2 + impulse / (6 * driven_inertia))
     else:
-        bend = load_torque * excess**3 * ramp_time**2 / (24 * driven_inertia * torque**2)
-        after = energy * torque / excess + ramp_work - bend
+        bend = load_torque * excess * (1 - load_torque / torque) ** 2 * ramp_time**2 / (24 * driven_inertia)
+        after = energy * (1 + load_torque / excess) + ramp_work - bend
         length = np.sqrt(2 * momentum * ramp_time / torque)
         inside = energy + ramp_work * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
     return np.where(after_ramp, after, inside)
@@ -398,11 +401,11 @@ def peak_slip_power(
     """
     excess = torque - load_torque
     slip_speed = driver_speed - _speed_at_load_start(torque, load_torque, driven_inertia, ramp_time, load_kind)
-    interior = 2 * torque * driven_inertia * slip_speed < ramp_time * excess * (3 * torque - load_torque)
-    root = np.sqrt(load_torque**2 + 6 * torque * driven_inertia * slip_speed / ramp_time)
-    torque_at_peak = (2 * load_torque + root) / 3
-    # x* = 2 J omega/(L + root): the rationalised form does not cancel when the load is large
-    power_inside = 2 * slip_speed / (load_torque + root) * torque_at_peak**2
+    interior = 2 * driven_inertia * slip_speed < ramp_time * excess * (3 - load_torque / torque)
+    # With x* = 2 J omega/(L + root), which does not cancel when the load is large, (L + s x*)**2 x*/J is
+    # 2 omega/9 (2 L + root)**2/(L + root); the division is carried out.
+    sum_with_root = load_torque + np.sqrt(load_torque**2 + 6 * torque * driven_inertia * slip_speed / ramp_time)
+    power_inside = 2 / 9 * slip_speed * (sum_with_root + 2 * load_torque + load_torque**2 / sum_with_root)
     power_at_end = torque * slip_speed - excess**2 * ramp_time / (2 * driven_inertia)
     return np.where(interior, power_inside, power_at_end)
 

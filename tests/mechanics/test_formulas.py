@@ -1,12 +1,14 @@
 """Every formula of the friction clutches: units, and the same numbers on floats, arrays and symbols."""
 
 import inspect
-from functools import partial
+from functools import partial, wraps
 
+import numpy as np
 import pytest
 from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
 from problems.mechanics import guide_friction, heat, plates, ring, startup
+from synth.special import TABLE
 
 RANGES = {
     "ring_ratio": (0.05, 0.3),
@@ -34,6 +36,17 @@ KAPPAS = {"inner_ratio": "-", "outer_ratio": "-"}
 SPLINES = {"friction_radius": "m", "inner_spline_radius": "m", "outer_spline_radius": "m"}
 HEAT = {"friction_work": "J", "switching_rate": "1/s"}
 COOLING = {"heat_transfer": "W/(m2 K)", "cooled_area": "m2"}
+
+
+def positional(function):
+    """Formulas that the search keeps as one node take their arguments by position."""
+
+    @wraps(function)
+    def call(**values):
+        return function(*values.values())
+
+    return call
+
 
 CASES = [
     (ring.mean_diameter, {"outer_diameter": "m", "inner_diameter": "m"}, "m"),
@@ -72,10 +85,10 @@ CASES = [
     ),
     (guide_friction.guide_number, {"mu": "-", "mu_guide": "-", **SPLINES}, "-"),
     (guide_friction.damped_guide_number, {"guide_number": "-"}, "-"),
-    (guide_friction.sum_geometric, {"surfaces": "-", "guide_number": "-"}, "-"),
-    (guide_friction.sum_lipka, {"surfaces": "-", "guide_number": "-"}, "-"),
+    (positional(guide_friction.sum_geometric), {"surfaces": "-", "guide_number": "-"}, "-"),
+    (positional(guide_friction.sum_lipka), {"surfaces": "-", "guide_number": "-"}, "-"),
     (guide_friction.sum_exponential_k, {"surfaces": "-", "guide_number": "-"}, "-"),
-    (guide_friction.sum_exact, {"surfaces": "-", **KAPPAS}, "-"),
+    (positional(guide_friction.sum_exact), {"surfaces": "-", **KAPPAS}, "-"),
     *(
         (partial(guide_friction.torque_sum_factor, series), {"surfaces": "-", **KAPPAS}, "-")
         for series in guide_friction.GUIDE_SERIES
@@ -149,6 +162,11 @@ CASES = [
     (heat.power_density, {"slip_power": "W", "area": "m2"}, "W/m2"),
     (heat.mean_temperature_rise, {**HEAT, **COOLING}, "K"),
     (heat.thermal_time_constant, {"heat_capacity": "J/K", **COOLING}, "s"),
+    (
+        positional(heat.peak_rise_per_work),
+        {"switching_rate": "1/s", "heat_capacity": "J/K", **COOLING},
+        "K/J",
+    ),
     (heat.peak_temperature_rise, {**HEAT, "heat_capacity": "J/K", **COOLING}, "K"),
     (heat.adiabatic_rise, {"friction_work": "J", "mass": "kg", "specific_heat": "J/(kg K)", "share": "-"}, "K"),
     (
@@ -165,7 +183,7 @@ CASES = [
     (heat.allowed_work_at_rate, {"single_work": "J", "transition_rate": "1/s", "switching_rate": "1/s"}, "J"),
     (
         plates.annulus_mass,
-        {"density": "kg/m3", "count": "-", "thickness": "m", "outer_radius": "m", "inner_radius": "m"},
+        {"density": "kg/m3", "count": "-", "thickness": "m", "mean_diameter": "m", "width": "m"},
         "kg",
     ),
     (plates.lining_mass, {"density": "kg/m3", "thickness": "m", "area": "m2"}, "kg"),
@@ -273,3 +291,28 @@ def test_no_formula_is_left_out():
             if member.__module__ == module.__name__ and not name.startswith("_")
         }
         assert public <= covered, public - covered
+
+
+@pytest.mark.parametrize("name", sorted(n for n in TABLE if n.startswith("problems.mechanics.")))
+def test_elasticities_of_functions_kept_as_one_node(name):
+    """The search trusts these ranges: d log f / d log x, by central differences over wide samples."""
+    function = TABLE[name]
+    arguments = list(inspect.signature(function.formula).parameters)
+    # ratios of guide friction end at 1, where plates jam; the others are sampled over many decades
+    top = {"inner_ratio": 0.95, "outer_ratio": 0.95, "surfaces": 60.0, "guide_number": 5.0}
+    rng = np.random.default_rng(3)
+    for _ in range(400):
+        point = [np.exp(rng.uniform(np.log(1e-3), np.log(top.get(a, 1e3)))) for a in arguments]
+        if "surfaces" in arguments:
+            point[arguments.index("surfaces")] = 2.0 * rng.integers(1, 31)
+        value = float(function.formula(*point))
+        if not np.isfinite(value) or value <= 0:
+            pytest.fail(f"{name}{tuple(point)} = {value}")
+        for k, (least, largest) in enumerate(function.elasticity):
+            step = 1e-4
+            up, down = (
+                float(function.formula(*[x * np.exp(s) if i == k else x for i, x in enumerate(point)]))
+                for s in (step, -step)
+            )
+            slope = (np.log(up) - np.log(down)) / (2 * step)
+            assert least - 1e-8 <= slope <= largest + 1e-8, (arguments[k], point, slope)

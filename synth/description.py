@@ -1,0 +1,193 @@
+"""What a design problem declares, as one table for people and programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from synth.declaration import Declaration, Part, Requirement, Variable
+from synth.instance import as_catalogs, number
+from synth.model import part_column_value
+from synth.problem import DesignProblem, load
+from synth.tables import Catalogs
+from synth.units import from_si
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COLUMNS = (
+    "kind",
+    "name",
+    "symbol",
+    "unit",
+    "default",
+    "lower",
+    "upper",
+    "choices",
+    "optional",
+    "sense",
+    "text",
+    "source",
+    "classification",
+)
+
+
+def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None) -> pd.DataFrame:
+    """List everything a problem declares.
+
+    Parameters
+    ----------
+    p : family name, DesignProblem subclass or instance
+        The options of an instance are respected.
+    catalogs : optional
+        Part tables, as for ``synthesize``.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per option, requirement, variable, count, choice, slot, column used, derived quantity, limit,
+        objective, refusal and advice; numbers in the unit of their row, defaults that follow from other
+        quantities as text. Limits of optional requirements are included.
+
+    Raises
+    ------
+    InputError
+        When the family or an option is unknown.
+
+    Examples
+    --------
+    >>> import synth
+    >>> table = synth.describe("multi_plate_clutch").set_index("name")
+    >>> str(table.loc["load_torque", "unit"]), str(table.loc["load_torque", "symbol"])
+    ('N*m', 'M_load')
+    """
+    import pandas as pd  # costly to import; only this function needs it here
+
+    problem = load(p)
+    tables = as_catalogs(catalogs)
+    everything = frozenset(problem.model(frozenset(), tables).declaration.requirements)
+    d = problem.model(everything, tables).declaration
+    rows = [_row("option", o, default=o.default, choices=", ".join(o.choices)) for o in d.options.values()]
+    fixed_rows = _row_values(d, tables)
+    rows += [_requirement(r, fixed_rows) for r in d.requirements.values()]
+    rows += [_variable(v) for v in d.variables.values()]
+    rows += [
+        _row("count", c, lower=float(c.values[0]), upper=float(c.values[-1]), choices=_values(c.values))
+        for c in d.counts.values()
+    ]
+    rows += [_row("choice", c, unit="", choices=", ".join(c.labels)) for c in d.choices.values()]
+    for part in d.slots.values():
+        where = " and ".join(part.where)
+        rows.append(
+            _row("slot", part, name=part.slot, choices=f"rows of {part.table}" + (f" where {where}" if where else ""))
+        )
+        rows += _columns(part, tables)
+    rows += [_row("derived", q) for q in d.derived.values()]
+    rows += [_row("limit", x, sense=x.sense) for x in d.limits.values()]
+    units = {name: unit for name, unit, _ in d.quantities()}
+    rows += [
+        _row("objective", o, unit=units[o.name], sense=o.sense, default="yes" if o.default else "no")
+        for o in d.objectives.values()
+    ]
+    rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
+    rows += [_row("advice", a, name=a.code, text=a.message) for a in d.advices]
+    frame = pd.DataFrame({c: [row[c] for row in rows] for c in COLUMNS if c != "default"})
+    # One column of numbers, words and nothing: kept as it is, never turned into text.
+    frame.insert(COLUMNS.index("default"), "default", pd.Series([row["default"] for row in rows], dtype=object))
+    return frame
+
+
+def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:
+    fields = vars(record)  # asked for an attribute it does not have, a Part takes it for a column of its table
+    row: dict[str, Any] = {column: fields.get(column, "") for column in ("name", "symbol", "unit", "text", "source")}
+    row |= {"kind": kind, "default": None, "lower": math.nan, "upper": math.nan}
+    row |= {"choices": "", "optional": False, "sense": "", "classification": ""}
+    return row | known
+
+
+def _row_values(d: Declaration, tables: Catalogs) -> dict[str, float]:
+    """Return the SI values of the columns of fixed rows, which defaults may be made of."""
+    values: dict[str, float] = {}
+    for row in d.rows.values():
+        table = tables.table(row.table)
+        index = table.row_index(row.slot.split(":", 1)[1])
+        for column in row.columns.values():
+            numbers = {c: table.number(c)[[index]] for c in column.columns}
+            values[str(column.sx)] = float(part_column_value(column, numbers)[0])
+    return values
+
+
+def _requirement(r: Requirement, fixed_rows: Mapping[str, float]) -> dict[str, Any]:
+    default = r.default
+    if isinstance(default, float):
+        default = from_si(default, r.unit)
+    elif default is not None:
+        default = _expression(default, r.unit, fixed_rows)
+    return _row(
+        "requirement",
+        r,
+        default=default,
+        lower=_bound(r.lower, r.unit),
+        upper=_bound(r.upper, r.unit),
+        optional=r.optional,
+    )
+
+
+def _expression(expression: Any, unit: str, fixed_rows: Mapping[str, float]) -> float | str:
+    """Return a default as a number in its unit where it is one, otherwise as text."""
+    symbolic = ca.SX(expression)
+    if all(str(symbol) in fixed_rows for symbol in ca.symvar(symbolic)):
+        return float(from_si(number(symbolic, fixed_rows), unit))
+    text = str(symbolic)
+    return text[1:-1] if text.startswith("(") and _closes_last(text) else text
+
+
+def _closes_last(text: str) -> bool:
+    """Tell whether the bracket that opens first closes last."""
+    depth = 0
+    for position, sign in enumerate(text):
+        depth += (sign == "(") - (sign == ")")
+        if depth == 0:
+            return position == len(text) - 1
+    return False
+
+
+def _variable(v: Variable) -> dict[str, Any]:
+    grid = np.asarray(from_si(v.grid, v.unit)) if len(v.grid) else v.grid
+    return _row("variable", v, lower=_bound(v.lower, v.unit), upper=_bound(v.upper, v.unit), choices=_values(grid))
+
+
+def _bound(si: float, unit: str) -> float:
+    return float(from_si(si, unit)) if math.isfinite(si) else math.nan
+
+
+def _values(values: np.ndarray) -> str:
+    """Return the makeable values in short: all of a few, the first and last of many."""
+    texts = [f"{x:.6g}" for x in values]
+    if len(texts) <= 8:
+        return ", ".join(texts)
+    return f"{', '.join(texts[:3])} .. {texts[-1]} ({len(texts)} values)"
+
+
+def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
+    table = tables.table(part.table)
+    rows = []
+    for entry in part.columns.values():
+        column = next((table.column(c) for c in entry.columns if table.has(c)), None)
+        rows.append(
+            _row(
+                "column",
+                part,
+                name=f"{part.slot}.{'|'.join(entry.columns)}",
+                symbol=f"{part.slot}.{column.symbol}" if column is not None and column.symbol else "",
+                unit=column.unit if column is not None and column.unit else "-",
+                text=(column.description if column is not None else "not in this table"),
+                source=f"table {part.table}",
+                optional=not entry.required,
+            )
+        )
+    return rows

@@ -1,0 +1,271 @@
+"""One question prepared for the search: limits and objectives as rows, boxes, propagation, NLP."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.feasibility import TOLERANCE, holds, residual
+from synth.instance import Instance
+from synth.intervals import Cut, Goal, Propagator
+from synth.model import Evaluation
+from synth.nlp import ParametricNlp, Rows, Solution, Task
+
+CHUNK = 4096
+SNAP = 1e-9
+PINNED = 1e-12
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """A batch of boxes: the combination of each, its bounds, and lower bounds of the objectives."""
+
+    combination: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    bounds: np.ndarray
+    scores: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.combination)
+
+    def take(self, rows: np.ndarray) -> Boxes:
+        """Return some of the boxes, by mask or positions."""
+        return Boxes(self.combination[rows], self.low[rows], self.high[rows], self.bounds[rows], self.scores[rows])
+
+    @staticmethod
+    def joined(batches: Sequence[Boxes]) -> Boxes:
+        """Return several batches as one."""
+        return Boxes(
+            np.concatenate([b.combination for b in batches]),
+            np.concatenate([b.low for b in batches]),
+            np.concatenate([b.high for b in batches]),
+            np.concatenate([b.bounds for b in batches]),
+            np.concatenate([b.scores for b in batches]),
+        )
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A feasible design the search has found: its combination, SI variables and objectives as phi."""
+
+    combination: int
+    variables: np.ndarray
+    phi: np.ndarray
+
+
+class Formulation:
+    """A question, ready to be searched.
+
+    Parameters
+    ----------
+    instance : Instance
+    objectives : mapping
+        All objectives of interest with their sense: those to trade off first, then those that settle ties.
+    """
+
+    def __init__(self, instance: Instance, objectives: Mapping[str, str]) -> None:
+        self.instance = instance
+        self.model = model = instance.model
+        self.n = len(model.variables)
+        self.names = list(objectives)
+        self.goals = [
+            Goal(model.quantity_node[name], 1 if sense == "min" else -1) for name, sense in objectives.items()
+        ]
+        cuts = [Cut(x.sense, *model.limit_nodes[x.name], x.scale) for x in model.limits]
+        cuts += [Cut(x.sense, model.quantity_node[x.quantity], None, 1e-9, x.limit) for x in instance.extra]
+        self.cuts = cuts
+        self.bounds = [cut.bound for cut in cuts]
+        self.propagator = Propagator(model.program, self.n, cuts, self.goals)
+        self.lower, self.upper = instance.lower, instance.upper
+        self.grids = instance.grids()
+        self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
+        self.log_goals = np.zeros(len(self.goals), dtype=bool)
+        self.goal_scales = np.ones(len(self.goals))
+        self.contracted = 0
+        self.nlp_solves = 0
+        self.solved_combinations: set[int] = set()
+        self.archive: list[Candidate] = []
+        self._nlp: ParametricNlp | None = None
+        self._positive_cuts = np.ones(len(cuts), dtype=bool)
+
+    # -- boxes ---------------------------------------------------------------------------------
+
+    def root(self, combinations: np.ndarray, passes: int = 3) -> Boxes:
+        """Return the boxes of the combinations that no bound excludes, over the whole range of the variables."""
+        n, m = len(combinations), len(self.goals)
+        start = Boxes(
+            combinations,
+            np.broadcast_to(self.lower, (n, self.n)),
+            np.broadcast_to(self.upper, (n, self.n)),
+            np.full((n, m), -np.inf),
+            np.zeros((n, self.n)),
+        )
+        return self.contract(start.take(self._not_refused(combinations)), None, passes)
+
+    def _not_refused(self, combinations: np.ndarray) -> np.ndarray:
+        keep = np.ones(len(combinations), dtype=bool)
+        for refusal in self.instance.joint_refusals:
+            used = self.model.function(("refusal", refusal.code), lambda r=refusal: self._refusal_program(r.when))
+            keep &= ~(np.asarray(used([None] * self.n + self.instance.data(combinations))[0]) > 0.5)
+        return keep
+
+    def _refusal_program(self, when: object) -> object:
+        from synth.program import Program
+
+        return Program(self.model.inputs, [when], self.model.calls).compile()
+
+    def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2) -> Boxes:
+        """Return what survives of the boxes, tightened and snapped to the grid; ``caps`` bound phi."""
+        kept = [self._contract(boxes.take(np.arange(k, min(k + CHUNK, len(boxes)))), caps, passes)
+                for k in range(0, len(boxes), CHUNK)]  # fmt: skip
+        return Boxes.joined(kept) if kept else boxes
+
+    def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int) -> Boxes:
+        self.contracted += len(boxes)
+        data = self.instance.data(boxes.combination)
+        limits = None if caps is None else list(self.values_of(caps))
+        result = self.propagator.contract(boxes.low, boxes.high, data, limits, passes)
+        # An active limit loosened by the slack must not cost a grid point or a pinned value.
+        low, high, alive = result.low, result.high, result.alive
+        low, high = np.maximum(low, self.lower), np.minimum(high, self.upper)
+        for k, grid in enumerate(self.grids):
+            if len(grid):
+                first = np.searchsorted(grid, low[:, k] * (1 - SNAP) - PINNED)
+                last = np.searchsorted(grid, high[:, k] * (1 + SNAP) + PINNED, side="right") - 1
+                alive = alive & (first <= last)
+                low[:, k] = grid[np.minimum(first, len(grid) - 1)]
+                high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
+        alive = alive & ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
+        high = np.maximum(high, low)
+        bounds = np.maximum(result.bounds, boxes.bounds)
+        if alive.any():
+            self._positive_cuts &= result.positive_cuts
+        return Boxes(boxes.combination, low, high, bounds, result.scores).take(alive)
+
+    def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
+        """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
+        width = self._widths(boxes)
+        score = np.where(width > 0, boxes.scores * 1.0, -1.0)
+        # Where no score tells (nothing depends on the box any more, or the slopes are unbounded) the widest is split.
+        flat = ~np.any((score > 1e-9) & (width > 0), axis=1)
+        score[flat] = np.where(width[flat] > 0, width[flat], -1.0)
+        small = ~np.any(width > 0, axis=1)
+        rest, whole = boxes.take(small), boxes.take(~small)
+        variable = np.argmax(score[~small], axis=1)
+        rows = np.arange(len(whole))
+        low, high = whole.low[rows, variable], whole.high[rows, variable]
+        left_end, right_start = self._middle(variable, low, high)
+        left, right = whole.high.copy(), whole.low.copy()
+        left[rows, variable], right[rows, variable] = left_end, right_start
+        halves = Boxes.joined([
+            Boxes(whole.combination, whole.low, left, whole.bounds, whole.scores),
+            Boxes(whole.combination, right, whole.high, whole.bounds, whole.scores),
+        ])  # fmt: skip
+        return halves, rest
+
+    def _widths(self, boxes: Boxes) -> np.ndarray:
+        """Return relative widths, 0 where a variable cannot be split any more."""
+        size = np.maximum(np.abs(boxes.low), np.abs(boxes.high))
+        span = boxes.high - boxes.low
+        floor = np.where(self.gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * (self.upper - self.lower)))
+        with np.errstate(all="ignore"):
+            return np.where(span > floor, span / np.maximum(size, 1e-300), 0.0)
+
+    def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        with np.errstate(all="ignore"):
+            middle = np.where(low > 0, np.sqrt(low * high), 0.5 * (low + high))
+        left, right = middle.copy(), middle.copy()
+        for k, grid in enumerate(self.grids):
+            rows = np.flatnonzero(variable == k)
+            if len(grid) and len(rows):
+                first = np.searchsorted(grid, low[rows] * (1 - SNAP) - PINNED)
+                last = np.searchsorted(grid, high[rows] * (1 + SNAP) + PINNED, side="right") - 1
+                cut = (first + last) // 2
+                left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
+        return left, right
+
+    def on_grid(self, boxes: Boxes) -> np.ndarray:
+        """Tell which boxes hold one value only of every gridded variable."""
+        return np.all((boxes.high - boxes.low <= SNAP * np.abs(boxes.high)) | ~self.gridded, axis=1)
+
+    # -- objectives ----------------------------------------------------------------------------
+
+    def settle_objectives(self, boxes: Boxes) -> None:
+        """Decide, from the root boxes, which objectives are surely positive and enter by logarithm."""
+        smallest = boxes.bounds.min(axis=0)
+        signs = np.array([goal.sign for goal in self.goals])
+        self.log_goals = (smallest > 0) & (signs > 0)
+        sample = boxes.take(np.linspace(0, len(boxes) - 1, min(len(boxes), 200)).astype(int))
+        result = self.evaluate(0.5 * (sample.low + sample.high), sample.combination)
+        for j, name in enumerate(self.names):
+            sizes = np.abs(result.values[name])
+            sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
+            self.goal_scales[j] = 1.0 if self.log_goals[j] or not len(sizes) else float(np.median(sizes))
+        self._nlp = None
+
+    def values_of(self, phi: np.ndarray) -> np.ndarray:
+        """Return signed objective values for phi."""
+        with np.errstate(all="ignore"):
+            return np.where(self.log_goals, np.exp(phi), phi * self.goal_scales)
+
+    def phi_of(self, values: np.ndarray) -> np.ndarray:
+        """Return phi for signed objective values (batch, objectives)."""
+        with np.errstate(all="ignore"):
+            logs = np.log(np.where(self.log_goals, np.maximum(values, 1e-300), 1.0))
+        return np.where(self.log_goals, logs, values / self.goal_scales)
+
+    # -- points --------------------------------------------------------------------------------
+
+    def evaluate(self, variables: np.ndarray, combinations: np.ndarray) -> Evaluation:
+        """Evaluate a batch of designs."""
+        return self.model.evaluate(variables, self.instance.data(np.asarray(combinations)))
+
+    def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
+        """Return those of the points that are feasible, as candidates."""
+        result = self.evaluate(variables, combinations)
+        feasible = result.feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
+        for extra in self.instance.extra:
+            r = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
+            feasible = feasible & holds(r, guard=False)
+        signed = np.stack(
+            [g.sign * result.values[name] for g, name in zip(self.goals, self.names, strict=True)], axis=1
+        )
+        phi = self.phi_of(signed)
+        feasible = feasible & np.all(np.isfinite(phi), axis=1)
+        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in np.flatnonzero(feasible)]
+
+    # -- the continuous problem ----------------------------------------------------------------
+
+    def nlp(self) -> ParametricNlp:
+        """Return the NLP of this question; built once per model and set of rows."""
+        if self._nlp is None:
+            log_variables = tuple(bool(x > 0) for x in self.lower)
+            rows = Rows(
+                cuts=tuple(Cut(c.sense, c.value, c.limit, c.scale) for c in self.cuts),
+                goals=tuple(self.goals),
+                log_cuts=tuple(
+                    bool(p) and c.sense != "equal" for p, c in zip(self._positive_cuts, self.cuts, strict=True)
+                ),
+                log_goals=tuple(bool(x) for x in self.log_goals),
+                log_variables=log_variables,
+            )
+            self._nlp = self.model.function(rows, lambda: ParametricNlp(self.model.program, self.n, rows))
+        return self._nlp
+
+    def solve(
+        self, task: Task, combination: int, start: np.ndarray, low: np.ndarray, high: np.ndarray, gradient: bool = False
+    ) -> Solution | None:
+        """Solve the continuous problem of one combination inside a box, from one start."""
+        data = [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.array([combination]))]
+        self.solved_combinations.add(combination)
+        self.nlp_solves += 1
+        void = np.zeros(len(self.cuts), dtype=bool)
+        for j, limit in enumerate(self.model.limits):
+            void[j] = any(np.isnan(data[k]) for k in self.model.void_inputs[limit.name])
+        return self.nlp().solve(task, data, start, low, high, self.bounds, void, gradient)
+
+
+__all__ = ["TOLERANCE", "Boxes", "Candidate", "Formulation"]

@@ -1,0 +1,156 @@
+"""Dominance, the zones in which a further Pareto point may lie, and the ranking of a front."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import moocore
+import numpy as np
+
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A region ``phi < upper`` that may hold a further non-dominated point.
+
+    ``upper`` comes from known points: component k from the point ``makers[k]`` (None: the nadir).
+    """
+
+    upper: np.ndarray
+    makers: tuple[int | None, ...]
+
+
+class Zones:
+    """Search zones of a growing front of any dimension (local upper bounds, Klamroth et al. 2015).
+
+    Parameters
+    ----------
+    ideal, nadir : array (objectives,)
+        Corners of the region of interest, in phi.
+    """
+
+    def __init__(self, ideal: np.ndarray, nadir: np.ndarray) -> None:
+        self.ideal, self.nadir = ideal, nadir
+        self.range = np.maximum(nadir - ideal, 1e-300)
+        self.points: list[np.ndarray] = []
+        self.zones = [Zone(nadir.copy(), (None,) * len(nadir))]
+
+    def add(self, point: np.ndarray) -> None:
+        """Take a new non-dominated point: zones that it lies in are replaced by what remains of them."""
+        number = len(self.points)
+        self.points.append(point)
+        kept, made = [], []
+        for zone in self.zones:
+            if not np.all(point < zone.upper - SAME * self.range):
+                kept.append(zone)
+                continue
+            for k in range(len(point)):
+                upper = zone.upper.copy()
+                upper[k] = point[k]
+                makers = tuple(number if j == k else m for j, m in enumerate(zone.makers))
+                if np.all(upper > self.ideal + SAME * self.range):
+                    made.append(Zone(upper, makers))
+        self.zones = kept + self._irredundant(made, kept)
+
+    @staticmethod
+    def _irredundant(made: list[Zone], kept: list[Zone]) -> list[Zone]:
+        result: list[Zone] = []
+        for zone in made:
+            others = [z for z in made + kept if z is not zone]
+            inside = any(
+                np.all(zone.upper <= z.upper) and (np.any(zone.upper < z.upper) or z in result) for z in others
+            )
+            if not inside:
+                result.append(zone)
+        return result
+
+    def lower(self, zone: Zone) -> np.ndarray:
+        """Return the corner from which the middle of a zone is sought: what its makers leave possible."""
+        result = self.ideal.copy()
+        if len(result) == 2:
+            # Between two neighbours the front cannot fall below what each of them reached.
+            for k, maker in enumerate(zone.makers):
+                if maker is not None:
+                    other = 1 - k
+                    result[other] = max(result[other], self.points[maker][other])
+        return np.minimum(result, zone.upper - SAME * self.range)
+
+    def size(self, zone: Zone) -> float:
+        """Return how large a hole in the front the zone is, 0 .. 1."""
+        edges = np.clip((zone.upper - self.lower(zone)) / self.range, 0.0, None)
+        if len(edges) == 2:
+            return float(np.linalg.norm(edges) / np.sqrt(2))
+        return float(np.prod(edges) ** (1 / len(edges)))
+
+    def close(self, zone: Zone) -> None:
+        """Take a zone away that was found to hold nothing."""
+        self.zones = [z for z in self.zones if z is not zone]
+
+
+def non_dominated(phi: np.ndarray) -> np.ndarray:
+    """Return the mask of the non-dominated rows; of equal rows the first is kept."""
+    if not len(phi):
+        return np.zeros(0, dtype=bool)
+    return np.asarray(moocore.is_nondominated(phi, keep_weakly=False), dtype=bool)
+
+
+def spread_subset(phi: np.ndarray, count: int) -> np.ndarray:
+    """Return positions of at most ``count`` rows: the extremes, then always the one farthest from those taken."""
+    if len(phi) <= count:
+        return np.arange(len(phi))
+    span = np.maximum(phi.max(axis=0) - phi.min(axis=0), 1e-300)
+    unit = (phi - phi.min(axis=0)) / span
+    taken = list(dict.fromkeys(int(np.argmin(unit[:, k])) for k in range(unit.shape[1])))[:count]
+    distance = np.min(np.linalg.norm(unit[:, None, :] - unit[None, taken, :], axis=2), axis=1)
+    while len(taken) < count:
+        farthest = int(np.argmax(distance))
+        taken.append(farthest)
+        distance = np.minimum(distance, np.linalg.norm(unit - unit[farthest], axis=1))
+    return np.sort(np.array(taken))
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Order of the designs of a front (positions, best first), their scores and notes."""
+
+    order: list[int]
+    scores: np.ndarray
+    notes: list[str]
+
+
+def rank(objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[float]) -> Ranking:
+    """Rank designs by their weighted distance to the ideal point.
+
+    Parameters
+    ----------
+    objectives : mapping
+        Names and senses.
+    values : array (designs, objectives)
+        SI.
+    weights : list of float
+        One per objective.
+
+    Returns
+    -------
+    Ranking
+    """
+    signs = np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
+    signed = values * signs
+    ideal, nadir = signed.min(axis=0), signed.max(axis=0)
+    unit = np.where(nadir > ideal, (signed - ideal) / np.where(nadir > ideal, nadir - ideal, 1.0), 0.0)
+    share = np.asarray(weights, dtype=float) / np.sum(weights)
+    scores = np.sqrt(np.sum(share * unit**2, axis=1))
+    keys = [*(np.round(signed[:, k], 15) for k in reversed(range(signed.shape[1]))), np.round(scores, 12)]
+    order = [int(k) for k in np.lexsort(keys)]
+    notes: list[list[str]] = [[] for _ in order]
+    if len(order) > 1:
+        for k, (name, sense) in enumerate(objectives.items()):
+            word = "smallest" if sense == "min" else "largest"
+            notes[int(np.argmin(signed[:, k]))].append(f"{word} {name}")
+        if len(order) > 2 and signed.shape[1] > 1:
+            notes[int(np.argmin(unit.sum(axis=1)))].append("knee")
+    else:
+        notes[0].append("only non-dominated design" if signed.shape[1] > 1 else "optimum")
+    return Ranking(order, scores, ["; ".join(n) for n in notes])

@@ -1,0 +1,429 @@
+"""Spec files: a design question (or a given design) written as YAML or JSON, read strictly."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import yaml
+
+from synth.errors import InputError
+
+LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A design question as it stands in a file; what was not written is None (or an empty mapping).
+
+    ``file`` is the path as it was given and ``folder`` the place that relative catalogue paths start from.
+    """
+
+    family: str
+    options: Mapping[str, str]
+    requirements: Mapping[str, Any]
+    objectives: Any
+    limits: Mapping[str, Any]
+    fix: Mapping[str, Any]
+    parts: Mapping[str, Any]
+    catalogs: Any
+    weights: Mapping[str, float]
+    values: Mapping[str, Any] | None
+    points: int | None
+    gap: float | None
+    grid: bool | None
+    seed: int | None
+    time_limit: float | None
+    workers: int | None
+    file: str
+    folder: Path
+
+    def merged(self, **flags: Any) -> Spec:
+        """Return the spec with some of its keys replaced; flags that are None change nothing.
+
+        Parameters
+        ----------
+        **flags
+            Keys of a spec, for example ``points=10``.
+
+        Raises
+        ------
+        InputError
+            When a key is unknown or a value is not of its kind.
+        """
+        given = {key: value for key, value in flags.items() if value is not None}
+        for key, value in given.items():
+            if key not in FIELDS:
+                raise InputError("flag", key, _hint(key))
+            given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
+        return replace(self, **given)
+
+    def search_settings(self) -> dict[str, Any]:
+        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart."""
+        names = (
+            "objectives",
+            "limits",
+            "fix",
+            "parts",
+            "weights",
+            "points",
+            "gap",
+            "grid",
+            "seed",
+            "time_limit",
+            "workers",
+        )
+        stated = {name: getattr(self, name) for name in names}
+        return {name: value for name, value in stated.items() if value is not None and value != {}}
+
+
+# ---- what each key may hold -----------------------------------------------------------------------------------------
+
+
+class _Described:
+    """Stands for a value in a message: ``got a list`` says more than the list itself."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+def _kind(value: Any) -> Any:
+    """Return what to show of a value that is of the wrong kind."""
+    if value is None:
+        return _Described("nothing")
+    if isinstance(value, Mapping):
+        return _Described("a mapping")
+    if isinstance(value, (list, tuple)):
+        return _Described("a list")
+    return value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _text(where: str, value: Any) -> str:
+    if not isinstance(value, str) or not value.strip():
+        raise InputError(where, _kind(value), "a name")
+    return value
+
+
+def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
+    def check(where: str, value: Any) -> Mapping[str, Any]:
+        if value is None:
+            return MappingProxyType({})  # a key with nothing under it: all its lines are commented out
+        if not isinstance(value, Mapping):
+            raise InputError(where, _kind(value), f"a mapping, for example '{example}'")
+        for key in value:
+            if not isinstance(key, str):
+                raise InputError(
+                    where, key, "names on the left of the colons (in quotes if YAML takes them for a number)"
+                )
+        return MappingProxyType(dict(value))
+
+    return check
+
+
+def _options(where: str, value: Any) -> Mapping[str, str]:
+    options = dict(_mapping("guide_model: cz")(where, value))
+    for name, chosen in options.items():
+        if isinstance(chosen, bool):
+            options[name] = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
+        elif not isinstance(chosen, str):
+            raise InputError(f"{where}: {name}", _kind(chosen), "one of the words that clutchsynth describe lists")
+    return MappingProxyType(options)
+
+
+def _scalars(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
+    def check(where: str, value: Any) -> Mapping[str, Any]:
+        checked = _mapping(example)(where, value)
+        for name, entry in checked.items():
+            if isinstance(entry, (Mapping, list, tuple)):
+                raise InputError(f"{where}: {name}", _kind(entry), f"one value, for example '{example}'")
+        return checked
+
+    return check
+
+
+def _lists(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
+    def check(where: str, value: Any) -> Mapping[str, Any]:
+        checked = _mapping(example)(where, value)
+        for name, entry in checked.items():
+            entries = entry if isinstance(entry, (list, tuple)) else [entry]
+            if not entries or not all(isinstance(x, str) for x in entries):
+                raise InputError(f"{where}: {name}", _kind(entry), f"text or a list of texts, for example '{example}'")
+        return checked
+
+    return check
+
+
+def _objectives(where: str, value: Any) -> Any:
+    example = "names, for example '[mass, actuation_force]', or names with min or max, for example '{mass: min}'"
+    if value is None:
+        return None
+    if isinstance(value, str):
+        value = [value]
+    if isinstance(value, Mapping):
+        if not all(isinstance(k, str) and isinstance(v, str) for k, v in value.items()):
+            raise InputError(where, _kind(value), example)
+        return MappingProxyType(dict(value))
+    if not isinstance(value, (list, tuple)) or not all(isinstance(x, str) for x in value):
+        raise InputError(where, _kind(value), example)
+    return tuple(value)
+
+
+def _catalogs(where: str, value: Any) -> Any:
+    if value is None or isinstance(value, str):
+        return value
+    expected = "a folder, or a mapping such as 'friction_materials: my_materials.csv' or 'core_plates: [+, more.csv]'"
+    if not isinstance(value, Mapping):
+        raise InputError(where, _kind(value), expected)
+    for table, source in value.items():
+        entries = source if isinstance(source, (list, tuple)) else [source]
+        if not isinstance(table, str) or not all(isinstance(x, str) for x in entries):
+            raise InputError(f"{where}: {table}", _kind(source), expected)
+    return MappingProxyType(dict(value))
+
+
+def _weights(where: str, value: Any) -> Mapping[str, float]:
+    weights = _mapping("mass: 2")(where, value)
+    for name, weight in weights.items():
+        if not _is_number(weight) or weight < 0:
+            raise InputError(f"{where}: {name}", _kind(weight), "a number, zero or more")
+    return weights
+
+
+def _whole(least: int) -> Callable[[str, Any], int | None]:
+    def check(where: str, value: Any) -> int | None:
+        if value is None:
+            return None
+        if not isinstance(value, int) or isinstance(value, bool) or value < least:
+            raise InputError(where, _kind(value), f"a whole number, {least} or more")
+        return value
+
+    return check
+
+
+def _gap(where: str, value: Any) -> float | None:
+    if value is None:
+        return None
+    if not _is_number(value) or not 0 < value < 1:
+        raise InputError(where, _kind(value), "a fraction above 0 and below 1, for example 0.001")
+    return float(value)
+
+
+def _grid(where: str, value: Any) -> bool | None:
+    if value is None or isinstance(value, bool):
+        return value
+    raise InputError(where, _kind(value), "true (makeable sizes) or false")
+
+
+def _seconds(where: str, value: Any) -> float | None:
+    if value is None:
+        return None
+    if isinstance(value, str):
+        from synth.units import parse_quantity  # NumPy comes with it; --help does without
+
+        value = parse_quantity(value, "s", where)
+    if not _is_number(value) or value <= 0:
+        raise InputError(where, _kind(value), "a time above zero, in seconds or with a unit such as '2 min'")
+    return float(value)
+
+
+FIELDS: dict[str, Callable[[str, Any], Any]] = {
+    "family": _text,
+    "options": _options,
+    "requirements": _scalars("load_torque: 600 N*m"),
+    "objectives": _objectives,
+    "limits": _lists("outer_diameter: '<= 260 mm'"),
+    "fix": _scalars("ramp_time: 2 s"),
+    "parts": _lists("friction_pair: [designation]"),
+    "catalogs": _catalogs,
+    "weights": _weights,
+    "values": _scalars("friction_surfaces: 10"),
+    "points": _whole(1),
+    "gap": _gap,
+    "grid": _grid,
+    "seed": _whole(0),
+    "time_limit": _seconds,
+    "workers": _whole(1),
+}
+
+
+def _hint(key: Any) -> str:
+    close = difflib.get_close_matches(str(key), FIELDS, n=1, cutoff=0.6)
+    return f"{close[0]}" if close else "one of " + ", ".join(FIELDS)
+
+
+def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
+    """Check a mapping that was read from a file (or came another way) and make a Spec of it.
+
+    Parameters
+    ----------
+    content : object
+        What stands in the file.
+    file : str
+        Its name, for messages.
+    folder : Path
+        Folder that relative catalogue paths start from.
+
+    Raises
+    ------
+    InputError
+        When a key is unknown or missing, or a value is not of its kind.
+    """
+    if not isinstance(content, Mapping):
+        raise InputError(file, _kind(content), "a spec: lines such as 'family: multi_plate_clutch'")
+    for key in content:
+        if key not in FIELDS:
+            raise InputError(f"{file}: key", key, _hint(key))
+    if content.get("family") is None:
+        raise InputError(f"{file}: family", None, "the name of a family; clutchsynth families lists them")
+    checked = {key: check(f"{file}: {key}", content.get(key)) for key, check in FIELDS.items() if key != "values"}
+    checked["values"] = FIELDS["values"](f"{file}: values", content["values"]) if "values" in content else None
+    return Spec(**checked, file=file, folder=folder)
+
+
+# ---- reading the file -----------------------------------------------------------------------------------------------
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML without its surprises: no duplicate keys, no aliases, no octal or base-60 numbers, no dates."""
+
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012  (PyYAML's own habit)
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.events.AliasEvent):
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise yaml.composer.ComposerError(None, None, "an alias (*name); write the value out", mark)
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        seen: set[str] = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    raise yaml.constructor.ConstructorError(
+                        None, None, f"the key {key.value} a second time; write each key once", key.start_mark
+                    )
+                seen.add(key.value)
+        return super().construct_mapping(node, deep=deep)
+
+
+for _tag, _pattern, _first in (
+    ("bool", r"true|True|TRUE|false|False|FALSE|yes|Yes|YES|no|No|NO|on|On|ON|off|Off|OFF", "tTfFyYnNoO"),
+    ("null", r"~|null|Null|NULL|", ["~", "n", "N", ""]),
+    ("int", r"[-+]?[0-9]+", "-+0123456789"),
+    ("float", r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?", "-+.0123456789"),
+):
+    _StrictLoader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
+
+
+def _decimal(loader: yaml.SafeLoader, node: Any) -> int:
+    return int(loader.construct_scalar(node))  # PyYAML's own would read 010 as eight
+
+
+_StrictLoader.add_constructor("tag:yaml.org,2002:int", _decimal)
+
+
+def read_spec(path: str | Path) -> Spec:
+    """Read a spec, or a DESIGN.yaml, strictly.
+
+    Parameters
+    ----------
+    path : str or Path
+        A YAML file, or a JSON file with the ending ``.json``.
+
+    Returns
+    -------
+    Spec
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is not YAML (JSON), has unknown or doubled keys, or a value of the wrong kind.
+    """
+    file = Path(path)
+    shown = str(path)
+    text = _read_text(file, shown)
+    content = _parse_json(text, shown) if file.suffix.lower() == ".json" else _parse_yaml(text, shown)
+    if content is None:
+        raise InputError(shown, _Described("an empty file"), "a spec: lines such as 'family: multi_plate_clutch'")
+    return spec_from_mapping(content, shown, file.parent)
+
+
+def _read_text(file: Path, shown: str) -> str:
+    if file.is_dir():
+        raise InputError("spec", shown, "a file; this is a folder")
+    try:
+        with file.open("rb") as stream:
+            raw = stream.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a possible file name"
+        raise InputError("spec", shown, f"a file that can be read ({reason})") from error
+    if len(raw) > LARGEST_FILE:
+        raise InputError("spec", shown, f"a text file of at most {LARGEST_FILE // 1000} kB")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = "\0"
+    if "\0" in text:
+        raise InputError("spec", shown, "a text file in UTF-8; this one is binary or in another encoding")
+    return text
+
+
+def _parse_json(text: str, shown: str) -> Any:
+    if not text.strip():
+        return None
+
+    def pairs(entries: list[tuple[str, Any]]) -> dict[str, Any]:
+        result: dict[str, Any] = {}
+        for key, value in entries:
+            if key in result:
+                raise InputError(shown, key, "each key once; this one stands twice")
+            result[key] = value
+        return result
+
+    def constant(word: str) -> Any:
+        raise InputError(shown, word, "finite numbers")
+
+    try:
+        return json.loads(text, object_pairs_hook=pairs, parse_constant=constant)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{shown}, line {error.lineno}", _Described(error.msg), "JSON") from error
+    except RecursionError as error:
+        raise InputError(shown, _Described("brackets nested too deeply"), "JSON of a spec") from error
+
+
+def _parse_yaml(text: str, shown: str) -> Any:
+    try:
+        # The loader is a SafeLoader that reads less than its parent, not more.
+        return yaml.load(text, Loader=_StrictLoader)
+    except RecursionError as error:
+        raise InputError(shown, _Described("brackets nested too deeply"), "YAML of a spec") from error
+    except (yaml.YAMLError, ValueError, OverflowError) as error:
+        mark = getattr(error, "problem_mark", None)
+        where = shown if mark is None else f"{shown}, line {mark.line + 1}"
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        raise InputError(where, _Described(problem), _yaml_advice(text, mark, problem)) from error
+
+
+def _yaml_advice(text: str, mark: Any, problem: str) -> str:
+    """Return what to type instead, for the slips that happen."""
+    lines = text.splitlines()
+    line = lines[mark.line] if mark is not None and mark.line < len(lines) else ""
+    if "\t" in line[: len(line) - len(line.lstrip())] or "'\\t'" in problem:
+        return "spaces instead of tabs at the beginning of the line"
+    if re.search(r":\s*[>&*%@`!|]", line):
+        return "quotes around a text that begins with a sign, for example outer_diameter: '>= 200 mm'"
+    return "YAML: one 'name: value' on a line, indented with spaces"
