@@ -14,6 +14,7 @@ from synth.results import Design, ParetoFront
 
 SHOWN = 10  # designs on one screen
 BINDING = 0.999  # a limit used more than this decides something
+BETWEEN = 3  # blanks between two columns
 EQUAL = 1e-9  # relative; objectives closer than this are the same
 
 
@@ -60,7 +61,7 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
     groups: list[list[list[str]]] = []
     room = 0
     for column in columns:
-        needed = _width(column) + 2
+        needed = _width(column) + BETWEEN
         if not groups or needed > room:
             groups.append([ranks])
             room = width - _width(ranks)

@@ -264,8 +264,14 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
     """Print how far the front is proven, what the search did, and the remarks on the leading design."""
     console.print()
     if front.interrupted:
-        console.print(f"stopped: {front.interrupted}; the designs found so far are shown and saved")
-    console.print(front.certificate.sentence())
+        kept = "the designs found so far are shown and saved" if front.designs else "no design was found until then"
+        console.print(f"stopped: {front.interrupted}; {kept}")
+    if front.designs or front.interrupted:
+        console.print(front.certificate.sentence())
+    elif front.certificate.kind == "global":
+        console.print(f"proven: none of the {_brief(front.certificate.combinations)} combinations is feasible")
+    else:
+        console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
     if front.complete and front.designs:
         console.print("the front is complete: no other non-dominated design exists")
     for line in statistics_lines(front.statistics):

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from synth.feasibility import TOLERANCE, holds, residual
+from synth.feasibility import holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal, Propagator
 from synth.model import Evaluation
 from synth.nlp import ParametricNlp, Rows, Solution, Task
+from synth.pareto import non_dominated, spread_subset
 
 CHUNK = 4096
 SNAP = 1e-9
 PINNED = 1e-12
+TIE = 1e-9
+CAP_POINTS = 150
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,57 @@ class Candidate:
     phi: np.ndarray
 
 
+class Archive:
+    """The feasible designs found so far that no other one dominates in the traded objectives.
+
+    Parameters
+    ----------
+    traded : int
+        How many objectives count for dominance.
+    variables, objectives : int
+        Width of the stored rows.
+    """
+
+    def __init__(self, traded: int, variables: int, objectives: int) -> None:
+        self.traded = traded
+        self.combination = np.empty(0, dtype=np.int64)
+        self.variables = np.empty((0, variables))
+        self.phi = np.empty((0, objectives))
+
+    def __len__(self) -> int:
+        return len(self.combination)
+
+    def __getitem__(self, k: int) -> Candidate:
+        return Candidate(int(self.combination[k]), self.variables[k], self.phi[k])
+
+    def __iter__(self) -> Iterator[Candidate]:
+        return (self[k] for k in range(len(self)))
+
+    def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
+        """Take new designs and keep what is not dominated."""
+        if not len(combination):
+            return
+        combination = np.concatenate([self.combination, combination])
+        variables = np.concatenate([self.variables, variables])
+        phi = np.concatenate([self.phi, phi])
+        keep = non_dominated(phi[:, : self.traded])
+        self.combination, self.variables, self.phi = combination[keep], variables[keep], phi[keep]
+
+    def caps(self, lower: np.ndarray) -> np.ndarray:
+        """Return, per box with lower bounds ``lower`` (boxes, objectives), what a design must keep to be of use.
+
+        Cap k is the least value of objective k among the known designs that beat the box in all other objectives.
+        """
+        m = self.traded
+        result = np.full(lower.shape, np.inf)
+        known = self.phi[spread_subset(self.phi[:, :m], CAP_POINTS)][:, :m] if len(self) else self.phi[:, :m]
+        for k in range(m if len(known) else 0):
+            others = [j for j in range(m) if j != k]
+            beaten = np.all(known[None, :, others] <= lower[:, None, others], axis=2)
+            result[:, k] = np.where(beaten, known[None, :, k], np.inf).min(axis=1) + TIE
+        return result
+
+
 class Formulation:
     """A question, ready to be searched.
 
@@ -64,9 +118,11 @@ class Formulation:
     instance : Instance
     objectives : mapping
         All objectives of interest with their sense: those to trade off first, then those that settle ties.
+    traded : int
+        How many, from the first, are traded off against each other.
     """
 
-    def __init__(self, instance: Instance, objectives: Mapping[str, str]) -> None:
+    def __init__(self, instance: Instance, objectives: Mapping[str, str], traded: int) -> None:
         self.instance = instance
         self.model = model = instance.model
         self.n = len(model.variables)
@@ -87,7 +143,7 @@ class Formulation:
         self.contracted = 0
         self.nlp_solves = 0
         self.solved_combinations: set[int] = set()
-        self.archive: list[Candidate] = []
+        self.archive = Archive(traded, self.n, len(self.goals))
         self._nlp: ParametricNlp | None = None
         self._positive_cuts = np.ones(len(cuts), dtype=bool)
 
@@ -117,17 +173,28 @@ class Formulation:
 
         return Program(self.model.inputs, [when], self.model.calls).compile()
 
-    def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2) -> Boxes:
-        """Return what survives of the boxes, tightened and snapped to the grid; ``caps`` bound phi."""
-        kept = [self._contract(boxes.take(np.arange(k, min(k + CHUNK, len(boxes)))), caps, passes)
-                for k in range(0, len(boxes), CHUNK)]  # fmt: skip
+    def contract(
+        self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, combine: np.ndarray | None = None
+    ) -> Boxes:
+        """Return what survives of the boxes, tightened and snapped to the grid.
+
+        ``caps`` bound phi: one row for all boxes, or a row per box. ``combine`` holds multipliers of
+        limits and caps (see ``Propagator``).
+        """
+        kept = []
+        for first in range(0, len(boxes), CHUNK):
+            rows = np.arange(first, min(first + CHUNK, len(boxes)))
+            own = caps if caps is None or caps.ndim == 1 else caps[rows]
+            kept.append(self._contract(boxes.take(rows), own, passes, combine))
         return Boxes.joined(kept) if kept else boxes
 
-    def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int) -> Boxes:
+    def _contract(
+        self, boxes: Boxes, caps: np.ndarray | None, passes: int, combine: np.ndarray | None
+    ) -> Boxes:
         self.contracted += len(boxes)
         data = self.instance.data(boxes.combination)
-        limits = None if caps is None else list(self.values_of(caps))
-        result = self.propagator.contract(boxes.low, boxes.high, data, limits, passes)
+        limits = None if caps is None else list(np.moveaxis(self.values_of(caps), -1, 0))
+        result = self.propagator.contract(boxes.low, boxes.high, data, limits, passes, combine)
         # An active limit loosened by the slack must not cost a grid point or a pinned value.
         low, high, alive = result.low, result.high, result.alive
         low, high = np.maximum(low, self.lower), np.minimum(high, self.upper)
@@ -237,6 +304,45 @@ class Formulation:
         feasible = feasible & np.all(np.isfinite(phi), axis=1)
         return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in np.flatnonzero(feasible)]
 
+    def sample(self, boxes: Boxes, count: int, rng: np.random.Generator) -> None:
+        """Evaluate ``count`` random makeable points per box and keep the feasible ones in the archive."""
+        for first in range(0, len(boxes), CHUNK):
+            part = boxes.take(np.arange(first, min(first + CHUNK, len(boxes))))
+            for _ in range(count):
+                share = rng.random((len(part), self.n))
+                self.candidates(self.makeable(self.inside(part, share)), part.combination)
+
+    def inside(self, boxes: Boxes, share: np.ndarray | float) -> np.ndarray:
+        """Return points inside boxes: share 0 is the lower, 1 the upper end; by ratio where positive."""
+        with np.errstate(all="ignore"):
+            ratio = boxes.low * (boxes.high / boxes.low) ** share
+        return np.where(boxes.low > 0, ratio, boxes.low + share * (boxes.high - boxes.low))
+
+    def makeable(self, variables: np.ndarray) -> np.ndarray:
+        """Return points with gridded variables moved to the nearest makeable value."""
+        result = variables.copy()
+        for k, grid in enumerate(self.grids):
+            if len(grid):
+                after = np.clip(np.searchsorted(grid, result[:, k]), 1, max(len(grid) - 1, 1))
+                before = np.minimum(after - 1, len(grid) - 1)
+                after = np.minimum(after, len(grid) - 1)
+                nearer = np.abs(grid[after] - result[:, k]) < np.abs(grid[before] - result[:, k])
+                result[:, k] = np.where(nearer, grid[after], grid[before])
+        return result
+
+    def good_start(self, box: Boxes, rng: np.random.Generator, count: int = 48) -> np.ndarray:
+        """Return the random point of a box that breaks its worst limit least."""
+        many = box.take(np.zeros(count, dtype=np.int64))
+        share = rng.random((count, self.n))
+        share[0] = 0.5
+        points = self.inside(many, share)
+        result = self.evaluate(points, many.combination)
+        worst = np.zeros(count)
+        for r in result.residuals.values():
+            worst = np.fmax(worst, np.where(np.isinf(r), 1e3, r))
+        broken = np.any([~h for h in result.holds.values()], axis=0) if result.holds else np.zeros(count, dtype=bool)
+        return points[int(np.argmin(np.where(broken, np.maximum(worst, 1e-9), 0.0)))]
+
     # -- the continuous problem ----------------------------------------------------------------
 
     def nlp(self) -> ParametricNlp:
@@ -266,6 +372,3 @@ class Formulation:
         for j, limit in enumerate(self.model.limits):
             void[j] = any(np.isnan(data[k]) for k in self.model.void_inputs[limit.name])
         return self.nlp().solve(task, data, start, low, high, self.bounds, void, gradient)
-
-
-__all__ = ["TOLERANCE", "Boxes", "Candidate", "Formulation"]

@@ -24,6 +24,7 @@ import numpy as np
 from synth.program import COMPARISONS, OP_SELECT, OP_SPECIAL, Node, Program
 
 SLACK = 2e-6
+ROUNDING = 1e-8
 
 Interval = tuple[Any, Any]
 
@@ -473,7 +474,7 @@ class Propagator:
         inputs: Sequence[Any],
         caps: Sequence[Any] | None = None,
         passes: int = 2,
-        corners: bool = True,
+        combine: np.ndarray | None = None,
     ) -> Tightened:
         """Tighten boxes and bound the objectives.
 
@@ -487,8 +488,8 @@ class Propagator:
             Upper bounds of the objectives (with their sign), one number or array each.
         passes : int
             Forward-backward sweeps.
-        corners : bool
-            Whether to bound by monotone corners too.
+        combine : array (vectors, limits + objectives), optional
+            Multipliers, each row a sum of limits and objective caps that must hold together.
         """
         n = len(low)
         alive = np.ones(n, dtype=bool)
@@ -500,10 +501,12 @@ class Propagator:
             box: _Box | None = None
             for sweep in range(passes):
                 box = self._forward(low, high, fixed, caps, alive, box)
-                if corners and sweep == passes - 1:
+                if sweep == passes - 1:
                     slopes = self._slopes(box)
                     self._corner_cuts(box, slopes, inputs, alive)
                     self._score(box, slopes, scores)
+                    if combine is not None and caps is not None and len(combine):
+                        self._combined_cuts(box, slopes, inputs, caps, combine, alive)
                 for j, goal in enumerate(self.objectives):
                     least = box.low[goal.node] if goal.sign > 0 else -box.high[goal.node]
                     bounds[:, j] = np.fmax(bounds[:, j], least)
@@ -661,6 +664,66 @@ class Propagator:
             else:
                 box.cut_high(goal.node, extreme, alive)
 
+    def _combined_cuts(
+        self,
+        box: _Box,
+        slopes: list[list[Interval | None]],
+        inputs: Sequence[Any],
+        caps: Sequence[Any],
+        combine: np.ndarray,
+        alive: np.ndarray,
+    ) -> None:
+        """Drop boxes where a weighted sum of limits and caps cannot hold.
+
+        Each row g <= 0 lies, by the mean-value theorem, above g(centre) + slope (u - centre) with the slope in
+        its interval over the box; so does any sum with multipliers. With the multipliers of an optimum the
+        slopes of the sum nearly cancel, and the bound is good to second order in the width of the box. Any
+        multipliers are valid; bad ones only drop nothing.
+        """
+        wanted = np.flatnonzero(np.any(combine != 0, axis=0))
+        centre = [0.5 * (box.low[k] + box.high[k]) for k in self.variables]
+        half = [0.5 * (box.high[k] - box.low[k]) for k in self.variables]
+        rows = [self._row(int(j), caps) for j in wanted]
+        nodes = sorted({node for row in rows for node in row.nodes})
+        key = -1 - hash(tuple(nodes))
+        if key not in self._evaluators:
+            self._evaluators[key] = self.program.compile(nodes)
+        at_centre = dict(zip(nodes, self._evaluators[key]([*centre, *inputs]), strict=True))
+        for multipliers in combine[:, wanted]:
+            total: Any = 0.0
+            slope_low: list[Any] = [0.0] * self.n_variables
+            slope_high: list[Any] = [0.0] * self.n_variables
+            for weight, row in zip(multipliers, rows, strict=True):
+                if weight == 0.0:
+                    continue
+                size = np.maximum(np.abs(row.size(box)), row.scale)
+                factor = weight / size
+                value = sum(sign * at_centre[node] for node, sign in zip(row.nodes, row.signs, strict=True))
+                total = total + np.where(np.isfinite(size), factor * (value + row.constant), np.nan)
+                for node, sign in zip(row.nodes, row.signs, strict=True):
+                    for i in range(self.n_variables):
+                        slope = slopes[node][i]
+                        if slope is not None:
+                            a, b = factor * sign * slope[0], factor * sign * slope[1]
+                            slope_low[i] = slope_low[i] + np.minimum(a, b)
+                            slope_high[i] = slope_high[i] + np.maximum(a, b)
+            for i in range(self.n_variables):
+                steepest = np.maximum(np.abs(slope_low[i]), np.abs(slope_high[i]))
+                total = total - np.where(half[i] > 0, steepest * half[i], 0.0)
+            alive &= ~(total > 2 * SLACK * np.abs(multipliers).sum())
+
+    def _row(self, j: int, caps: Sequence[Any]) -> _Row:
+        """Return limit or objective cap number j as a sum of nodes and a constant that must not be positive."""
+        if j >= len(self.cuts):
+            goal = self.objectives[j - len(self.cuts)]
+            cap = caps[j - len(self.cuts)]
+            return _Row((goal.node,), (float(goal.sign),), -np.asarray(cap), None, np.asarray(cap), 1e-300)
+        cut = self.cuts[j]
+        sign = -1.0 if cut.sense == "at_least" else 1.0
+        if cut.limit is None:
+            return _Row((cut.value,), (sign,), -sign * cut.bound, None, np.asarray(cut.bound), cut.scale)
+        return _Row((cut.value, cut.limit), (sign, -sign), 0.0, cut.limit, None, cut.scale)
+
     def _score(self, box: _Box, slopes: list[list[Interval | None]], scores: np.ndarray) -> None:
         """Add up, per variable, how far limits that are undecided and objectives spread over the box."""
 
@@ -710,6 +773,23 @@ class Propagator:
         return value + side * correction
 
 
+@dataclass(frozen=True)
+class _Row:
+    """sum(sign * node) + constant <= 0, to be divided by the size of its right side."""
+
+    nodes: tuple[int, ...]
+    signs: tuple[float, ...]
+    constant: Any
+    size_node: int | None
+    fixed_size: Any
+    scale: float
+
+    def size(self, box: _Box) -> Any:
+        if self.size_node is None:
+            return self.fixed_size
+        return np.maximum(np.abs(box.low[self.size_node]), np.abs(box.high[self.size_node]))
+
+
 class _Box:
     """Intervals of all nodes for a batch of boxes."""
 
@@ -718,12 +798,19 @@ class _Box:
         self.high: list[Any] = [None] * n
 
     def cut_low(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        self.low[k] = np.fmax(self.low[k], bound)
-        alive &= ~(self.low[k] > self.high[k] + 1e-12 * np.abs(self.high[k]))
+        """Raise the lower end; a box whose ends pass each other by more than rounding is dead."""
+        low, high = self.low[k], self.high[k]
+        raised = np.fmax(low, bound)
+        alive &= ~(raised > high + ROUNDING * np.abs(high))
+        # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.
+        self.low[k] = np.fmin(raised, np.fmax(high, low))
 
     def cut_high(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        self.high[k] = np.fmin(self.high[k], bound)
-        alive &= ~(self.low[k] > self.high[k] + 1e-12 * np.abs(self.high[k]))
+        """Lower the upper end, likewise."""
+        low, high = self.low[k], self.high[k]
+        lowered = np.fmin(high, bound)
+        alive &= ~(low > lowered + ROUNDING * np.abs(lowered))
+        self.high[k] = np.fmax(lowered, np.fmin(low, high))
 
 
 def loosened(limit: Any, scale: float, side: int) -> Any:

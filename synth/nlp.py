@@ -34,6 +34,7 @@ IPOPT = {
     "ipopt.max_iter": 150,
     "ipopt.mu_strategy": "adaptive",
     "error_on_fail": False,
+    "show_eval_warnings": False,
     "calc_lam_p": False,
 }
 ACTIVE = 1e-6

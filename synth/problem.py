@@ -48,7 +48,7 @@ class DesignProblem:
     title: str = ""
     sources: tuple[str, ...] = ()
 
-    def __init__(self, **options: str) -> None:
+    def __init__(self, /, **options: str) -> None:
         if not self.name:
             raise DeclarationError(f"{type(self).__name__} needs a class attribute 'name'")
         self.options = dict(options)
@@ -83,7 +83,7 @@ def families() -> list[str]:
     return sorted({point.name for point in entry_points(group=ENTRY_POINT_GROUP)})
 
 
-def load(problem: str | type[DesignProblem] | DesignProblem, **options: str) -> DesignProblem:
+def load(problem: str | type[DesignProblem] | DesignProblem, /, **options: str) -> DesignProblem:
     """Return a problem ready to use.
 
     Parameters

@@ -14,15 +14,16 @@ from synth.conflicts import explain_infeasible
 from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
-from synth.formulation import Boxes, Candidate, Formulation
+from synth.formulation import TIE, Boxes, Candidate, Formulation
 from synth.instance import Instance, as_catalogs
 from synth.nlp import Task
 from synth.pareto import Zones, non_dominated, rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.results import Certificate, Design, Frame, ParetoFront
-from synth.tree import TIE, Clock, Outcome, Stopped, Target, minimise
+from synth.tree import Clock, Outcome, Stopped, Target, minimise, refine
 
 ROOT_CHUNK = 16384
+REFINE_BUDGET = 150_000
 MULTI_STARTS = 6
 EXHAUSTIVE_LIMIT = 3000
 ALTERNATIVES_CHECKED = 40
@@ -154,7 +155,7 @@ class _FrontSearch:
         time_limit: float | None,
     ) -> None:
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
-        self.form = Formulation(instance, self._chain())
+        self.form = Formulation(instance, self._chain(), len(chosen))
         self.m = len(chosen)
         self.started = time.monotonic()
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit)
@@ -164,7 +165,8 @@ class _FrontSearch:
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
-        self.pool: Boxes | None = None
+        self.pool: Boxes | None = None  # all boxes that may hold a feasible design
+        self.cover: Boxes | None = None  # the part of them that known designs do not dominate, split finer
         self.front: list[Candidate] = []
         self.complete = False
         self.scalar_problems = 0
@@ -242,6 +244,8 @@ class _FrontSearch:
         self.pool = Boxes.joined(kept)
         if len(self.pool):
             self.form.settle_objectives(self.pool)
+            self.form.sample(self.pool, 3, self.rng)
+            self.cover = refine(self.form, self.pool, self.clock, REFINE_BUDGET)
 
     def _target(self, k: int, caps: np.ndarray) -> Target:
         """Return the problem: least phi_k, the other objectives capped."""
@@ -250,9 +254,9 @@ class _FrontSearch:
         return Target(np.where(slope > 0, 0.0, caps), slope)
 
     def _solve(self, target: Target, start: Candidate | None = None, ceiling: float = np.inf) -> Outcome:
-        assert self.pool is not None
+        assert self.cover is not None
         self.scalar_problems += 1
-        outcome = minimise(self.form, self.pool, target, self.gap, self.clock, start, ceiling, self.ranges)
+        outcome = minimise(self.form, self.cover, target, self.gap, self.clock, start, ceiling, self.ranges)
         if not outcome.closed:
             outcome = self._exhaust(outcome, target, ceiling)
         return outcome

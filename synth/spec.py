@@ -415,6 +415,7 @@ def _parse_yaml(text: str, shown: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         where = shown if mark is None else f"{shown}, line {mark.line + 1}"
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        problem = problem.replace("but found another document", "a second document after ---")
         raise InputError(where, _Described(problem), _yaml_advice(text, mark, problem)) from error
 
 

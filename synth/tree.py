@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from synth.formulation import Boxes, Candidate, Formulation
-from synth.nlp import Task
+from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.nlp import Solution, Task
 
-BATCH = 1024
+BATCH = 4096
 TRIES_PER_ROUND = 3
 ROUNDINGS = 16
-TIE = 1e-9
+VECTORS = 6
 
 
 class Stopped(Exception):  # noqa: N818 - not a fault: the user's time or patience is over
@@ -95,6 +95,7 @@ def minimise(
     ceiling: float = np.inf,
     ranges: np.ndarray | None = None,
     effort: int = 400_000,
+    seed: int = 0,
 ) -> Outcome:
     """Find the least t over all boxes.
 
@@ -120,7 +121,8 @@ def minimise(
     -------
     Outcome
     """
-    search = _Search(form, target, gap, ranges, start, ceiling)
+    search = _Search(form, target, gap, ranges, start, ceiling, seed)
+    search.improve_known()
     waiting, tightened = boxes, 0
     while len(waiting):
         clock.check()
@@ -130,7 +132,7 @@ def minimise(
             break
         batch, waiting = _best(form, target, waiting)
         tightened += len(batch)
-        batch = form.contract(batch, caps)
+        batch = form.contract(batch, caps, combine=search.multipliers)
         search.try_some(batch)
         batch = batch.take(np.all(form.phi_of(batch.bounds) <= search.caps(), axis=1))
         halves, small = form.split(batch)
@@ -141,6 +143,34 @@ def minimise(
             return Outcome(search.best, search.t, False, open_ones, len(waiting))
     closed = not len(search.left_open)
     return Outcome(search.best, search.t, closed, np.unique(search.left_open), len(search.left_open))
+
+
+def refine(form: Formulation, boxes: Boxes, clock: Clock, budget: int) -> Boxes:
+    """Split boxes and drop those that known designs dominate, so that every later question starts closer.
+
+    Only designs that are worse than a known one in every traded objective, by more than rounding, are dropped.
+
+    Parameters
+    ----------
+    form : Formulation
+    boxes : Boxes
+    clock : Clock
+    budget : int
+        Boxes that may be tightened.
+    """
+    spent = 0
+    while len(boxes) and spent < budget:
+        clock.check()
+        spent += len(boxes)
+        boxes = form.contract(boxes, form.archive.caps(form.phi_of(boxes.bounds)))
+        form.candidates(form.makeable(form.inside(boxes, 0.5)), boxes.combination)
+        halves, small = form.split(boxes)
+        boxes = Boxes.joined([halves, small])
+        if not len(halves):
+            break
+        near = form.phi_of(boxes.bounds) <= form.archive.caps(form.phi_of(boxes.bounds))
+        boxes = boxes.take(np.all(near, axis=1))
+    return boxes
 
 
 def _best(form: Formulation, target: Target, boxes: Boxes) -> tuple[Boxes, Boxes]:
@@ -162,11 +192,14 @@ class _Search:
         ranges: np.ndarray | None,
         start: Candidate | None,
         ceiling: float,
+        seed: int,
     ) -> None:
+        self.rng = np.random.default_rng(seed)
         self.form, self.target, self.gap, self.ranges = form, target, gap, ranges
         self.best = start
         self.t = ceiling if start is None else min(ceiling, float(target.t_of(start.phi)))
         self.tried: set[int] = set()
+        self.multipliers = np.empty((0, len(form.cuts) + len(form.goals)))
         self.left_open = np.empty(0, dtype=np.int64)
         moving = target.slope > 0
         self.task = Task(
@@ -182,36 +215,74 @@ class _Search:
         )
         return self.target.caps(self.t, relative_slack(self.form, self.gap, level, self.ranges))
 
+    def learn(self, solution: Solution) -> None:
+        """Keep the multipliers of a solution: near other optima they nearly are multipliers too."""
+        row = np.concatenate([solution.cut_multipliers, solution.goal_multipliers])
+        total = np.abs(row).sum()
+        if not solution.converged or not np.isfinite(total) or total == 0:
+            return
+        row = np.where(np.abs(row) > 1e-4 * total, row / total, 0.0)
+        known = np.any(np.all(np.abs(self.multipliers - row) < 0.02, axis=1))
+        if not known:
+            self.multipliers = np.vstack([row, self.multipliers])[:VECTORS]
+
     def offer(self, candidates: list[Candidate]) -> None:
         for candidate in candidates:
             t = float(self.target.t_of(candidate.phi))
             if t < self.t - 1e-13 * abs(self.t) or (self.best is None and t <= self.t):
                 self.best, self.t = candidate, t
 
-    def try_some(self, boxes: Boxes) -> None:
-        """Solve the continuous problem where it promises most."""
-        if not len(boxes):
+    def improve_known(self) -> None:
+        """Start from designs found earlier: take the best, and solve in the combinations that promise most."""
+        archive = self.form.archive
+        if not len(archive):
             return
-        t = self.target.t_of(self.form.phi_of(boxes.bounds))
+        t = self.target.t_of(archive.phi)
         tries = 0
         for k in np.argsort(t, kind="stable"):
-            combination = int(boxes.combination[k])
-            if combination in self.tried:
-                continue
-            if tries == TRIES_PER_ROUND or (np.isfinite(self.t) and t[k] >= self.t):
+            if tries == TRIES_PER_ROUND or not np.isfinite(t[k]):
                 break
-            tries += 1
-            self.tried.add(combination)
-            self.try_box(boxes.take(np.array([k])))
+            candidate = archive[k]
+            self.offer([candidate])
+            if candidate.combination not in self.tried:
+                tries += 1
+                self.tried.add(candidate.combination)
+                self.improve(candidate)
 
-    def try_box(self, box: Boxes) -> None:
+    def improve(self, candidate: Candidate) -> None:
+        """Solve in the combination of a known design, starting from it."""
+        self.try_box(self.form.root(np.array([candidate.combination])), candidate.variables)
+
+    def try_some(self, boxes: Boxes) -> None:
+        """Evaluate the middle of every box, and solve the continuous problem where it promises most."""
+        if not len(boxes):
+            return
+        form = self.form
+        before = self.best
+        self.offer(form.candidates(form.makeable(form.inside(boxes, 0.5)), boxes.combination))
+        if self.best is not None and self.best is not before and self.best.combination not in self.tried:
+            self.tried.add(self.best.combination)
+            self.improve(self.best)
+        t = self.target.t_of(form.phi_of(boxes.bounds))
+        for k in np.argsort(t, kind="stable")[: 4 * TRIES_PER_ROUND]:
+            combination = int(boxes.combination[k])
+            if combination in self.tried or (np.isfinite(self.t) and t[k] >= self.t):
+                continue
+            self.tried.add(combination)
+            box = boxes.take(np.array([k]))
+            self.try_box(box, form.good_start(box, self.rng))
+            break
+
+    def try_box(self, box: Boxes, start: np.ndarray) -> None:
         """Solve in one box; with a grid, round the answer and solve again for what remains."""
+        if not len(box):
+            return
         form = self.form
         low, high, combination = box.low[0], box.high[0], int(box.combination[0])
-        start = np.where(low > 0, np.sqrt(np.maximum(low * high, 0.0)), 0.5 * (low + high))
         solution = form.solve(self.task, combination, start, low, high)
         if solution is None:
             return
+        self.learn(solution)
         if not form.gridded.any():
             self.offer(form.candidates(solution.variables[None, :], np.array([combination])))
             return

@@ -1,0 +1,310 @@
+"""The command line as a user meets it: what it prints, what it writes, how it ends."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import pytest
+import yaml
+
+from synth.cli import main
+
+ROOT = Path(__file__).parents[2]
+LECTURE = ROOT / "examples" / "lecture_design.yaml"
+HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
+COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
+HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna")
+
+# One ring, three plate numbers: the force is all that is left to find.
+SMALL = """
+family: multi_plate_clutch
+options: {guide_model: cz}
+requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
+fix: {ramp_time: 2 s, d_out: 262 mm, d_in: 158 mm, inner_plate: core 4, outer_plate: core 2, pair: seed_multiplate_ref}
+limits: {friction_surfaces: 10 .. 14}
+"""
+
+
+def clutchsynth(*words: str | Path, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, words)], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
+        timeout=120, check=False,
+    )  # fmt: skip
+
+
+def at_once(*words: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the same entry point in this process: for the many cases that end before a search, imports cost most."""
+    out, err = io.StringIO(), io.StringIO()
+    texts = [str(word) for word in words]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.setattr(sys, "argv", ["clutchsynth", *texts])
+        patch.chdir(folder or ROOT)
+        with pytest.raises(SystemExit) as end:
+            main()
+    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
+
+
+def refused(done: subprocess.CompletedProcess[str]) -> str:
+    """One sentence on standard error, nothing else, exit code 2."""
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith("clutchsynth: ")
+    return done.stderr
+
+
+def quantity(output: str, name: str) -> str:
+    """Return the line of a table that begins with a name, its blanks made single."""
+    return next(" ".join(line.split()) for line in output.splitlines() if line.split()[:1] == [name])
+
+
+# ---- help, families, describe ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("flag", ["--help", "--version"])
+def test_help_and_version_import_nothing_heavy(flag: str) -> None:
+    program = (
+        "import sys\n"
+        f"sys.argv = ['clutchsynth', {flag!r}]\n"
+        "from synth.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
+        f"print(code or 0, [m for m in {HEAVY!r} if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.splitlines()[-1] == "0 []"
+    assert "clutchsynth" in done.stdout
+
+
+def test_families_are_listed_with_their_titles() -> None:
+    done = clutchsynth("families")
+    assert done.returncode == 0
+    assert "multi_plate_clutch  Multi-plate clutch\n" in done.stdout
+
+
+def test_describe_fits_on_a_line_and_respects_options() -> None:
+    done = clutchsynth("describe", "multi_plate_clutch", "--option", "lubrication=dry")
+    assert done.returncode == 0
+    assert max(len(line) for line in done.stdout.splitlines()) <= 100
+    assert "lubrication == 'dry'" in " ".join(done.stdout.split())
+    for heading in ("Options", "Requirements", "Variables", "Counts", "Parts", "Derived", "Limits", "Objectives"):
+        assert f"\n{heading}" in done.stdout
+    assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1e+06")
+
+
+def test_describe_as_csv() -> None:
+    done = clutchsynth("describe", "multi_plate_clutch", "--csv")
+    rows = {(row["kind"], row["name"]): row for row in csv.DictReader(io.StringIO(done.stdout))}
+    assert rows["requirement", "safety_factor"]["default"] == "1.5"
+    assert rows["column", "friction_pair.mu_dynamic"]["unit"] == "-"
+    assert rows["objective", "mass"]["sense"] == "min"
+
+
+# ---- check ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_lecture_design_comes_out_as_printed_in_its_source() -> None:
+    done = clutchsynth("check", LECTURE)
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for name, printed in {
+        "required_torque": "M_req 1411.76 N*m",
+        "torque": "M_k 1411.76 N*m",
+        "ring_outer_diameter": "d_out 258.111 mm",
+        "ring_inner_diameter": "d_in 154.866 mm",
+        "friction_area": "A 3348.74 cm2",
+        "friction_work": "W 39524.1 J",
+        "hourly_heat": "w 5.90134 J/(mm2*h)",
+        "slip_time": "t_D 3.21806 s",
+        "peak_slip_power": "P_peak 21703.7 W",
+        "friction_surfaces": "z 10",
+    }.items():
+        assert quantity(done.stdout, name).startswith(f"{name} {printed} ")
+    assert quantity(done.stdout, "surface_pressure").startswith("surface_pressure p_s 0.4 N/mm2")
+    assert "\nnot asked, so their limits are not built: overload_torque" in done.stdout
+    assert "off the grid: ring_outer_diameter, nearest makeable 258 mm" in done.stdout
+    assert "VIOLATED" not in done.stdout
+    assert max(len(line) for line in done.stdout.splitlines()) <= 100
+
+
+def test_check_lists_every_violated_limit(tmp_path: Path) -> None:
+    design = yaml.safe_load(LECTURE.read_text())
+    design["values"]["F0"] = "9000 N"
+    design["requirements"]["jerk_limit"] = "10 rad/s3"
+    path = tmp_path / "weak.yaml"
+    path.write_text(yaml.safe_dump(design))
+    done = clutchsynth("check", path, "-o", tmp_path / "out")
+    assert done.returncode == 3
+    assert "violated: torque_capacity, startup_torque_available, jerk\n" in done.stdout
+    limits = done.stdout[done.stdout.index("\nLimits") :]
+    assert quantity(limits, "torque_capacity") == "torque_capacity 948.557 N*m >= 1411.76 N*m 1.488 VIOLATED"
+    assert quantity(limits, "jerk") == "jerk 18 rad/s3 <= 10 rad/s3 1.8 VIOLATED"
+    assert quantity(limits, "slip_time").endswith("ok")
+    with (tmp_path / "out" / "check.csv").open() as file:
+        rows = {(row["kind"], row["name"]): row for row in csv.DictReader(file)}
+    assert rows["limit", "jerk"]["state"] == "VIOLATED"
+    assert float(rows["limit", "jerk"]["value"]) == pytest.approx(18)
+    assert float(rows["derived", "friction_work"]["value"]) == pytest.approx(39524.1, abs=0.05)
+    assert rows["variable", "ring_outer_diameter"]["state"] == "off the grid"
+    assert rows["part", "inner_plate"]["value"] == "core 4"
+
+
+def test_check_takes_one_designation_even_as_a_list(tmp_path: Path) -> None:
+    design = yaml.safe_load(LECTURE.read_text())
+    design["parts"]["inner_plate"] = ["core 4"]
+    path = tmp_path / "design.yaml"
+    path.write_text(yaml.safe_dump(design))
+    assert at_once("check", path).returncode == 0
+    design["parts"]["inner_plate"] = ["core 4", "core 2"]
+    path.write_text(yaml.safe_dump(design))
+    assert "parts: inner_plate" in refused(at_once("check", path))
+
+
+# ---- bad input ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "words"),
+    [
+        ("run", "", ["bad.yaml", "empty file"]),
+        ("run", "family: multi_plate\n", ["bad.yaml: family", "'multi_plate'", "multi_plate_clutch"]),
+        ("run", "family: multi_plate_clutch\nrequirments: {}\n", ["'requirments'", "requirements"]),
+        ("run", "family: multi_plate_clutch\nrequirements: [1]\n", ["bad.yaml: requirements", "got a list"]),
+        ("run", "family: multi_plate_clutch\n", ["requirement load_torque", "missing", "N*m"]),
+        ("run", SMALL.replace("600 N*m", "'6,5 N*m'"), ["bad.yaml: requirement load_torque", "6,5 N*m"]),
+        ("run", SMALL.replace("600 N*m", "600 kg"), ["load_torque", "600 kg"]),
+        ("run", SMALL.replace("600 N*m", "-600 N*m"), ["load_torque", "-600 N*m"]),
+        ("run", SMALL.replace("load_torque", "load_torqe"), ["load_torqe", "did you mean load_torque"]),
+        ("run", SMALL.replace("cz", "cx"), ["guide_model", "'cx'", "series, cz"]),
+        ("run", SMALL.replace("core 4", "core 4711"), ["core 4711"]),
+        ("run", SMALL + "values: {z: 10}\n", ["values", "clutchsynth check"]),
+        ("run", SMALL + "catalogs: nowhere\n", ["catalogs", "nowhere"]),
+        ("check", SMALL, ["values", "missing", "clutchsynth run"]),
+        ("check", SMALL + "values: {z: 10}\n", ["fix", "under values"]),
+        ("check", "family: multi_plate_clutch\nvalues: {q: 1}\n", ["load_torque"]),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_sentence_and_nothing_written(
+    tmp_path: Path, command: str, text: str, words: list[str]
+) -> None:
+    (tmp_path / "bad.yaml").write_text(text)
+    message = refused(at_once(command, "bad.yaml", "-o", "out", folder=tmp_path))
+    assert all(word in message for word in words)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.yaml"]
+
+
+def test_a_folder_that_cannot_be_one_is_refused_before_the_search(tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file")
+    for place in (tmp_path / "taken", tmp_path / "taken" / "below"):
+        assert "is a file" in refused(at_once("run", HOIST, "-o", place))
+    assert (tmp_path / "taken").read_text() == "a file"
+
+
+def test_flags_are_checked_like_the_spec(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert "--points: got 0" in refused(at_once("run", HOIST, "-o", out, "--points", "0"))
+    assert "--time-limit" in refused(at_once("run", HOIST, "-o", out, "--time-limit", "soon"))
+    assert "'weight'" in refused(at_once("run", HOIST, "-o", out, "--objective", "weight"))
+    assert "name=value" in refused(at_once("describe", "multi_plate_clutch", "--option", "dry"))
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("words", [["run", str(HOIST)], ["run", "x.yaml", "-o", "o", "--points", "many"], ["runn"]])
+def test_wrong_usage_ends_with_two(words: list[str], tmp_path: Path) -> None:
+    done = at_once(*words, folder=tmp_path)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "Error:" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_fault_of_the_program_is_short_unless_debugging(tmp_path: Path) -> None:
+    program = "import synth.spec, synth.cli\nsynth.spec.read_spec = lambda path: 1 / 0\nsynth.cli.main()"
+    for debug, traceback in (("", False), ("1", True)):
+        done = subprocess.run(
+            [sys.executable, "-c", program, "check", "x.yaml"], env={**os.environ, "CLUTCHSYNTH_DEBUG": debug},
+            cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert done.returncode == 1
+        assert "ZeroDivisionError" in done.stderr
+        assert ("Traceback" in done.stderr) is traceback
+        assert ("please report" in done.stderr) is not traceback
+
+
+# ---- run ------------------------------------------------------------------------------------------------------------
+
+
+def test_run_finds_ranks_saves_and_explains(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    done = clutchsynth("run", "small.yaml", "-o", "out", folder=tmp_path)
+    assert done.returncode == 0
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"designs.csv", "front.json", "design_01.yaml"} <= written
+    assert "explanation.txt" not in written
+    with (tmp_path / "out" / "designs.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    # More plates need less force and weigh more: each of the three numbers is on the front.
+    assert sorted(float(row["friction_surfaces [-]"]) for row in rows) == [10, 12, 14]
+    for word in ("smallest mass", "smallest actuation_force", "torque_capacity", "combinations 3", "written to out"):
+        assert word in done.stdout
+    assert max(len(line) for line in done.stdout.splitlines()) <= 100
+    # A design that was saved reads back as it was.
+    assert clutchsynth("check", tmp_path / "out" / "design_01.yaml").returncode == 0
+
+
+def test_run_quietly_says_nothing(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    done = clutchsynth("run", "small.yaml", "-o", "out", "--quiet", "--objective", "mass", folder=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert json.loads((tmp_path / "out" / "front.json").read_text())["objectives"] == {"mass": "min"}
+
+
+def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
+    # Around a ring of 262 mm the drum is 280 mm wide.
+    (tmp_path / "tight.yaml").write_text(SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, "))
+    done = clutchsynth("run", "tight.yaml", "-o", "out", folder=tmp_path)
+    assert done.returncode == 3
+    assert "outer_diameter" in done.stdout
+    text = (tmp_path / "out" / "explanation.txt").read_text()
+    assert text in done.stdout
+    assert "outer_diameter" in text
+    content = json.loads((tmp_path / "out" / "front.json").read_text())
+    assert content["status"] == "infeasible"
+    assert content["explanation"]["conflicts"]
+    # The next run into the same folder that finds something takes the explanation away.
+    (tmp_path / "small.yaml").write_text(SMALL)
+    assert clutchsynth("run", "small.yaml", "-o", "out", "-q", folder=tmp_path).returncode == 0
+    assert not (tmp_path / "out" / "explanation.txt").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
+    with subprocess.Popen(
+        [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "100000", "--gap", "1e-6", "--no-grid"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as process:  # fmt: skip
+        time.sleep(3)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+    assert process.returncode == 4
+    assert "Traceback" not in errors
+    assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "interrupted"
+
+
+@pytest.mark.slow
+def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
+    done = clutchsynth(
+        "run", HOIST, "-o", tmp_path / "out", "--points", "100000", "--gap", "1e-6", "--no-grid", "--time-limit", "1 s"
+    )
+    assert done.returncode == 4
+    assert "stopped: time limit" in done.stdout
+    assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "time limit"

@@ -1,0 +1,110 @@
+"""The table of what a problem declares."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+import synth
+from synth.description import COLUMNS, describe
+
+
+class Sample(synth.DesignProblem):
+    """One of everything."""
+
+    name, title = "sample", "Sample"
+
+    def declare(self, d: Any) -> None:
+        shape = d.option("shape", ("round", "square"), "round", symbol="sh", text="Cross-section")
+        force = d.requirement("force", "kN", lower=1, upper=100, symbol="F", text="Pull")
+        factor = d.requirement("factor", "-", default=2, text="Safety")
+        peak = d.requirement("peak_force", "kN", default=2.5 * force, symbol="F_pk")
+        room = d.requirement("room", "mm", optional=True)
+        cooling = d.row("cooling_options", "fan")
+        d.requirement("transfer", "W/(m2*K)", default=cooling.heat_transfer)
+        side = d.variable("side", "mm", 5, 100, grid=1, symbol="s")
+        d.variable("free", "mm", 5, 100)
+        rods = d.count("rods", 1, 4)
+        end = d.choice("end", ("hook", "eye"))
+        plate = d.part("plate", "core_plates", where="thickness >= 1")
+        area = rods * side**2 * (0.785398 if shape == "round" else 1.0)
+        d.derive("area", "mm2", area, symbol="A", source="geometry")
+        d.derive("weight_index", "-", side * plate.thickness * end.select({"hook": 2.0, "eye": 1.0}))
+        d.at_most("stress", factor * peak / area, 100e6, "N/mm2", source="statics")
+        if room is not None:
+            d.at_most("room", side, room, "mm")
+        d.objective("weight_index")
+        d.objective("area", "max", default=False)
+        d.refuse("too_much", force > 1e6, "less force")
+        d.advise("thick", side > 0.05, "a thick rod", source="habit")
+
+
+@pytest.fixture(scope="module")
+def rows() -> dict[tuple[str, str], dict[str, Any]]:
+    table = describe(Sample())
+    assert tuple(table.columns) == COLUMNS
+    return {(row["kind"], row["name"]): row for row in table.to_dict("records")}
+
+
+def test_every_kind_is_there(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    kinds = {kind for kind, _ in rows}
+    assert kinds == {
+        "option", "requirement", "variable", "count", "choice", "slot", "column", "derived", "limit", "objective",
+        "refusal", "advice",
+    }  # fmt: skip
+
+
+def test_numbers_are_in_the_unit_of_their_row(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    force = rows["requirement", "force"]
+    assert (force["lower"], force["upper"], force["unit"], force["symbol"]) == (1, 100, "kN", "F")
+    assert force["default"] is None
+    assert not force["optional"]
+    side = rows["variable", "side"]
+    assert (side["lower"], side["upper"], side["choices"]) == (5, 100, "5, 6, 7 .. 100 (96 values)")
+    assert rows["variable", "free"]["choices"] == ""
+    assert rows["count", "rods"]["choices"] == "1, 2, 3, 4"
+    assert rows["choice", "end"]["choices"] == "hook, eye"
+
+
+def test_defaults_are_numbers_or_say_what_they_follow(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    assert rows["requirement", "factor"]["default"] == 2.0
+    assert rows["requirement", "peak_force"]["default"] == "2.5*force"
+    assert rows["requirement", "transfer"]["default"] == 50.0  # the row fan of cooling_options
+    assert math.isnan(rows["requirement", "transfer"]["upper"])
+    assert rows["option", "shape"]["default"] == "round"
+    assert rows["option", "shape"]["choices"] == "round, square"
+
+
+def test_optional_requirements_and_their_limits_are_listed(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    assert rows["requirement", "room"]["optional"]
+    assert rows["limit", "room"]["sense"] == "at_most"
+    assert rows["limit", "stress"]["source"] == "statics"
+
+
+def test_parts_columns_objectives_and_remarks(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    assert rows["slot", "plate"]["choices"] == "rows of core_plates where thickness >= 1"
+    column = rows["column", "plate.thickness"]
+    assert (column["unit"], column["optional"]) == ("mm", False)
+    assert column["text"]
+    assert (rows["objective", "weight_index"]["sense"], rows["objective", "weight_index"]["default"]) == ("min", "yes")
+    assert (rows["objective", "area"]["sense"], rows["objective", "area"]["default"]) == ("max", "no")
+    assert rows["objective", "area"]["unit"] == "mm2"
+    assert rows["refusal", "too_much"]["text"] == "less force"
+    assert rows["advice", "thick"]["source"] == "habit"
+
+
+def test_an_unknown_option_is_refused() -> None:
+    with pytest.raises(synth.InputError, match="shape"):
+        describe(Sample(shape="oval"))
+
+
+@pytest.mark.parametrize("family", synth.families())
+def test_every_family_can_be_described(family: str) -> None:
+    table = describe(family)
+    assert not table.duplicated(["kind", "name"]).any()
+    named = table[table["kind"].isin(["option", "requirement", "variable", "count", "choice", "slot", "derived"])]
+    assert not named["symbol"].duplicated().any()
+    assert (named["text"] != "").all()
+    assert (table["classification"] == "").all()

@@ -1,0 +1,110 @@
+"""The ranked table: what it shows, how wide it is, and why each design is on the front."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from reports.table import print_front, significant, why
+from synth.feasibility import Status
+from synth.results import Certificate, Design, Frame, ParetoFront
+
+FRAME = Frame(
+    family="sample", title="Sample", options={}, requirements={}, requirement_values={}, not_asked=(),
+    objectives={"mass": "min", "actuation_force": "min"},
+    units={"ring_outer_diameter": "mm", "friction_surfaces": "-", "mass": "kg", "actuation_force": "N"},
+    kinds={
+        "ring_outer_diameter": "variable", "friction_surfaces": "count", "mass": "derived",
+        "actuation_force": "derived",
+    },
+    limit_units={"jerk": "rad/s3", "pinned": "mm"}, limit_senses={"jerk": "at_most", "pinned": "equal"},
+)  # fmt: skip
+
+
+def design(rank: int, mass: float, force: float, used: float = 0.5, note: str = "", frame: Frame = FRAME) -> Design:
+    objectives = {"mass": mass, "actuation_force": force}
+    return Design(
+        frame=frame, values={"ring_outer_diameter": 0.2581, "friction_surfaces": 10.0, **objectives},
+        parts={}, choices={}, objectives={name: objectives[name] for name in frame.objectives}, limits={}, residuals={},
+        utilisation={"jerk": used, "pinned": 1.0}, status=Status.OPTIMAL, rank=rank, score=0.1 * rank, note=note,
+    )  # fmt: skip
+
+
+def front(*designs: Design, frame: Frame = FRAME) -> ParetoFront:
+    certificate = Certificate("global", 1e-3, 10, 8, 2)
+    return ParetoFront(frame, designs, Status.OPTIMAL, True, {}, certificate, None, {})
+
+
+def test_why_names_best_knee_neighbours_and_binding_limits() -> None:
+    light, middle, weak = design(2, 10, 2000), design(1, 12, 1500, 0.9995, "knee"), design(3, 20, 1000)
+    shown = front(middle, light, weak)
+    assert why(shown, middle) == (
+        "knee of the front; between #2 and #3: 25 % less actuation_force than #2, 40 % less mass than #3; "
+        "at the limit of jerk"
+    )
+    assert why(shown, light) == (
+        "smallest mass; 17 % less mass and 33 % more actuation_force than #1 next to it; no limit is reached"
+    )
+    assert why(shown, weak).startswith("smallest actuation_force; 67 % more mass and 33 % less actuation_force than #1")
+
+
+def test_why_with_an_objective_to_be_made_large() -> None:
+    frame = replace(FRAME, objectives={"mass": "max", "actuation_force": "min"})
+    light, middle, heavy = (design(k, *x, frame=frame) for k, x in enumerate([(10, 1000), (12, 1500), (20, 2000)], 1))
+    shown = front(light, middle, heavy, frame=frame)
+    # Gained over the lighter one: mass; over the heavier one: force.
+    assert "between #1 and #3: 20 % more mass than #1, 25 % less actuation_force than #3" in why(shown, middle)
+    assert why(shown, heavy).startswith("largest mass;")
+
+
+def test_why_of_a_single_design_and_of_many_objectives() -> None:
+    alone = design(1, 10, 2000)
+    assert why(front(alone), alone) == "smallest mass; smallest actuation_force; no limit is reached"
+    frame = replace(FRAME, objectives={"mass": "min", "actuation_force": "min", "friction_surfaces": "min"})
+
+    def triple(rank: int, mass: float, force: float, surfaces: float) -> Design:
+        objectives = {"mass": mass, "actuation_force": force, "friction_surfaces": surfaces}
+        return replace(design(rank, mass, force), frame=frame, objectives=objectives)
+
+    one, two, three = triple(1, 10, 2000, 10), triple(2, 11, 1900, 10), triple(3, 30, 900, 4)
+    sentence = why(front(one, two, three, frame=frame), two)
+    assert "against #1 next to it 10 % more mass, 5 % less actuation_force, the same friction_surfaces" in sentence
+
+
+@pytest.mark.parametrize("width", [40, 60, 100])
+def test_the_table_fits_the_width_and_loses_nothing(width: int) -> None:
+    designs = [design(k, 10 + k, 2000.123456 / k) for k in range(1, 13)]
+    stream = io.StringIO()
+    print_front(front(*designs), Console(file=stream, width=width, markup=False, highlight=False))
+    output = stream.getvalue()
+    assert max(len(line) for line in output.splitlines()) <= width
+    assert "…" not in output
+    for cell in ("258.1", "2000.1", "[kg]", "[mm]", "#10", "2 more with --all"):
+        assert cell in output
+    assert "#11" not in output.split("#1:")[0]
+
+
+def test_all_designs_on_request() -> None:
+    stream = io.StringIO()
+    designs = [design(k, 10 + k, 2000 / k) for k in range(1, 13)]
+    print_front(front(*designs), Console(file=stream, width=100, markup=False, highlight=False), every=True)
+    assert "#12:" in stream.getvalue()
+    assert "--all" not in stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (13394.966, "13395"),
+        (1e6, "1000000"),
+        (0.000123456789, "0.00012346"),
+        (0.0, "0"),
+        (-1234567.0, "-1234567"),
+        (1e15, "1e+15"),
+    ],
+)
+def test_significant_digits(value: float, shown: str) -> None:
+    assert significant(value) == shown
