@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from synth.declaration import Variable
 from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
-from synth.instance import Instance, as_catalogs
+from synth.instance import Instance, as_catalogs, as_mapping
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
@@ -191,7 +191,9 @@ def evaluate(
         if not isinstance(design, Mapping):
             raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'")
         values, parts = design.get("values"), design.get("parts")
-    return _evaluate(p, requirements, values or {}, parts or {}, catalogs, limits, objectives, in_si=False)
+    values = as_mapping(values, "values", "{'friction_surfaces': 10}")
+    parts = as_mapping(parts, "parts", "{'inner_plate': 'core 2'}")
+    return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=False)
 
 
 def _evaluate(
@@ -368,7 +370,7 @@ def _complete_variables(
         )
     variables = np.array([known.get(v.name, np.nan) for v in model.variables])
     for v, value in zip(model.variables, variables, strict=True):
-        if np.isfinite(value) and not v.lower * (1 - 1e-9) <= value <= v.upper * (1 + 1e-9):
+        if np.isfinite(value) and not v.lower - 1e-9 * abs(v.lower) <= value <= v.upper + 1e-9 * abs(v.upper):
             low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
             raise InputError(f"values: {v.name}", format_quantity(value, v.unit), f"{low} to {high}")
     if missing:

@@ -157,8 +157,12 @@ class Part:
 
     def _symbol(self, columns: tuple[str, ...], required: bool) -> Any:
         key = "|".join(columns)
-        if key not in self.columns:
+        known = self.columns.get(key)
+        if known is None:
             self.columns[key] = PartColumn(self.slot, columns, required, ca.SX.sym(f"{self.slot}.{key}"))
+        elif required and not known.required:
+            # One use that cannot do without the column is enough; the other uses keep their symbol.
+            self.columns[key] = PartColumn(self.slot, columns, required, known.sx)
         return self.columns[key].sx
 
 
@@ -361,6 +365,9 @@ class Declaration:
         parsed = parse_unit(unit)
         if not lower < upper:
             raise DeclarationError(f"{self.problem}: variable {name} needs lower < upper")
+        makeable = grid_values(grid, lower, upper)
+        if grid is not None and not len(makeable):
+            raise DeclarationError(f"{self.problem}: the grid of variable {name} has no value from {lower} to {upper}")
         record = Variable(
             name=name,
             unit=unit,
@@ -369,7 +376,7 @@ class Declaration:
             source=source,
             lower=float(to_si(lower, parsed)),
             upper=float(to_si(upper, parsed)),
-            grid=np.asarray(to_si(grid_values(grid, lower, upper), parsed), dtype=float),
+            grid=np.asarray(to_si(makeable, parsed), dtype=float),
             sx=ca.SX.sym(name),
         )
         self.variables[name] = record
@@ -387,6 +394,8 @@ class Declaration:
     ) -> Any:
         """Declare a stepped unknown; return its symbol."""
         symbol = self._claim(name, symbol)
+        if not (step > 0 and lower <= upper):
+            raise DeclarationError(f"{self.problem}: count {name} needs lower <= upper and a step above 0")
         values = lower + step * np.arange(int(np.floor((upper - lower) / step + 1e-9)) + 1)
         record = Count(name, "-", symbol, text, source, values.astype(float), ca.SX.sym(name))
         self.counts[name] = record
@@ -397,6 +406,8 @@ class Declaration:
     ) -> Choice:
         """Declare a discrete unknown that the search decides."""
         symbol = self._claim(name, symbol)
+        if not labels or len(set(labels)) < len(labels):
+            raise DeclarationError(f"{self.problem}: choice {name} needs labels, each once")
         record = Choice(name, symbol, text, source, tuple(labels), ca.SX.sym(name))
         self.choices[name] = record
         return record
@@ -553,13 +564,19 @@ def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper:
     if isinstance(grid, str):
         if grid not in RENARD_STEPS:
             raise DeclarationError(f"unknown preferred number series {grid!r}; known are {', '.join(RENARD_STEPS)}")
+        if not lower > 0:
+            raise DeclarationError(f"the preferred number series {grid} needs bounds above 0")
         mantissas = RENARD_R40[:: 40 // RENARD_STEPS[grid]]
         decades = np.arange(np.floor(np.log10(lower)), np.ceil(np.log10(upper)) + 1)
         values = np.array([float(f"{m}e{int(d)}") for d in decades for m in mantissas])
     elif isinstance(grid, (int, float)):
+        if not grid > 0:
+            raise DeclarationError(f"a grid step must be above 0, not {grid}")
         first, last = np.ceil(lower / grid - 1e-9), np.floor(upper / grid + 1e-9)
+        steps = np.arange(first, last + 1)
+        per_unit = round(1 / grid) if grid < 1 else 0
         # Division by the reciprocal of a fractional step keeps 0.1 mm ladders free of 0.30000000000000004.
-        values = np.arange(first, last + 1) / round(1 / grid) if grid < 1 else np.arange(first, last + 1) * grid
+        values = steps / per_unit if per_unit and abs(per_unit * grid - 1) < 1e-9 else steps * grid
     else:
         values = np.sort(np.asarray(grid, dtype=float))
-    return values[(values >= lower * (1 - 1e-12)) & (values <= upper * (1 + 1e-12))]
+    return values[(values >= lower - 1e-12 * abs(lower)) & (values <= upper + 1e-12 * abs(upper))]

@@ -174,7 +174,7 @@ class Formulation:
         return Program(self.model.inputs, [when], self.model.calls).compile()
 
     def contract(
-        self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, combine: np.ndarray | None = None
+        self, boxes: Boxes, caps: np.ndarray | None, passes: int = 3, combine: np.ndarray | None = None
     ) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
 
@@ -291,7 +291,17 @@ class Formulation:
         return self.model.evaluate(variables, self.instance.data(np.asarray(combinations)))
 
     def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
-        """Return those of the points that are feasible, as candidates."""
+        """Return those of the points that are feasible, and keep them in the archive."""
+        rows, phi = self._feasible(variables, combinations)
+        self.archive.add(combinations[rows], variables[rows], phi[rows])
+        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
+
+    def feasible_points(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
+        """Return those of the points that are feasible."""
+        rows, phi = self._feasible(variables, combinations)
+        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
+
+    def _feasible(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         result = self.evaluate(variables, combinations)
         feasible = result.feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
         for extra in self.instance.extra:
@@ -301,8 +311,7 @@ class Formulation:
             [g.sign * result.values[name] for g, name in zip(self.goals, self.names, strict=True)], axis=1
         )
         phi = self.phi_of(signed)
-        feasible = feasible & np.all(np.isfinite(phi), axis=1)
-        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in np.flatnonzero(feasible)]
+        return np.flatnonzero(feasible & np.all(np.isfinite(phi), axis=1)), phi
 
     def sample(self, boxes: Boxes, count: int, rng: np.random.Generator) -> None:
         """Evaluate ``count`` random makeable points per box and keep the feasible ones in the archive."""

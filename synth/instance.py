@@ -69,6 +69,21 @@ class Selection:
     offered: dict[str, int] = field(default_factory=dict)
 
 
+def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
+    """Return what must be names with values; nothing given is an empty mapping.
+
+    Raises
+    ------
+    InputError
+        When it is something else.
+    """
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise InputError(field, value, f"names with values, for example {example}")
+    return value
+
+
 def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs) -> dict[str, Any]:
     """Return the requirements by public name; values of None count as not given.
 
@@ -79,7 +94,7 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     """
     model = problem.model(frozenset(), catalogs)
     result: dict[str, Any] = {}
-    for word, value in requirements.items():
+    for word, value in as_mapping(requirements, "requirements", "{'load_torque': '600 N*m'}").items():
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
         if name in result:
             raise InputError(f"requirement {name}", word, "each requirement once (name and symbol mean the same)")
@@ -132,13 +147,13 @@ class Instance:
         self.extra: list[ExtraLimit] = []
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
-        for word, conditions in (limits or {}).items():
+        for word, conditions in as_mapping(limits, "limits", "{'mass': '<= 20 kg'}").items():
             self._add_limit(str(word), conditions)
-        for word, value in (fix or {}).items():
+        for word, value in as_mapping(fix, "fix", "{'mass': '20 kg'}").items():
             self._pin(str(word), value)
         self.selection = Selection()
         if restrict:
-            self._select_rows(parts or {})
+            self._select_rows(as_mapping(parts, "parts", "{'inner_plate': ['core 2', 'core 3']}"))
             self._select_counts()
             self._refuse_rows()
         self.radix = [len(s.rows) for s in self.selection.slots]
@@ -286,7 +301,7 @@ class Instance:
 
     def _check_range_of_variable(self, k: int, typed: Any, value: float) -> None:
         v = self.model.variables[k]
-        if not v.lower * (1 - 1e-12) <= value <= v.upper * (1 + 1e-12):
+        if not v.lower - 1e-12 * abs(v.lower) <= value <= v.upper + 1e-12 * abs(v.upper):
             allowed = f"{format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}"
             raise InputError(f"fix: {v.name}", typed, allowed)
 
@@ -346,6 +361,8 @@ class Instance:
         keep = np.zeros(len(table), dtype=bool)
         if isinstance(rule, str) and rule not in table.designations:
             return parse_condition(rule).mask(table)
+        if not isinstance(rule, (str, Sequence)):
+            raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")
         for designation in [rule] if isinstance(rule, str) else rule:
             keep[table.row_index(str(designation))] = True
         return keep
@@ -488,7 +505,8 @@ class Instance:
         result = []
         for k, v in enumerate(self.model.variables):
             values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
-            inside = (values >= self.lower[k] * (1 - 1e-12)) & (values <= self.upper[k] * (1 + 1e-12))
+            inside = values >= self.lower[k] - 1e-12 * abs(self.lower[k])
+            inside &= values <= self.upper[k] + 1e-12 * abs(self.upper[k])
             if len(values) and not inside.any():
                 low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
                 raise InputError(

@@ -5,21 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from typing import Any
+
 import moocore
 import numpy as np
 
 SAME = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Zone:
     """A region ``phi < upper`` that may hold a further non-dominated point.
 
     ``upper`` comes from known points: component k from the point ``makers[k]`` (None: the nadir).
+    ``cover`` is the searcher's own: what it knows of the region; parts of a zone inherit it.
     """
 
     upper: np.ndarray
     makers: tuple[int | None, ...]
+    cover: Any = None
 
 
 class Zones:
@@ -29,13 +33,15 @@ class Zones:
     ----------
     ideal, nadir : array (objectives,)
         Corners of the region of interest, in phi.
+    cover : object
+        What the searcher knows of the whole region.
     """
 
-    def __init__(self, ideal: np.ndarray, nadir: np.ndarray) -> None:
+    def __init__(self, ideal: np.ndarray, nadir: np.ndarray, cover: Any = None) -> None:
         self.ideal, self.nadir = ideal, nadir
         self.range = np.maximum(nadir - ideal, 1e-300)
         self.points: list[np.ndarray] = []
-        self.zones = [Zone(nadir.copy(), (None,) * len(nadir))]
+        self.zones = [Zone(nadir.copy(), (None,) * len(nadir), cover)]
 
     def add(self, point: np.ndarray) -> None:
         """Take a new non-dominated point: zones that it lies in are replaced by what remains of them."""
@@ -51,7 +57,7 @@ class Zones:
                 upper[k] = point[k]
                 makers = tuple(number if j == k else m for j, m in enumerate(zone.makers))
                 if np.all(upper > self.ideal + SAME * self.range):
-                    made.append(Zone(upper, makers))
+                    made.append(Zone(upper, makers, zone.cover))
         self.zones = kept + self._irredundant(made, kept)
 
     @staticmethod

@@ -17,17 +17,19 @@ from synth.feasibility import Status
 from synth.formulation import TIE, Boxes, Candidate, Formulation
 from synth.instance import Instance, as_catalogs
 from synth.nlp import Task
-from synth.pareto import Zones, non_dominated, rank, spread_subset
+from synth.pareto import Zone, Zones, non_dominated, rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.results import Certificate, Design, Frame, ParetoFront
-from synth.tree import Clock, Outcome, Stopped, Target, minimise, refine
+from synth.tree import Clock, Outcome, Stopped, Target, minimise, relative_slack
 
 ROOT_CHUNK = 16384
-REFINE_BUDGET = 150_000
+ZONE_BOXES = 12_000
+ZONE_SPLITS = 3
 MULTI_STARTS = 6
 EXHAUSTIVE_LIMIT = 3000
-ALTERNATIVES_CHECKED = 40
-PINNED = 1e-8
+SETTLE_GAP = 1e-6
+SETTLE_EFFORT = 3000
+PINNED = 1e-5  # propagation loosens limits by some 1e-6; closer than this nothing is left to settle
 
 
 def synthesize(
@@ -165,8 +167,7 @@ class _FrontSearch:
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
-        self.pool: Boxes | None = None  # all boxes that may hold a feasible design
-        self.cover: Boxes | None = None  # the part of them that known designs do not dominate, split finer
+        self.pool: Boxes = self.form.root(np.empty(0, dtype=np.int64))  # all boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.complete = False
         self.scalar_problems = 0
@@ -192,7 +193,7 @@ class _FrontSearch:
         interrupted = ""
         try:
             self._timed("bounds", self._root)
-            if self.pool is not None and len(self.pool):
+            if len(self.pool):
                 self._timed("extremes", self._extremes)
             if self.front:
                 self._timed("front", self._fill)
@@ -245,7 +246,6 @@ class _FrontSearch:
         if len(self.pool):
             self.form.settle_objectives(self.pool)
             self.form.sample(self.pool, 3, self.rng)
-            self.cover = refine(self.form, self.pool, self.clock, REFINE_BUDGET)
 
     def _target(self, k: int, caps: np.ndarray) -> Target:
         """Return the problem: least phi_k, the other objectives capped."""
@@ -253,10 +253,11 @@ class _FrontSearch:
         slope[k] = 1.0
         return Target(np.where(slope > 0, 0.0, caps), slope)
 
-    def _solve(self, target: Target, start: Candidate | None = None, ceiling: float = np.inf) -> Outcome:
-        assert self.cover is not None
+    def _solve(
+        self, target: Target, boxes: Boxes, start: Candidate | None = None, ceiling: float = np.inf
+    ) -> Outcome:
         self.scalar_problems += 1
-        outcome = minimise(self.form, self.cover, target, self.gap, self.clock, start, ceiling, self.ranges)
+        outcome = minimise(self.form, boxes, target, self.gap, self.clock, start, ceiling, self.ranges)
         if not outcome.closed:
             outcome = self._exhaust(outcome, target, ceiling)
         return outcome
@@ -265,7 +266,6 @@ class _FrontSearch:
         """Solve every combination that bounds could not exclude, from several starts."""
         self.closed = False
         self.unresolved += outcome.unresolved
-        assert self.pool is not None
         if len(outcome.open_combinations) > EXHAUSTIVE_LIMIT:
             self.exhausted = False
         best, t = outcome.best, outcome.t
@@ -304,7 +304,7 @@ class _FrontSearch:
         open_caps = np.full(len(self.form.goals), np.inf)
         found: list[Candidate] = []
         for k in range(self.m):
-            outcome = self._solve(self._target(k, open_caps), self._best_known(found, k))
+            outcome = self._solve(self._target(k, open_caps), self.pool, self._best_known(found, k))
             if outcome.best is None:
                 return
             found.append(self._improve(outcome.best, [k, *(j for j in range(self.m) if j != k)]))
@@ -325,7 +325,7 @@ class _FrontSearch:
                 first = False
                 if candidate.phi[k] <= caps[k]:
                     continue  # its own extreme is the optimum already
-            outcome = self._solve(self._target(k, caps), candidate)
+            outcome = self._solve(self._target(k, caps), self.pool, candidate)
             if outcome.best is not None:
                 candidate = outcome.best
                 caps[: self.m] = np.minimum(caps[: self.m], candidate.phi[: self.m])
@@ -346,7 +346,7 @@ class _FrontSearch:
             self.complete = self.closed
             return
         phi = np.array([c.phi[: self.m] for c in self.front])
-        zones = Zones(phi.min(axis=0), phi.max(axis=0))
+        zones = Zones(phi.min(axis=0), phi.max(axis=0), self.pool)
         scale = np.maximum(zones.range, 0.0)
         self.ranges = np.concatenate([scale, np.ones(len(self.form.goals) - self.m)])
         for point in phi:
@@ -357,11 +357,12 @@ class _FrontSearch:
             base = np.full(len(self.form.goals), np.inf)
             slope = np.zeros(len(self.form.goals))
             base[: self.m], slope[: self.m] = lower, zone.upper - lower
-            outcome = self._solve(Target(base, slope), self._inside(zone.upper), 1.0)
+            zone.cover = self._narrowed(zone)
+            outcome = self._solve(Target(base, slope), zone.cover, self._inside(zone.upper), 1.0)
             if outcome.best is None or outcome.t >= 1.0 - TIE:
                 zones.close(zone)
                 continue
-            point = self._improve_all(outcome.best)
+            point = self._tightened(outcome.best, zone.cover, base[: self.m] + slope[: self.m] * outcome.t)
             if any(np.all(np.abs(point.phi[: self.m] - c.phi[: self.m]) <= TIE) for c in self.front):
                 zones.close(zone)
                 continue
@@ -371,11 +372,31 @@ class _FrontSearch:
         self.complete = self.closed and not zones.zones
         self.front = self._distinct(self.front)
 
-    def _improve_all(self, candidate: Candidate) -> Candidate:
+    def _narrowed(self, zone: Zone) -> Boxes:
+        """Return the boxes that reach into a zone, tightened to it and split a little; its parts start from them."""
+        caps = np.full(len(self.form.goals), np.inf)
+        caps[: self.m] = zone.upper
+        boxes = zone.cover
+        for _ in range(ZONE_SPLITS):
+            self.clock.check()
+            boxes = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
+            known = self.form.archive.caps(self.form.phi_of(boxes.bounds))
+            boxes = self.form.contract(boxes, np.minimum(known, caps))
+            if len(boxes) > ZONE_BOXES:
+                break
+            boxes = Boxes.joined(self.form.split(boxes))
+        return boxes
+
+    def _tightened(self, candidate: Candidate, cover: Boxes, corner: np.ndarray) -> Candidate:
+        """Return a design of the middle of a zone, improved in the objectives that did not decide it.
+
+        An objective that reaches the corner is proven already: less of it would have meant a smaller t.
+        """
+        slack = relative_slack(self.form, self.gap, candidate.phi, self.ranges)[: self.m]
         caps = np.full(len(self.form.goals), np.inf)
         caps[: self.m] = candidate.phi[: self.m]
-        for k in range(self.m):
-            outcome = self._solve(self._target(k, caps), candidate)
+        for k in np.flatnonzero(candidate.phi[: self.m] < corner - slack):
+            outcome = self._solve(self._target(int(k), caps), cover, candidate)
             if outcome.best is not None:
                 candidate = outcome.best
                 caps[: self.m] = np.minimum(caps[: self.m], candidate.phi[: self.m])
@@ -437,29 +458,42 @@ class _FrontSearch:
 
     def _settle(self, candidate: Candidate) -> tuple[Candidate, tuple[str, ...]]:
         """Settle what the chosen objectives do not see, and name other combinations that tie."""
-        form = self.form
-        assert self.pool is not None
+        form, current = self.form, candidate
         caps = np.full(len(form.goals), np.inf)
         caps[: self.m] = candidate.phi[: self.m] + TIE
-        tied = self._within(self.pool, caps)
-        combinations = np.unique(np.concatenate([tied.combination, [candidate.combination]]))
-        current = candidate
-        for j in range(self.m, len(form.goals)):
-            tied = self._within(tied, caps)
-            if not len(tied) or self._pinned(tied):
+        first = self.m
+        if self.m == 1 and len(form.goals) > 1:
+            # One objective leaves whole families of parts open; the next objective is settled over all of them.
+            outcome = self._solve(self._target(first, caps), self.pool, current)
+            current = current if outcome.best is None else outcome.best
+            caps[first] = current.phi[first] + TIE
+            first += 1
+        ties = self._ties(current)
+        boxes = form.root(np.unique(np.concatenate([ties, [current.combination]])))
+        for j in range(first, len(form.goals)):
+            boxes = self._within(boxes, caps)
+            if not len(boxes) or self._pinned(boxes):
                 break
-            outcome = minimise(form, tied, self._target(j, caps), 1e-6, self.clock, current, effort=3000)
-            if outcome.best is not None:
-                current = outcome.best
+            outcome = minimise(form, boxes, self._target(j, caps), SETTLE_GAP, self.clock, current, effort=SETTLE_EFFORT)
+            current = current if outcome.best is None else outcome.best
             caps[j] = current.phi[j] + TIE
-        others = [c for c in combinations if c != current.combination]
-        caps[self.m :] = np.inf
-        names = []
-        for other in others[:ALTERNATIVES_CHECKED]:
-            boxes = self._within(self.pool.take(self.pool.combination == other), caps)
-            if len(boxes) and minimise(form, boxes, self._target(self.m - 1, caps), 1e-3, self.clock, effort=2000).best:
-                names.append(self._difference(current.combination, int(other)))
-        return current, tuple(names)
+        others = [int(c) for c in self._ties(current) if c != current.combination]
+        return current, tuple(self._difference(current.combination, other) for other in others)
+
+    def _ties(self, candidate: Candidate) -> np.ndarray:
+        """Return the combinations that reach the same chosen objectives with the same dimensions."""
+        found = []
+        phi = candidate.phi[: self.m]
+        for first in range(0, self.instance.combinations, ROOT_CHUNK):
+            numbers = np.arange(first, min(first + ROOT_CHUNK, self.instance.combinations), dtype=np.int64)
+            variables = np.broadcast_to(candidate.variables, (len(numbers), self.form.n))
+            equal = [
+                c.combination
+                for c in self.form.feasible_points(variables, numbers)
+                if np.all(np.abs(c.phi[: self.m] - phi) <= TIE)
+            ]
+            found += equal
+        return np.array(found, dtype=np.int64)
 
     def _within(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
         near = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
@@ -501,7 +535,7 @@ class _FrontSearch:
             "excluded_by_bound": total - solved - uncovered,
             "solved": solved,
             "not_reached": uncovered,
-            "alive_after_first_bound": 0 if self.pool is None else len(self.pool),
+            "alive_after_first_bound": len(self.pool),
             "boxes": self.form.contracted,
             "scalar_problems": self.scalar_problems,
             "nlp_solves": self.form.nlp_solves,

@@ -9,16 +9,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.formulation import SNAP, TIE, Boxes, Candidate, Formulation
 from synth.nlp import Solution, Task
 
 BATCH = 4096
-TRIES_PER_ROUND = 3
-ROUNDINGS = 16
+TRIES_PER_ROUND = 2
+TRIES_PER_COMBINATION = 3
+PROBES = 256
+EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
+ROUNDINGS = 256
 VECTORS = 6
 
 
@@ -145,34 +148,6 @@ def minimise(
     return Outcome(search.best, search.t, closed, np.unique(search.left_open), len(search.left_open))
 
 
-def refine(form: Formulation, boxes: Boxes, clock: Clock, budget: int) -> Boxes:
-    """Split boxes and drop those that known designs dominate, so that every later question starts closer.
-
-    Only designs that are worse than a known one in every traded objective, by more than rounding, are dropped.
-
-    Parameters
-    ----------
-    form : Formulation
-    boxes : Boxes
-    clock : Clock
-    budget : int
-        Boxes that may be tightened.
-    """
-    spent = 0
-    while len(boxes) and spent < budget:
-        clock.check()
-        spent += len(boxes)
-        boxes = form.contract(boxes, form.archive.caps(form.phi_of(boxes.bounds)))
-        form.candidates(form.makeable(form.inside(boxes, 0.5)), boxes.combination)
-        halves, small = form.split(boxes)
-        boxes = Boxes.joined([halves, small])
-        if not len(halves):
-            break
-        near = form.phi_of(boxes.bounds) <= form.archive.caps(form.phi_of(boxes.bounds))
-        boxes = boxes.take(np.all(near, axis=1))
-    return boxes
-
-
 def _best(form: Formulation, target: Target, boxes: Boxes) -> tuple[Boxes, Boxes]:
     if len(boxes) <= BATCH:
         return boxes, boxes.take(np.zeros(0, dtype=np.int64))
@@ -198,7 +173,7 @@ class _Search:
         self.form, self.target, self.gap, self.ranges = form, target, gap, ranges
         self.best = start
         self.t = ceiling if start is None else min(ceiling, float(target.t_of(start.phi)))
-        self.tried: set[int] = set()
+        self.tried: dict[int, int] = {}
         self.multipliers = np.empty((0, len(form.cuts) + len(form.goals)))
         self.left_open = np.empty(0, dtype=np.int64)
         moving = target.slope > 0
@@ -246,7 +221,7 @@ class _Search:
             self.offer([candidate])
             if candidate.combination not in self.tried:
                 tries += 1
-                self.tried.add(candidate.combination)
+                self.tried[candidate.combination] = 1
                 self.improve(candidate)
 
     def improve(self, candidate: Candidate) -> None:
@@ -254,24 +229,42 @@ class _Search:
         self.try_box(self.form.root(np.array([candidate.combination])), candidate.variables)
 
     def try_some(self, boxes: Boxes) -> None:
-        """Evaluate the middle of every box, and solve the continuous problem where it promises most."""
+        """Look for better designs: points of many boxes at once, then the continuous problem of the best."""
         if not len(boxes):
             return
         form = self.form
-        before = self.best
-        self.offer(form.candidates(form.makeable(form.inside(boxes, 0.5)), boxes.combination))
-        if self.best is not None and self.best is not before and self.best.combination not in self.tried:
-            self.tried.add(self.best.combination)
-            self.improve(self.best)
+        before = self.t
         t = self.target.t_of(form.phi_of(boxes.bounds))
-        for k in np.argsort(t, kind="stable")[: 4 * TRIES_PER_ROUND]:
+        order = np.argsort(t, kind="stable")
+        self.probe(boxes.take(order[:PROBES]))
+        if self.best is not None and self.t < before:
+            box = form.root(np.array([self.best.combination]))
+            self.try_box(box, self.best.variables)
+            return
+        tries = 0
+        for k in order[: 4 * TRIES_PER_ROUND]:
             combination = int(boxes.combination[k])
-            if combination in self.tried or (np.isfinite(self.t) and t[k] >= self.t):
-                continue
-            self.tried.add(combination)
-            box = boxes.take(np.array([k]))
-            self.try_box(box, form.good_start(box, self.rng))
-            break
+            if tries == TRIES_PER_ROUND or (np.isfinite(self.t) and t[k] >= self.t):
+                break
+            if self.tried.get(combination, 0) < TRIES_PER_COMBINATION:
+                tries += 1
+                self.tried[combination] = self.tried.get(combination, 0) + 1
+                box = boxes.take(np.array([k]))
+                self.try_box(box, form.good_start(box, self.rng))
+
+    def probe(self, boxes: Boxes) -> None:
+        """Fix the gridded variables of every box in its middle and evaluate what propagation leaves of the rest."""
+        form = self.form
+        middle = form.makeable(form.inside(boxes, 0.5))
+        if form.gridded.any():
+            boxes = replace(
+                boxes,
+                low=np.where(form.gridded, middle, boxes.low),
+                high=np.where(form.gridded, middle, boxes.high),
+            )
+            boxes = form.contract(boxes, self.caps())
+        for share in (EDGE, 0.5) if len(boxes) else ():
+            self.offer(form.candidates(form.makeable(form.inside(boxes, share)), boxes.combination))
 
     def try_box(self, box: Boxes, start: np.ndarray) -> None:
         """Solve in one box; with a grid, round the answer and solve again for what remains."""
@@ -293,23 +286,31 @@ class _Search:
                 self.try_leaf(probes.take(np.array([k])), solution.variables)
 
     def _roundings(self, box: Boxes, variables: np.ndarray) -> Boxes:
+        """Return the makeable points around a continuous optimum, as boxes with gridded variables fixed.
+
+        The nearest ones alone would not do: along a limit that two variables share, the best makeable point
+        is often several steps away.
+        """
         form = self.form
-        ends: list[list[float]] = []
+        gridded = int(form.gridded.sum())
+        reach = max(1, int(ROUNDINGS ** (1 / gridded) / 2))
+        ends: list[np.ndarray] = []
         for k, grid in enumerate(form.grids):
             if not len(grid):
-                ends.append([np.nan])
+                ends.append(np.array([np.nan]))
                 continue
             position = int(np.searchsorted(grid, variables[k]))
-            near = grid[max(position - 1, 0) : position + 1]
-            ends.append(sorted({float(x) for x in near}))
-        choices = np.array(np.meshgrid(*ends, indexing="ij")).reshape(form.n, -1).T[: ROUNDINGS * ROUNDINGS]
-        low = np.where(np.isnan(choices), box.low, choices)
-        high = np.where(np.isnan(choices), box.high, choices)
+            near = grid[max(position - reach, 0) : position + reach]
+            inside = (near >= box.low[0, k] * (1 - SNAP)) & (near <= box.high[0, k] * (1 + SNAP))
+            ends.append(near[inside] if inside.any() else near[:1])
+        choices = np.array(np.meshgrid(*ends, indexing="ij")).reshape(form.n, -1).T
+        if len(choices) > 4 * ROUNDINGS:
+            choices = choices[self.rng.choice(len(choices), 4 * ROUNDINGS, replace=False)]
         count = len(choices)
         return Boxes(
             np.full(count, box.combination[0]),
-            low,
-            high,
+            np.where(np.isnan(choices), box.low, choices),
+            np.where(np.isnan(choices), box.high, choices),
             np.repeat(box.bounds, count, axis=0),
             np.repeat(box.scores, count, axis=0),
         )

@@ -1,0 +1,174 @@
+"""Who may import what, and what an installed copy contains."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("synth", "problems", "problems/mechanics", "catalogs", "reports")
+OURS = {package.split("/")[0] for package in PACKAGES}
+
+
+def sources(package: str) -> list[Path]:
+    found = sorted((ROOT / package).glob("*.py"))
+    assert found, f"no source files in {package}"
+    return found
+
+
+def imported(text: str, at_run_time: bool = False) -> set[str]:
+    """Return the full dotted names that a source text imports, wherever the import stands.
+
+    ``at_run_time`` leaves out what only type checkers read.
+    """
+    names: set[str] = set()
+    pending: list[ast.AST] = [ast.parse(text)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute here"
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.If) and at_run_time and ast.unparse(node.test) == "TYPE_CHECKING":
+            pending += node.orelse
+        else:
+            pending += ast.iter_child_nodes(node)
+    return names
+
+
+def strangers(names: set[str], allowed: set[str]) -> list[str]:
+    """Return the names that lie neither in an allowed module nor in the standard library."""
+
+    def known(name: str) -> bool:
+        steps = name.split(".")
+        return any(".".join(steps[:k]) in allowed for k in range(1, len(steps) + 1))
+
+    return sorted(n for n in names if not known(n) and n.split(".")[0] not in sys.stdlib_module_names)
+
+
+def test_imports_are_found_wherever_they_stand() -> None:
+    text = (
+        "import numpy as np\nfrom typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from reports.table import x\nelse:\n    import problems.blocks\n"
+        "def f():\n    from synth import DesignProblem\n"
+    )
+    always = {"numpy", "typing.TYPE_CHECKING", "problems.blocks", "synth.DesignProblem"}
+    assert imported(text, at_run_time=True) == always
+    assert imported(text) == always | {"reports.table.x"}
+    assert strangers(imported(text), {"synth", "numpy"}) == ["problems.blocks", "reports.table.x"]
+    assert strangers({"synthetic.x", "synth.units.x"}, {"synth.units"}) == ["synthetic.x"]
+
+
+# package: what it may import besides the standard library
+MAY_IMPORT = {
+    "problems": {
+        "problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special",
+    },
+    "problems/mechanics": {"problems.mechanics", "numpy", "scipy", "synth.special", "synth.errors"},
+    "catalogs": set(),
+    "reports": {"reports", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("package", MAY_IMPORT)
+def test_packages_around_the_engine_keep_to_its_public_side(package: str) -> None:
+    found = {path.name: strangers(imported(path.read_text()), MAY_IMPORT[package]) for path in sources(package)}
+    assert not {name: names for name, names in found.items() if names}
+
+
+def test_the_engine_imports_no_family_no_catalogue_and_no_report() -> None:
+    found = {
+        path.name: [n for n in imported(path.read_text()) if n.split(".")[0] in OURS - {"synth"}]
+        for path in sources("synth")
+    }
+    assert not {name: names for name, names in found.items() if names}
+
+
+def circles(graph: dict[str, set[str]]) -> set[str]:
+    """Return the nodes that are left when all without open dependencies are taken away again and again."""
+    left = {name: set(needs) & set(graph) for name, needs in graph.items()}
+    while free := {name for name, needs in left.items() if not needs & set(left)}:
+        left = {name: needs for name, needs in left.items() if name not in free}
+    return set(left)
+
+
+def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": set()}) == {"a", "b", "c"}
+    graph = {
+        f"synth.{path.stem}": {
+            ".".join(name.split(".")[:2])
+            for name in imported(path.read_text(), at_run_time=True)
+            if name.startswith("synth.")
+        }
+        for path in sources("synth")
+        if path.stem != "__init__"
+    }
+    assert len(graph) > 10
+    assert circles(graph) == set()
+
+
+def spoken(tree: ast.AST) -> set[str]:
+    """Return the identifiers and texts of a source, docstrings apart."""
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    docstrings = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, documented) and node.body and isinstance(node.body[0], ast.Expr)
+    }
+    words: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+            words.add(node.value)
+        elif isinstance(node, ast.Name):
+            words.add(node.id)
+        elif isinstance(node, ast.Attribute):
+            words.add(node.attr)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef, ast.alias)):
+            words.add(node.name)
+    return words
+
+
+def test_the_engine_names_no_family() -> None:
+    points = entry_points(group="clutchsynth.problems")
+    assert points
+    families = {point.name for point in points} | {point.attr for point in points}
+    # Messages may show a line of a spec that can be typed; nothing else may know a name.
+    example = re.compile(r"'family: \w+'")
+    for path in sources("synth"):
+        words = {example.sub("", word) for word in spoken(ast.parse(path.read_text()))}
+        named = {word for word in words for family in families if family in word}
+        assert not named, f"{path.name} names {named}"
+
+
+def test_a_wheel_contains_all_tables_schemas_and_the_type_marker(tmp_path: Path) -> None:
+    source, wheels = tmp_path / "source", tmp_path / "wheels"
+    source.mkdir()  # a copy: building leaves folders beside what it builds
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source)
+    for package in OURS:
+        shutil.copytree(ROOT / package, source / package, ignore=shutil.ignore_patterns("__pycache__"))
+    done = subprocess.run(
+        [sys.executable, "-m", "pip", "wheel", str(source), "--no-deps", "--no-build-isolation", "--quiet",
+         "--disable-pip-version-check", "--wheel-dir", str(wheels)],
+        capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    (wheel,) = wheels.glob("clutchsynth-*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        packed = set(archive.namelist())
+        metadata = next(archive.read(name).decode() for name in packed if name.endswith("/entry_points.txt"))
+    modules = {f"{package}/{path.name}" for package in PACKAGES for path in sources(package)}
+    tables = {f"catalogs/{path.name}" for path in (ROOT / "catalogs").iterdir() if path.suffix in (".csv", ".md")}
+    assert len(tables) > 2
+    assert modules | tables | {"synth/py.typed"} <= packed
+    assert not [name for name in packed if name.startswith(("tests/", "docs/", "examples/"))]
+    assert "clutchsynth = synth.cli:main" in metadata
