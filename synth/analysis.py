@@ -191,8 +191,8 @@ def evaluate(
         if not isinstance(design, Mapping):
             raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'")
         values, parts = design.get("values"), design.get("parts")
-    values = as_mapping(values, "values", "{'friction_surfaces': 10}")
-    parts = as_mapping(parts, "parts", "{'inner_plate': 'core 2'}")
+    values = as_mapping(values, "values", "{'mass': '20 kg'}")
+    parts = as_mapping(parts, "parts", "{'slot': 'designation'}")
     return _evaluate(p, requirements, values, parts, catalogs, limits, objectives, in_si=False)
 
 

@@ -94,7 +94,7 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     """
     model = problem.model(frozenset(), catalogs)
     result: dict[str, Any] = {}
-    for word, value in as_mapping(requirements, "requirements", "{'load_torque': '600 N*m'}").items():
+    for word, value in as_mapping(requirements, "requirements", "{'mass': '20 kg'}").items():
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
         if name in result:
             raise InputError(f"requirement {name}", word, "each requirement once (name and symbol mean the same)")
@@ -153,7 +153,7 @@ class Instance:
             self._pin(str(word), value)
         self.selection = Selection()
         if restrict:
-            self._select_rows(as_mapping(parts, "parts", "{'inner_plate': ['core 2', 'core 3']}"))
+            self._select_rows(as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}"))
             self._select_counts()
             self._refuse_rows()
         self.radix = [len(s.rows) for s in self.selection.slots]
@@ -207,7 +207,7 @@ class Instance:
             designation = row.slot.split(":", 1)[1]
             index = table.row_index(designation)
             for key, column in row.columns.items():
-                numbers = {c: table.number(c)[[index]] for c in column.columns}
+                numbers = {c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in column.columns}
                 value = float(part_column_value(column, numbers)[0])
                 if math.isnan(value) and column.required:
                     raise InputError(f"table {row.table}, row {designation}, column {key}", None, "a number")
@@ -520,7 +520,7 @@ def number(expression: Any, values: Mapping[str, float]) -> float:
     """Evaluate an expression whose symbols all have values."""
     symbols = ca.symvar(ca.SX(expression))
     function = ca.Function("number", symbols, [ca.SX(expression)])
-    return float(function(*[values[str(s)] for s in symbols]))
+    return float(function.call([values[str(s)] for s in symbols])[0])
 
 
 def _compare(values: np.ndarray, sense: str, bound: float) -> np.ndarray:

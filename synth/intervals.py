@@ -285,30 +285,29 @@ def _back_sq(r: Interval, a: Interval) -> tuple[Interval]:
     return ((low, np.where(a[1] <= 0, -root[1], root[0])),)
 
 
-def _back_pow(r: Interval, a: Interval, b: Interval) -> tuple[Interval, Interval]:
+def _back_pow(r: Interval, a: Interval, b: Interval) -> tuple[Interval | None, None]:
     exponent = b[0]
-    open_end = _whole(b)
     if _surely(a[0]) and np.ndim(exponent) == 0 and np.all(b[0] == b[1]) and float(exponent) != 0.0:
         base = _pow((np.maximum(r[0], 0.0), np.maximum(r[1], 0.0)), (1.0 / exponent, 1.0 / exponent))
-        return base, open_end
-    return _whole(a), open_end
+        return base, None
+    return None, None
 
 
-def _back_if_else_zero(r: Interval, c: Interval, x: Interval) -> tuple[Interval, Interval]:
+def _back_if_else_zero(r: Interval, c: Interval, x: Interval) -> tuple[None, Interval]:
     sure = c[0] > 0.5
-    return _whole(c), (np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf))
+    return None, (np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf))
 
 
-def _back_select(r: Interval, c: Interval, x: Interval, y: Interval) -> tuple[Interval, Interval, Interval]:
+def _back_select(r: Interval, c: Interval, x: Interval, y: Interval) -> tuple[None, Interval, Interval]:
     sure, never = c[0] > 0.5, c[1] < 0.5
     return (
-        _whole(c),
+        None,
         (np.where(sure, r[0], -np.inf), np.where(sure, r[1], np.inf)),
         (np.where(never, r[0], -np.inf), np.where(never, r[1], np.inf)),
     )
 
 
-BACKWARD: dict[int, Callable[..., tuple[Interval, ...]]] = {
+BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
     ca.OP_ADD: lambda r, a, b: (_sub(r, b), _sub(r, a)),
     ca.OP_SUB: lambda r, a, b: (_add(r, b), _sub(a, r)),
     ca.OP_MUL: lambda r, a, b: (_quotient(r, b), _quotient(r, a)),
@@ -569,8 +568,7 @@ class Propagator:
                 forward = FORWARD.get(node.op)
                 box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
             if before is not None:
-                box.cut_low(k, before.low[k], alive)
-                box.cut_high(k, before.high[k], alive)
+                box.cut(k, (before.low[k], before.high[k]), alive)
             self._cut_node(box, k, caps, alive)
         return box
 
@@ -613,17 +611,18 @@ class Propagator:
             if backward is None:
                 continue
             args = [(box.low[a], box.high[a]) for a in node.args]
-            for a, (low, high) in zip(node.args, backward((box.low[k], box.high[k]), *args), strict=True):
-                if self.dependent[a]:
-                    box.cut_low(a, low, alive)
-                    box.cut_high(a, high, alive)
+            for a, bounds in zip(node.args, backward((box.low[k], box.high[k]), *args), strict=True):
+                if bounds is not None and self.dependent[a]:
+                    box.cut(a, bounds, alive)
 
     def _slopes(self, box: _Box) -> list[list[Interval | None]]:
         """Return, per node, the interval of its derivative to each variable (None: identically zero)."""
         n = self.n_variables
         slopes: list[list[Interval | None]] = [[None] * n for _ in self.program.nodes]
-        for i, k in enumerate(self.variables):
-            slopes[k][i] = (1.0, 1.0)
+        # A variable that no box leaves open needs no slope: it cannot move.
+        moving = [i for i, k in enumerate(self.variables) if np.any(box.high[k] > box.low[k])]
+        for i in moving:
+            slopes[self.variables[i]][i] = (1.0, 1.0)
         for k in self.order:
             node = self.program.nodes[k]
             args = [(box.low[a], box.high[a]) for a in node.args]
@@ -634,7 +633,7 @@ class Propagator:
             local = (
                 self._special_slopes(node, own, args) if node.op == OP_SPECIAL else _local_slopes(node.op, own, args)
             )
-            for i in range(n):
+            for i in moving:
                 total: Interval | None = None
                 for a, slope in zip(node.args, local, strict=True):
                     inner = slopes[a][i]
@@ -817,20 +816,20 @@ class _Box:
         self.low: list[Any] = [None] * n
         self.high: list[Any] = [None] * n
 
-    def cut_low(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        """Raise the lower end; a box whose ends pass each other by more than rounding is dead."""
-        low, high = self.low[k], self.high[k]
-        raised = np.fmax(low, bound)
-        alive &= ~(raised > high + ROUNDING * np.abs(high))
+    def cut(self, k: int, bounds: Interval, alive: np.ndarray) -> None:
+        """Intersect an interval; a box whose ends pass each other by more than rounding is dead."""
+        low, high = np.fmax(self.low[k], bounds[0]), np.fmin(self.high[k], bounds[1])
+        alive &= ~(low > high + ROUNDING * np.abs(high))
         # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.
-        self.low[k] = np.fmin(raised, np.fmax(high, low))
+        self.low[k], self.high[k] = np.fmin(low, high), high
+
+    def cut_low(self, k: int, bound: Any, alive: np.ndarray) -> None:
+        """Raise the lower end."""
+        self.cut(k, (bound, np.inf), alive)
 
     def cut_high(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        """Lower the upper end, likewise."""
-        low, high = self.low[k], self.high[k]
-        lowered = np.fmin(high, bound)
-        alive &= ~(low > lowered + ROUNDING * np.abs(lowered))
-        self.high[k] = np.fmax(lowered, np.fmin(low, high))
+        """Lower the upper end."""
+        self.cut(k, (-np.inf, bound), alive)
 
 
 def loosened(limit: Any, scale: float, side: int) -> Any:

@@ -28,6 +28,8 @@ ZONE_SPLITS = 3
 MULTI_STARTS = 6
 EXHAUSTIVE_LIMIT = 3000
 SETTLE_GAP = 1e-6
+ISOLATE_SPLITS = 16
+ISOLATE_BOXES = 500
 SETTLE_EFFORT = 3000
 PINNED = 1e-5  # propagation loosens limits by some 1e-6; closer than this nothing is left to settle
 
@@ -471,9 +473,12 @@ class _FrontSearch:
         ties = self._ties(current)
         boxes = form.root(np.unique(np.concatenate([ties, [current.combination]])))
         for j in range(first, len(form.goals)):
-            boxes = self._within(boxes, caps)
+            boxes = self._isolated(boxes, caps)
             if not len(boxes) or self._pinned(boxes):
                 break
+            if current.phi[j] - np.min(form.phi_of(boxes.bounds)[:, j]) <= PINNED * max(1.0, abs(current.phi[j])):
+                caps[j] = current.phi[j] + TIE
+                continue
             outcome = minimise(form, boxes, self._target(j, caps), SETTLE_GAP, self.clock, current, effort=SETTLE_EFFORT)
             current = current if outcome.best is None else outcome.best
             caps[j] = current.phi[j] + TIE
@@ -498,6 +503,17 @@ class _FrontSearch:
     def _within(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
         near = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
         return self.form.contract(near, caps, 3) if len(near) else near
+
+    def _isolated(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
+        """Return what the caps leave of the boxes, split until gridded variables are fixed."""
+        boxes = self._within(boxes, caps)
+        for _ in range(ISOLATE_SPLITS):
+            loose = ~self.form.on_grid(boxes)
+            if not loose.any() or len(boxes) > ISOLATE_BOXES:
+                break
+            halves, small = self.form.split(boxes.take(loose))
+            boxes = self._within(Boxes.joined([boxes.take(~loose), halves, small]), caps)
+        return boxes
 
     @staticmethod
     def _pinned(boxes: Boxes) -> bool:

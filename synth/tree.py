@@ -17,6 +17,8 @@ from synth.formulation import SNAP, TIE, Boxes, Candidate, Formulation
 from synth.nlp import Solution, Task
 
 BATCH = 4096
+FEW = 1024
+PATIENCE = 3
 TRIES_PER_ROUND = 2
 TRIES_PER_COMBINATION = 3
 PROBES = 256
@@ -138,9 +140,11 @@ def minimise(
         batch = form.contract(batch, caps, combine=search.multipliers)
         search.try_some(batch)
         batch = batch.take(np.all(form.phi_of(batch.bounds) <= search.caps(), axis=1))
-        halves, small = form.split(batch)
-        search.close_small(small)
-        waiting = Boxes.joined([waiting, halves])
+        for _ in range(1 if len(batch) > FEW else 2):
+            # A small batch costs as much as a larger one, so that it is split twice at once.
+            batch, small = form.split(batch)
+            search.close_small(small)
+        waiting = Boxes.joined([waiting, batch])
         if tightened > effort and len(waiting):
             open_ones = np.unique(np.concatenate([waiting.combination, search.left_open]))
             return Outcome(search.best, search.t, False, open_ones, len(waiting))
@@ -174,6 +178,7 @@ class _Search:
         self.best = start
         self.t = ceiling if start is None else min(ceiling, float(target.t_of(start.phi)))
         self.tried: dict[int, int] = {}
+        self.rounds = self.failures = 0
         self.multipliers = np.empty((0, len(form.cuts) + len(form.goals)))
         self.left_open = np.empty(0, dtype=np.int64)
         moving = target.slope > 0
@@ -230,14 +235,18 @@ class _Search:
 
     def try_some(self, boxes: Boxes) -> None:
         """Look for better designs: points of many boxes at once, then the continuous problem of the best."""
-        if not len(boxes):
+        self.rounds += 1
+        # After some rounds without a better design, looking for one every few rounds is enough.
+        if not len(boxes) or (self.failures >= PATIENCE and self.rounds % (self.failures - PATIENCE + 2)):
             return
         form = self.form
         before = self.t
+        self.failures += 1
         t = self.target.t_of(form.phi_of(boxes.bounds))
         order = np.argsort(t, kind="stable")
         self.probe(boxes.take(order[:PROBES]))
         if self.best is not None and self.t < before:
+            self.failures = 0
             box = form.root(np.array([self.best.combination]))
             self.try_box(box, self.best.variables)
             return
@@ -251,6 +260,8 @@ class _Search:
                 self.tried[combination] = self.tried.get(combination, 0) + 1
                 box = boxes.take(np.array([k]))
                 self.try_box(box, form.good_start(box, self.rng))
+        if self.t < before:
+            self.failures = 0
 
     def probe(self, boxes: Boxes) -> None:
         """Fix the gridded variables of every box in its middle and evaluate what propagation leaves of the rest."""

@@ -1,0 +1,296 @@
+"""What the documentation shows is run, and what the program offers is documented.
+
+On each page, in order: a ``console`` block runs its ``$`` lines and compares what stands below them, a ``python``
+block is executed (as doctest where it has prompts), ``yaml`` and ``csv`` blocks that are named become files. In what
+is compared ``...`` stands for anything and white space counts as one blank. ``sh`` blocks are for installing; they
+are not run.
+"""
+
+from __future__ import annotations
+
+import csv
+import doctest
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+import types
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+import synth
+from synth import cli
+from synth.description import describe
+from synth.spec import FIELDS
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+LANGUAGES = {"console", "python", "yaml", "csv", "sh", "text", "toml"}
+COMPARE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: language, file name if it is one, text, and the line it begins at."""
+
+    language: str
+    name: str
+    text: str
+    line: int
+
+
+def blocks(page: Path) -> list[Block]:
+    content = page.read_text(encoding="utf-8")
+    found = []
+    for match in FENCE.finditer(content):
+        language, _, name = match.group(1).strip().partition(" ")
+        text = match.group(2)
+        if language == "yaml" and not name and (first := re.match(r"# (\S+\.yaml)\n", text)):
+            name = first.group(1)
+        found.append(Block(language, name, text, content[: match.start()].count("\n") + 1))
+    return found
+
+
+def commands(text: str) -> list[tuple[str, str]]:
+    """Return the ``$`` lines of a console block, each with the output shown below it."""
+    found: list[tuple[str, str]] = []
+    for line in text.splitlines():
+        if line.startswith("$ "):
+            found.append((line[2:], ""))
+        else:
+            assert found, f"output before any command: {line!r}"
+            command, shown = found[-1]
+            found[-1] = (command, shown + line + "\n")
+    return found
+
+
+def same(shown: str, got: str) -> bool:
+    return doctest.OutputChecker().check_output(shown, got, COMPARE)
+
+
+class Reader:
+    """Does what a page says, in a folder that holds the examples."""
+
+    def __init__(self, page: Path, folder: Path) -> None:
+        self.page, self.folder, self.code = page, folder, 0
+        self.module = types.ModuleType("page")
+        shutil.copytree(ROOT / "examples", folder / "examples")
+        paths = [str(Path(sys.executable).parent), os.environ["PATH"]]
+        self.environment = {**os.environ, "PATH": os.pathsep.join(paths), "PYTHONPATH": str(ROOT)}
+
+    def follow(self, block: Block) -> None:
+        where = f"{self.page.name}, line {block.line}"
+        if block.language == "console":
+            shown = commands(block.text)
+            for k, (command, output) in enumerate(shown):
+                asks_code = k + 1 < len(shown) and shown[k + 1][0] == "echo $?"
+                self.run(command, output, asks_code, where)
+        elif block.language == "python":
+            self.execute(block, where)
+        elif block.language in ("yaml", "csv") and block.name:
+            (self.folder / block.name).write_text(block.text, encoding="utf-8")
+
+    def run(self, command: str, shown: str, may_fail: bool, where: str) -> None:
+        if command == "echo $?":
+            assert shown.strip() == str(self.code), f"{where}: the exit code is {self.code}"
+            return
+        if command.startswith("make "):
+            command = recipe(command.removeprefix("make "))
+        done = subprocess.run(
+            command, shell=True, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300,
+            check=False,
+        )  # fmt: skip
+        self.code = done.returncode
+        assert may_fail or self.code == 0, f"{where}: $ {command}\nended with {self.code}\n{done.stderr}"
+        got = done.stdout if self.code in (0, 3) else done.stdout + done.stderr
+        if shown:
+            assert same(shown, got), f"{where}: $ {command}\nshown:\n{shown}\ngot:\n{got}"
+
+    def execute(self, block: Block, where: str) -> None:
+        if ">>>" not in block.text:
+            exec(compile(block.text, where, "exec"), self.module.__dict__)
+            return
+        test = doctest.DocTestParser().get_doctest(block.text, {}, where, where, block.line)
+        test.globs = self.module.__dict__  # what one block defines, the next may use
+        report = io.StringIO()
+        failed, tried = doctest.DocTestRunner(optionflags=COMPARE).run(test, out=report.write, clear_globs=False)
+        assert tried
+        assert not failed, report.getvalue()
+
+
+def recipe(target: str) -> str:
+    """Return the command behind a make target."""
+    lines = (ROOT / "Makefile").read_text(encoding="utf-8").splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith(f"{target}:"))
+    assert lines[start + 2] == "", "a target that is shown with its output has one command"
+    return lines[start + 1].strip().replace("$(BIN)/", "")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_what_a_page_shows_happens(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    reader = Reader(page, tmp_path)
+    found = blocks(page)
+    assert {block.language for block in found} <= LANGUAGES
+    for block in found:
+        reader.follow(block)
+
+
+def test_a_page_that_is_wrong_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = tmp_path / "page.md"
+    page.write_text(
+        "```yaml\n# a.yaml\nx: 1\n```\n```console\n$ cat a.yaml\n# a.yaml\n...1\n$ false\n$ echo $?\n1\n```\n"
+        "```python\nx = 2\n```\n```python\n>>> x\n2\n```\n"
+    )
+    right = blocks(page)
+    reader = Reader(page, tmp_path)
+    for block in right:
+        reader.follow(block)
+    wrong = [
+        Block("console", "", "$ echo a\nb\n", 1),
+        Block("console", "", "$ false\n", 1),
+        Block("console", "", "$ true\n$ echo $?\n1\n", 1),
+        Block("python", "", ">>> x\n3\n", 1),
+        Block("python", "", "assert x == 3\n", 1),
+    ]
+    for block in wrong:
+        with pytest.raises(AssertionError), redirect_stdout(io.StringIO()):
+            reader.follow(block)
+
+
+# ---- nothing is left out --------------------------------------------------------------------------------------------
+
+
+def text_of(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def all_pages() -> str:
+    return "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+
+
+def offered() -> list[tuple[str, list[str]]]:
+    """Return the commands of the command line with their options."""
+    import typer
+
+    group = typer.main.get_command(cli.app)
+    return [
+        (name, [flag for p in command.params for flag in (*p.opts, *p.secondary_opts) if flag.startswith("-")])
+        for name, command in group.commands.items()
+    ]
+
+
+def test_every_command_and_option_is_documented() -> None:
+    text = all_pages()
+    found = offered()
+    assert len(found) > 3
+    for name, flags in found:
+        assert f"clutchsynth {name}" in text
+        for flag in flags:
+            assert re.search(rf"(?<![\w-]){re.escape(flag)}(?![\w-])", text), f"{name} {flag}"
+
+
+def test_every_key_of_a_spec_is_documented() -> None:
+    page = text_of("docs/specs.md")
+    for key in FIELDS:
+        assert f"`{key}`" in page, key
+
+
+def test_every_exit_code_is_documented() -> None:
+    codes = {cli.FOUND, cli.INTERNAL, cli.BAD_INPUT, cli.INFEASIBLE, cli.STOPPED}
+    for page in ("README.md", "docs/results.md"):
+        table = text_of(page).split("## Exit codes")[1].split("\n## ")[0]
+        assert {int(code) for code in re.findall(r"^\| (\d) \|", table, re.MULTILINE)} == codes
+
+
+def test_every_public_name_is_documented() -> None:
+    page = text_of("docs/python.md")
+    for name in synth.__all__:
+        assert name in page, name
+
+
+def test_every_verb_of_a_declaration_is_documented() -> None:
+    from synth.declaration import Declaration
+
+    page = text_of("docs/own_problem.md")
+    views = {"names", "quantities", "finish"}
+    verbs = {name for name in vars(Declaration) if not name.startswith("_")} - views
+    assert {"requirement", "variable", "part", "at_most"} <= verbs
+    for verb in verbs:
+        assert f"`{verb}(" in page, verb
+
+
+def test_every_column_of_the_results_is_documented() -> None:
+    page = text_of("docs/results.md")
+    for column in ("rank", "score", "status", "gap", "note", "alternatives", "utilisation"):
+        assert f"`{column}" in page
+    for status in synth.results.Status:
+        assert f"`{status.value}`" in page
+    for kind in ("global", "exhaustive", "heuristic"):
+        assert f"`{kind}`" in page
+
+
+@pytest.mark.parametrize("family", [point.name for point in entry_points(group="clutchsynth.problems")])
+def test_every_family_has_a_worked_example(family: str) -> None:
+    page = text_of(f"docs/{family}.md")
+    assert f"family: {family}" in page
+    assert "$ clutchsynth run" in page
+    for name in describe(family).query("kind == 'objective'")["name"]:
+        assert name in page, name
+
+
+def test_every_table_is_in_the_readme_of_the_catalogues() -> None:
+    readme = text_of("catalogs/README.md")
+    tables = [path.stem for path in (ROOT / "catalogs").glob("*.csv") if not path.stem.endswith(".schema")]
+    assert len(tables) > 10
+    for name in tables:
+        with (ROOT / "catalogs" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+            rows = sum(1 for _ in csv.reader(file)) - 1
+        assert f"| {name} | {rows} |" in readme, name
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"], ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target, anchor in LINK.findall(page.read_text(encoding="utf-8")):
+        goal = page.parent / target if target else page
+        assert goal.exists(), target
+        if anchor:
+            titles = re.findall(r"^#+ (.*)$", goal.read_text(encoding="utf-8"), re.MULTILINE)
+            slugs = {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+            assert anchor in slugs, f"{target}#{anchor}"
+
+
+def test_installing_uses_targets_that_exist() -> None:
+    targets = set(re.findall(r"^(\w+):", text_of("Makefile"), re.MULTILINE))
+    named = set(re.findall(r"^(?:\$ )?make (\w+)", all_pages() + text_of("CONTRIBUTING.md"), re.MULTILINE))
+    assert {"demo", "test"} <= named <= targets
+
+
+def test_the_own_problem_is_short_and_reaches_the_known_optimum() -> None:
+    script = ROOT / "examples" / "own_problem.py"
+    assert len(script.read_text(encoding="utf-8").splitlines()) <= 40
+    module: dict[str, object] = {"__name__": "own_problem"}
+    with redirect_stdout(io.StringIO()):
+        exec(compile(script.read_text(encoding="utf-8"), str(script), "exec"), module)
+    front = module["front"]
+    assert isinstance(front, synth.ParetoFront)
+    (best,) = front.designs
+    assert best.status == synth.results.Status.OPTIMAL
+    assert front.certificate.kind == "global"
+    # J. Golinski; best known 2994.471066 with 7.3 <= l1, l2 <= 8.3 (many later authors).
+    assert best.values["weight"] == pytest.approx(2994.471066, rel=1e-6)
+    known = {"face_width": 3.5, "module": 0.7, "bearing_distance_1": 7.3, "bearing_distance_2": 7.71532,
+             "shaft_diameter_1": 3.350215, "shaft_diameter_2": 5.286654}  # fmt: skip
+    for name, value in known.items():
+        assert best.values[name] / 0.01 == pytest.approx(value, rel=1e-5), name
+    assert best.values["pinion_teeth"] == 17

@@ -1,0 +1,573 @@
+"""The verbs of a declaration: what each leaves behind, and what it refuses."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pandas as pd
+import pytest
+
+import synth
+from synth.declaration import Declaration, DeclarationError, grid_values
+from synth.instance import Instance, number
+from synth.tables import Catalogs
+
+RODS = pd.DataFrame({
+    "designation": ["thin", "thick", "odd"],
+    "diameter [mm]": [10.0, 20.0, 15.0],
+    "stress_allow [N/mm2]": [100.0, 80.0, None],
+    "strength [N/mm2]": [400.0, None, 500.0],
+    "strength_forged [N/mm2]": [None, 600.0, 700.0],
+    "note": ["a", "b", "c"],
+    "source": ["made up", "made up", "made up"],
+})  # fmt: skip
+CATALOGS = Catalogs({"rods": RODS})
+
+
+def declaration(given=(), **options):
+    return Declaration("sample", options, frozenset(given), CATALOGS)
+
+
+def problem(declare, title="sample"):
+    """Return a problem whose declare is the function."""
+    return type("Sample", (synth.DesignProblem,), {"name": title, "declare": lambda self, d: declare(d)})
+
+
+# -- requirements ----------------------------------------------------------------------------------
+
+
+def test_a_requirement_takes_numbers_in_its_unit_and_keeps_si():
+    d = declaration()
+    sx = d.requirement("force", "kN", 2, lower=1, upper=10, symbol="F", text="pull", source="book")
+    r = d.requirements["force"]
+    assert sx is r.sx
+    assert (r.default, r.lower, r.upper) == (2000.0, 1000.0, 10000.0)
+    assert (r.symbol, r.text, r.source, r.unit, r.optional) == ("F", "pull", "book", "kN", False)
+    assert d.names() == {"force": "force", "F": "force"}
+
+
+def test_temperatures_and_speeds_are_converted_too():
+    d = declaration()
+    d.requirement("ambient", "degC", 40, lower=-60, upper=150)
+    d.requirement("speed", "1/min", 60)
+    assert d.requirements["ambient"].default == 313.15
+    assert d.requirements["ambient"].lower == pytest.approx(213.15, abs=1e-12)
+    assert d.requirements["speed"].default == pytest.approx(2 * math.pi, rel=1e-15)
+
+
+def test_an_open_bound_is_infinite():
+    d = declaration()
+    d.requirement("force", "N")
+    assert (d.requirements["force"].lower, d.requirements["force"].upper) == (-np.inf, np.inf)
+    assert d.requirements["force"].default is None
+
+
+def test_an_optional_requirement_is_none_until_it_is_given():
+    d = declaration()
+    assert d.requirement("room", "mm", optional=True) is None
+    assert d.requirements["room"].sx is None
+    assert not d.requirements["room"].given
+    d = declaration(given={"room"})
+    assert isinstance(d.requirement("room", "mm", optional=True), ca.SX)
+    assert d.requirements["room"].given
+
+
+def test_a_default_may_follow_an_earlier_requirement():
+    def declare(d):
+        force = d.requirement("force", "kN")
+        peak = d.requirement("peak", "kN", default=2.5 * force)
+        d.requirement("most", "kN", default=np.maximum(peak, 1e4))
+        d.objective("x")
+        d.variable("x", "mm", 1, 2)
+
+    instance = Instance(problem(declare)(), {"force": "2 kN"}, CATALOGS)
+    assert instance.requirements == {"force": 2000.0, "peak": 5000.0, "most": 10000.0}
+    instance = Instance(problem(declare)(), {"force": 2, "peak": "20000 N"}, CATALOGS)
+    assert instance.requirements == {"force": 2000.0, "peak": 20000.0, "most": 20000.0}
+
+
+# -- options ---------------------------------------------------------------------------------------
+
+
+def test_an_option_returns_the_chosen_string():
+    d = declaration(shape="square")
+    assert d.option("shape", ("round", "square"), "round", symbol="sh") == "square"
+    assert d.option("size", ("small", "large"), "small") == "small"
+    assert (d.options["shape"].default, d.options["shape"].chosen) == ("round", "square")
+
+
+def test_an_option_may_be_set_by_its_symbol():
+    assert declaration(sh="square").option("shape", ("round", "square"), "round", symbol="sh") == "square"
+
+
+@pytest.mark.parametrize(("written", "meant"), [(True, "yes"), (False, "no"), ("yes", "yes")])
+def test_yaml_truth_values_mean_yes_and_no(written, meant):
+    assert declaration(obsolete=written).option("obsolete", ("no", "yes"), "no") == meant
+
+
+def test_an_unknown_choice_names_those_there_are():
+    with pytest.raises(synth.InputError, match=r"option shape: got 'oval'; expected one of round, square"):
+        declaration(shape="oval").option("shape", ("round", "square"), "round")
+    with pytest.raises(synth.InputError, match="option shape: got 'yes'"):
+        declaration(shape=True).option("shape", ("round", "square"), "round")
+
+
+def test_an_unknown_option_is_refused_at_the_end():
+    d = declaration(colour="red")
+    d.option("shape", ("round", "square"), "round", symbol="sh")
+    with pytest.raises(synth.InputError, match=r"options: got 'colour'; expected an option of sample: shape"):
+        d.finish()
+
+
+def test_a_default_must_be_a_choice():
+    with pytest.raises(DeclarationError, match="is not one of"):
+        declaration().option("shape", ("round", "square"), "oval")
+
+
+def test_the_rows_of_a_table_can_be_choices():
+    d = declaration()
+    assert d.designations("rods") == ("thin", "thick", "odd")
+    assert d.option("rod", d.designations("rods"), "thick") == "thick"
+
+
+# -- unknowns --------------------------------------------------------------------------------------
+
+
+def test_a_variable_has_bounds_and_grid_in_si():
+    d = declaration()
+    d.variable("side", "mm", 5, 8, grid=1, symbol="s")
+    v = d.variables["side"]
+    assert (v.lower, v.upper) == (0.005, 0.008)
+    assert v.grid.tolist() == [0.005, 0.006, 0.007, 0.008]
+    d.variable("free", "mm", 5, 8)
+    assert not len(d.variables["free"].grid)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(5, 5), (6, 5)])
+def test_a_variable_needs_room(lower, upper):
+    with pytest.raises(DeclarationError, match="lower < upper"):
+        declaration().variable("side", "mm", lower, upper)
+
+
+def test_a_grid_without_a_value_between_the_bounds_is_refused():
+    # An empty grid would read as a continuous variable.
+    with pytest.raises(DeclarationError, match="grid of variable side has no value"):
+        declaration().variable("side", "mm", 5.2, 5.8, grid=1)
+
+
+@pytest.mark.parametrize(
+    ("grid", "lower", "upper", "expected"),
+    [
+        (None, 1, 2, []),
+        (1, 4.5, 8, [5, 6, 7, 8]),
+        (1, -2, 2, [-2, -1, 0, 1, 2]),
+        (5, 12, 31, [15, 20, 25, 30]),
+        (2.5, 5, 10, [5, 7.5, 10]),
+        (0.5, 1, 2.4, [1, 1.5, 2]),
+        (0.1, 0.2, 0.7, [0.2, 0.3, 0.4, 0.5, 0.6, 0.7]),
+        (0.3, 0.3, 1.3, [0.3, 0.6, 0.9, 1.2]),
+        (0.4, 0, 1.2, [0, 0.4, 0.8, 1.2]),
+        ([3, 1, 2, 9], 1, 3, [1, 2, 3]),
+        ((0.5,), 0.5, 1, [0.5]),
+        ("R5", 1, 100, [1, 1.6, 2.5, 4, 6.3, 10, 16, 25, 40, 63, 100]),
+        ("R10", 10, 32, [10, 12.5, 16, 20, 25, 31.5]),
+        ("R20", 12, 20, [12.5, 14, 16, 18, 20]),
+        ("R40", 0.95, 1.12, [0.95, 1, 1.06, 1.12]),
+        ("R10", 0.8, 1.3, [0.8, 1, 1.25]),
+        ("R10", 11, 11.2, []),
+    ],
+)
+def test_grids(grid, lower, upper, expected):
+    assert grid_values(grid, lower, upper).tolist() == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+def test_a_tenth_millimetre_ladder_is_free_of_noise():
+    assert grid_values(0.1, 0.1, 0.7).tolist() == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
+
+
+def test_the_preferred_numbers_have_forty_steps_per_decade():
+    for series, steps in (("R5", 5), ("R10", 10), ("R20", 20), ("R40", 40)):
+        values = grid_values(series, 1, 999)
+        assert len(values) == 3 * steps
+        exact = 10 ** (np.arange(3 * steps) / steps)
+        assert np.max(np.abs(values / exact - 1)) < 0.013  # ISO 3: at most 1.26 % from the exact power
+
+
+@pytest.mark.parametrize(
+    ("grid", "lower", "upper", "words"),
+    [("R7", 1, 2, "unknown preferred number series"), ("R10", 0, 2, "above 0"), (0, 1, 2, "above 0"), (-1, 1, 2, "0")],
+)
+def test_grids_that_cannot_be(grid, lower, upper, words):
+    with pytest.raises(DeclarationError, match=words):
+        grid_values(grid, lower, upper)
+
+
+def test_counts_go_in_steps():
+    d = declaration()
+    d.count("surfaces", 2, 9, step=2, symbol="z")
+    d.count("coils", 2, 4, step=0.5)
+    assert d.counts["surfaces"].values.tolist() == [2, 4, 6, 8]
+    assert d.counts["coils"].values.tolist() == [2, 2.5, 3, 3.5, 4]
+
+
+@pytest.mark.parametrize(("lower", "upper", "step"), [(3, 2, 1), (1, 4, 0), (1, 4, -1)])
+def test_a_count_needs_values(lower, upper, step):
+    with pytest.raises(DeclarationError, match="lower <= upper and a step above 0"):
+        declaration().count("rods", lower, upper, step)
+
+
+def test_a_choice_selects_by_label():
+    d = declaration()
+    end = d.choice("end", ("hook", "eye", "pin"), symbol="e")
+    x = ca.SX.sym("x")
+    value = end.select({"pin": 3 * x, "hook": x, "eye": 7.0})
+    f = ca.Function("f", [end.sx, x], [value])
+    assert [float(f(k, 2.0)) for k in range(3)] == [2.0, 7.0, 6.0]
+
+
+def test_a_choice_needs_every_label_once():
+    d = declaration()
+    end = d.choice("end", ("hook", "eye"))
+    for values in ({"hook": 1}, {"hook": 1, "eye": 2, "pin": 3}, {"hook": 1, "pin": 2}):
+        with pytest.raises(DeclarationError, match="must name exactly the labels"):
+            end.select(values)
+    for labels in ((), ("a", "a")):
+        with pytest.raises(DeclarationError, match="labels, each once"):
+            d.choice(f"bad{len(labels)}", labels)
+
+
+# -- parts -----------------------------------------------------------------------------------------
+
+
+def test_columns_of_a_part_are_symbols_made_once():
+    d = declaration()
+    rod = d.part("rod", "rods", where="diameter > 5", symbol="r", text="a rod", source="table")
+    assert rod.diameter is rod.diameter
+    assert str(rod.diameter) == "rod.diameter"
+    assert d.slots["rod"].where == ("diameter > 5",)
+    assert set(rod.columns) == {"diameter"}
+
+
+def test_conditions_may_be_several_and_empty_ones_are_none():
+    d = declaration()
+    assert d.part("rod", "rods", where=("diameter > 5", "", "diameter < 15")).where == ("diameter > 5", "diameter < 15")
+    assert d.part("other", "rods", where="").where == ()
+
+
+def test_a_column_that_the_table_lacks_or_that_is_text_is_refused():
+    rod = declaration().part("rod", "rods")
+    with pytest.raises(synth.InputError, match=r"table rods: got 'mass'; expected a number column"):
+        _ = rod.mass
+    with pytest.raises(synth.InputError, match="number column"):
+        _ = rod.note
+
+
+def test_a_table_that_is_not_there_is_refused():
+    with pytest.raises(synth.InputError, match="got 'rodz'"):
+        declaration().part("rod", "rodz")
+
+
+def test_optional_columns_void_the_limits_that_use_them():
+    def declare(d):
+        rod = d.part("rod", "rods")
+        d.variable("length", "m", 1, 2)
+        d.derive("stress", "N/mm2", 90e6 * rod.diameter / rod.diameter, text="", source="")
+        d.at_most("stress", 90e6 + 0 * rod.diameter, rod.optional("stress_allow"), "N/mm2")
+        d.at_most("fatigue", rod.diameter, rod.optional("nowhere"), "mm")
+        d.objective("length")
+
+    def check(name):
+        return synth.evaluate(
+            problem(declare), {}, values={"length": "1 m"}, parts={"rod": name}, catalogs={"rods": RODS}
+        )
+
+    assert check("thin").utilisation == {"stress": pytest.approx(0.9), "fatigue": None}
+    assert check("thin").not_checked == ("not checked: fatigue, no rod.nowhere",)
+    assert check("thin").status.value == "feasible"
+    assert check("thick").violated == ("stress",)
+    odd = check("odd")
+    assert odd.utilisation == {"stress": None, "fatigue": None}
+    assert odd.not_checked[0] == "not checked: stress, no rod.stress_allow"
+    assert odd.violated == ()
+
+
+def test_first_of_takes_the_first_column_that_has_a_value():
+    def declare(d):
+        rod = d.part("rod", "rods")
+        d.variable("length", "m", 1, 2)
+        d.derive("strength_used", "N/mm2", rod.first_of("strength_forged", "strength"))
+        d.objective("length")
+
+    def strength(name):
+        design = synth.evaluate(
+            problem(declare), {}, values={"length": "1 m"}, parts={"rod": name}, catalogs={"rods": RODS}
+        )
+        return design.values["strength_used"]
+
+    assert [strength(n) for n in ("thin", "thick", "odd")] == [400e6, 600e6, 700e6]
+
+
+def test_one_use_that_needs_a_column_makes_it_required():
+    def declare(d):
+        rod = d.part("rod", "rods")
+        d.variable("length", "m", 1, 2)
+        d.at_most("a", 1e6, rod.optional("stress_allow"), "N/mm2")
+        d.at_most("b", 2e6, rod.stress_allow, "N/mm2")
+        d.objective("length")
+
+    instance = Instance(problem(declare)(), {}, CATALOGS)
+    assert instance.combinations == 2
+    assert instance.selection.left_out == [
+        {"slot": "rod", "designation": "odd", "reason": "no value in column stress_allow"}
+    ]
+
+
+def test_a_fixed_row_gives_its_columns():
+    def declare(d):
+        fan = d.row("cooling_options", "fan")
+        d.requirement("transfer", "W/(m2*K)", default=fan.heat_transfer)
+        d.requirement("bonus", "-", default=ca.if_else(fan.optional("nowhere") > 0, 2.0, 1.0))
+        d.variable("length", "m", 1, 2)
+        d.objective("length")
+
+    instance = Instance(problem(declare)(), {}, Catalogs())
+    assert instance.requirements == {"transfer": 50.0, "bonus": 1.0}
+    with pytest.raises(synth.InputError, match="storm"):
+        declaration().row("cooling_options", "storm")
+
+
+# -- derived quantities, limits, objectives ----------------------------------------------------------
+
+
+def test_names_and_symbols_are_unique():
+    d = declaration()
+    d.requirement("force", "N", symbol="F")
+    for make in (
+        lambda: d.requirement("force", "N"),
+        lambda: d.variable("F", "N", 1, 2),
+        lambda: d.derive("flow", "N", 1.0, symbol="F"),
+        lambda: d.option("force", ("a",), "a"),
+        lambda: d.count("F", 1, 2),
+        lambda: d.choice("force", ("a", "b")),
+        lambda: d.part("force", "rods"),
+    ):
+        with pytest.raises(DeclarationError, match="is already the name or symbol of force"):
+            make()
+
+
+def test_a_limit_may_share_its_name_with_a_quantity_but_not_with_a_limit():
+    d = declaration()
+    x = d.variable("width", "mm", 1, 2)
+    d.at_most("width", x, 0.0015, "mm", text="fits", source="room")
+    limit = d.limits["width"]
+    assert (limit.sense, limit.unit, limit.text, limit.source, limit.guard) == ("at_most", "mm", "fits", "room", False)
+    with pytest.raises(DeclarationError, match="limit width is declared twice"):
+        d.at_least("width", x, 0.001, "mm")
+
+
+def test_limits_have_three_senses():
+    d = declaration()
+    x = d.variable("width", "mm", 1, 2)
+    d.at_most("a", x, 1, "mm")
+    d.at_least("b", x, 1, "mm", guard=True)
+    d.equal("c", x, 1, "mm", scale=0.5)
+    assert [limit.sense for limit in d.limits.values()] == ["at_most", "at_least", "equal"]
+    assert [limit.guard for limit in d.limits.values()] == [False, True, False]
+    assert d.limits["c"].scale == 0.0005
+    assert d.limits["a"].scale == 1e-9
+    with pytest.raises(DeclarationError, match="guard"):
+        d.equal("e", x, 1, "mm", guard=True)
+
+
+def test_a_unit_that_does_not_exist_is_told():
+    d = declaration()
+    for make in (
+        lambda: d.requirement("a", "furlong"),
+        lambda: d.variable("b", "furlong", 1, 2),
+        lambda: d.derive("c", "furlong", 1.0),
+        lambda: d.at_most("d", 1.0, 2.0, "furlong"),
+    ):
+        with pytest.raises(synth.InputError, match="furlong"):
+            make()
+
+
+def test_objectives_name_a_quantity_and_a_sense():
+    d = declaration()
+    d.variable("width", "mm", 1, 2)
+    d.objective("width", "max", default=False)
+    assert (d.objectives["width"].sense, d.objectives["width"].default) == ("max", False)
+    with pytest.raises(DeclarationError, match="write 'min' or 'max'"):
+        d.objective("width", "least")
+    d.objective("mass")
+    with pytest.raises(DeclarationError, match="objective mass is no variable, count or derived quantity"):
+        d.finish()
+
+
+def test_a_quantity_can_only_need_a_guard():
+    for guard in (True, False):
+        d = declaration()
+        x = d.variable("width", "mm", 1, 2)
+        d.at_least("positive", x, 0.0015, "mm", guard=guard)
+        d.derive("root", "-", np.sqrt(x - 0.0015), needs="positive")
+        if guard:
+            d.finish()
+        else:
+            with pytest.raises(DeclarationError, match="root needs 'positive', which is no guard"):
+                d.finish()
+
+
+class Guarded(synth.DesignProblem):
+    """A root that exists above 2 mm only, and what follows from it."""
+
+    name = "guarded"
+
+    def declare(self, d):
+        x = d.variable("width", "mm", 1, 4)
+        d.at_least("wide_enough", x, 0.002, "mm", guard=True)
+        d.derive("margin", "mm", x - 0.002)
+        root = d.derive("root", "-", np.sqrt(x - 0.002), needs="wide_enough")
+        d.derive("twice", "-", 2 * root)
+        d.at_most("root", 2 * root, 0.05, "-")
+        d.objective("width")
+
+
+def test_behind_a_guard_that_fails_quantities_are_null_and_the_guard_alone_is_named():
+    bad = synth.evaluate(Guarded, {}, values={"width": "1.5 mm"})
+    assert bad.violated == ("wide_enough",)
+    assert math.isnan(bad.values["root"])
+    assert math.isnan(bad.values["twice"])
+    assert bad.values["margin"] == pytest.approx(-0.0005)
+    assert bad.utilisation["root"] is None
+    good = synth.evaluate(Guarded, {}, values={"width": "2.4 mm"})
+    assert good.violated == ()
+    assert good.values["twice"] == pytest.approx(0.04)
+    assert good.utilisation["root"] == pytest.approx(0.8)
+
+
+def test_a_guard_has_no_tolerance():
+    # The border itself is on the wrong side of a guard, where another limit would hold.
+    assert synth.evaluate(Guarded, {}, values={"width": "2 mm"}).violated == ("wide_enough",)
+
+
+# -- refusals and advice -----------------------------------------------------------------------------
+
+
+def test_a_refusal_of_a_continuous_variable_is_no_refusal():
+    def direct(d):
+        d.refuse("narrow", d.variable("width", "mm", 1, 2) < 0.0015, "more")
+
+    def through_a_quantity(d):
+        x = d.variable("width", "mm", 1, 2)
+        d.refuse("narrow", d.derive("area", "mm2", x * x) < 1e-6, "more")
+
+    for declare in (direct, through_a_quantity):
+        with pytest.raises(DeclarationError, match="refusal narrow speaks of a continuous variable; that is a limit"):
+            Instance(problem(declare)(), {}, CATALOGS)
+
+
+def test_a_refusal_over_requirements_stops_the_call_and_shows_their_values():
+    def declare(d):
+        low, high = d.requirement("low", "kN", 1), d.requirement("high", "kN", 2)
+        d.refuse("crossed", low > high, "low below high")
+        d.variable("x", "mm", 1, 2)
+        d.objective("x")
+
+    Instance(problem(declare)(), {}, CATALOGS)
+    with pytest.raises(synth.InputError, match=r"crossed: got 'low = 3 kN, high = 2 kN'; expected low below high"):
+        Instance(problem(declare)(), {"low": "3 kN"}, CATALOGS)
+
+
+def test_a_refusal_over_a_part_or_count_leaves_rows_out():
+    def declare(d):
+        thin = d.requirement("least", "mm", 12)
+        rod, n = d.part("rod", "rods"), d.count("n", 1, 4)
+        d.refuse("too_thin", rod.diameter < thin, "a thicker rod")
+        d.refuse("odd_number", (n == 1) + (n == 3) > 0, "an even number")
+        d.variable("x", "mm", 1, 2)
+        d.objective("x")
+
+    instance = Instance(problem(declare)(), {}, CATALOGS)
+    assert instance.selection.counts["n"].tolist() == [2, 4]
+    assert [instance.selection.slots[0].table.designations[k] for k in instance.selection.slots[0].rows] == [
+        "thick",
+        "odd",
+    ]
+    assert instance.selection.left_out == [
+        {"slot": "rod", "designation": "thin", "reason": "too_thin: a thicker rod"},
+        {"slot": "n", "designation": "1", "reason": "odd_number: an even number"},
+        {"slot": "n", "designation": "3", "reason": "odd_number: an even number"},
+    ]
+    with pytest.raises(synth.InputError, match="too_thin: got 'thin, thick, odd'; expected a thicker rod"):
+        Instance(problem(declare)(), {"least": "30 mm"}, CATALOGS)
+    with pytest.raises(synth.InputError, match="too_thin"):
+        synth.evaluate(
+            problem(declare), {}, values={"x": 1, "n": 2}, parts={"rod": "thin"}, catalogs={"rods": RODS}
+        )
+
+
+def test_a_refusal_over_two_unknowns_leaves_their_combinations_out():
+    def declare(d):
+        rod, n = d.part("rod", "rods"), d.count("n", 1, 2)
+        d.refuse("crowded", n * rod.diameter > 0.025, "fewer or thinner rods")
+        x = d.variable("x", "mm", 1, 2)
+        d.derive("total", "mm", x - n * rod.diameter)
+        d.objective("total")
+
+    front = synth.synthesize(problem(declare), {}, catalogs={"rods": RODS})
+    best = front.designs[0]
+    assert (str(best.parts["rod"]), best.values["n"]) == ("thick", 1)
+    assert best.values["total"] == pytest.approx(-0.019, rel=1e-6)
+
+
+def test_advice_is_printed_where_it_applies():
+    def declare(d):
+        x = d.variable("width", "mm", 1, 4)
+        d.advise("wide", x > 0.002, "is it not too wide?", source="habit")
+        d.advise("always", True, "remember this")
+        d.advise("never", False, "never seen")
+        d.objective("width")
+
+    assert synth.evaluate(problem(declare), {}, values={"width": 1}).advice == ("always: remember this",)
+    assert synth.evaluate(problem(declare), {}, values={"width": 3}).advice == (
+        "wide: is it not too wide? [habit]",
+        "always: remember this",
+    )
+
+
+# -- the class ---------------------------------------------------------------------------------------
+
+
+def test_a_problem_needs_a_name_and_a_declare():
+    with pytest.raises(DeclarationError, match="needs a class attribute 'name'"):
+        type("Nameless", (synth.DesignProblem,), {})()
+    with pytest.raises(DeclarationError, match="does not define declare"):
+        Instance(type("Empty", (synth.DesignProblem,), {"name": "empty"})(), {}, CATALOGS)
+
+
+def test_a_symbol_from_elsewhere_is_found():
+    stranger = ca.SX.sym("stranger")
+
+    def declare(d):
+        x = d.variable("width", "mm", 1, 4)
+        d.at_most("sum", x + stranger, 1, "mm")
+
+    with pytest.raises(DeclarationError, match=r"limit sum uses \['stranger'\], which the declaration does not make"):
+        Instance(problem(declare)(), {}, CATALOGS)
+
+
+def test_loading_takes_options_with_a_name_or_a_class_only():
+    instance = synth.load("multi_plate_clutch", lubrication="dry")
+    assert instance.options == {"lubrication": "dry"}
+    assert synth.load(instance) is instance
+    with pytest.raises(synth.InputError, match="no options here"):
+        synth.load(instance, lubrication="oil")
+    with pytest.raises(synth.InputError, match="did you mean multi_plate_clutch"):
+        synth.load("multi_plate_cluch")
+    with pytest.raises(synth.InputError, match="the name of a family"):
+        synth.load(7)
+
+
+def test_number_evaluates_an_expression():
+    x, y = ca.SX.sym("x"), ca.SX.sym("y")
+    assert number(x / y, {"x": 3.0, "y": 4.0, "z": 1.0}) == 0.75
+    assert number(2.5, {}) == 2.5
