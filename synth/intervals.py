@@ -608,7 +608,7 @@ class Propagator:
         for k in reversed(self.order):
             node = self.program.nodes[k]
             backward = BACKWARD.get(node.op)
-            if backward is None:
+            if backward is None or not box.tightened[k]:
                 continue
             args = [(box.low[a], box.high[a]) for a in node.args]
             for a, bounds in zip(node.args, backward((box.low[k], box.high[k]), *args), strict=True):
@@ -815,10 +815,15 @@ class _Box:
     def __init__(self, n: int) -> None:
         self.low: list[Any] = [None] * n
         self.high: list[Any] = [None] * n
+        self.tightened = [False] * n  # whether more is known of a node than follows from its arguments
 
     def cut(self, k: int, bounds: Interval, alive: np.ndarray) -> None:
         """Intersect an interval; a box whose ends pass each other by more than rounding is dead."""
-        low, high = np.fmax(self.low[k], bounds[0]), np.fmin(self.high[k], bounds[1])
+        old_low, old_high = self.low[k], self.high[k]
+        low, high = np.fmax(old_low, bounds[0]), np.fmin(old_high, bounds[1])
+        if not (np.any(low != old_low) or np.any(high != old_high)):
+            return
+        self.tightened[k] = True
         alive &= ~(low > high + ROUNDING * np.abs(high))
         # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.
         self.low[k], self.high[k] = np.fmin(low, high), high
