@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,20 +23,35 @@ CAP_POINTS = 150
 
 @dataclass(frozen=True)
 class Boxes:
-    """A batch of boxes: the combination of each, its bounds, and lower bounds of the objectives."""
+    """A batch of boxes: the combination of each, its ends, and lower bounds of the objectives.
+
+    ``tag`` tells which of several questions a box belongs to, when they share a batch.
+    """
 
     combination: np.ndarray
     low: np.ndarray
     high: np.ndarray
     bounds: np.ndarray
     scores: np.ndarray
+    tag: np.ndarray
 
     def __len__(self) -> int:
         return len(self.combination)
 
     def take(self, rows: np.ndarray) -> Boxes:
         """Return some of the boxes, by mask or positions."""
-        return Boxes(self.combination[rows], self.low[rows], self.high[rows], self.bounds[rows], self.scores[rows])
+        return Boxes(
+            self.combination[rows],
+            self.low[rows],
+            self.high[rows],
+            self.bounds[rows],
+            self.scores[rows],
+            self.tag[rows],
+        )
+
+    def tagged(self, tag: int) -> Boxes:
+        """Return the same boxes with another tag."""
+        return replace(self, tag=np.full(len(self), tag))
 
     @staticmethod
     def joined(batches: Sequence[Boxes]) -> Boxes:
@@ -47,6 +62,7 @@ class Boxes:
             np.concatenate([b.high for b in batches]),
             np.concatenate([b.bounds for b in batches]),
             np.concatenate([b.scores for b in batches]),
+            np.concatenate([b.tag for b in batches]),
         )
 
 
@@ -158,6 +174,7 @@ class Formulation:
             np.broadcast_to(self.upper, (n, self.n)),
             np.full((n, m), -np.inf),
             np.zeros((n, self.n)),
+            np.zeros(n, dtype=np.int64),
         )
         return self.contract(start.take(self._not_refused(combinations)), None, passes)
 
@@ -210,7 +227,7 @@ class Formulation:
         bounds = np.maximum(result.bounds, boxes.bounds)
         if alive.any():
             self._positive_cuts &= result.positive_cuts
-        return Boxes(boxes.combination, low, high, bounds, result.scores).take(alive)
+        return Boxes(boxes.combination, low, high, bounds, result.scores, boxes.tag).take(alive)
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
@@ -227,10 +244,7 @@ class Formulation:
         left_end, right_start = self._middle(variable, low, high)
         left, right = whole.high.copy(), whole.low.copy()
         left[rows, variable], right[rows, variable] = left_end, right_start
-        halves = Boxes.joined([
-            Boxes(whole.combination, whole.low, left, whole.bounds, whole.scores),
-            Boxes(whole.combination, right, whole.high, whole.bounds, whole.scores),
-        ])  # fmt: skip
+        halves = Boxes.joined([replace(whole, high=left), replace(whole, low=right)])
         return halves, rest
 
     def _widths(self, boxes: Boxes) -> np.ndarray:

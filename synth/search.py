@@ -20,9 +20,11 @@ from synth.nlp import Task
 from synth.pareto import Zone, Zones, non_dominated, rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.results import Certificate, Design, Frame, ParetoFront
-from synth.tree import Clock, Outcome, Stopped, Target, minimise, relative_slack
+from synth.tree import Clock, Outcome, Question, Stopped, Target, minimise, relative_slack
 
 ROOT_CHUNK = 16384
+EXHAUST_EFFORT = 400
+TOGETHER = 8
 ZONE_BOXES = 12_000
 ZONE_SPLITS = 3
 MULTI_STARTS = 6
@@ -255,29 +257,26 @@ class _FrontSearch:
         slope[k] = 1.0
         return Target(np.where(slope > 0, 0.0, caps), slope)
 
-    def _solve(
-        self, target: Target, boxes: Boxes, start: Candidate | None = None, ceiling: float = np.inf
-    ) -> Outcome:
-        self.scalar_problems += 1
-        outcome = minimise(self.form, boxes, target, self.gap, self.clock, start, ceiling, self.ranges)
-        if not outcome.closed:
-            outcome = self._exhaust(outcome, target, ceiling)
-        return outcome
+    def _solve(self, questions: Sequence[Question]) -> list[Outcome]:
+        self.scalar_problems += len(questions)
+        outcomes = minimise(self.form, questions, self.gap, self.clock, self.ranges)
+        return [o if o.closed else self._exhaust(o, q) for o, q in zip(outcomes, questions, strict=True)]
 
-    def _exhaust(self, outcome: Outcome, target: Target, ceiling: float) -> Outcome:
+    def _exhaust(self, outcome: Outcome, question: Question) -> Outcome:
         """Solve every combination that bounds could not exclude, from several starts."""
         self.closed = False
         self.unresolved += outcome.unresolved
         if len(outcome.open_combinations) > EXHAUSTIVE_LIMIT:
             self.exhausted = False
-        best, t = outcome.best, outcome.t
+        target, best, t = question.target, outcome.best, outcome.t
         boxes = self.pool.take(np.isin(self.pool.combination, outcome.open_combinations[:EXHAUSTIVE_LIMIT]))
         for k in range(len(boxes)):
             self.clock.check()
+            box = boxes.take(np.array([k]))
             found = minimise(
-                self.form, boxes.take(np.array([k])), target, self.gap, self.clock, best, min(t, ceiling), self.ranges, 400
+                self.form, [Question(target, box, best, t)], self.gap, self.clock, self.ranges, EXHAUST_EFFORT
             )
-            for candidate in [found.best, *self._multi_start(boxes.take(np.array([k])), target)]:
+            for candidate in [found[0].best, *self._multi_start(box, target)]:
                 if candidate is not None and float(target.t_of(candidate.phi)) < t:
                     best, t = candidate, float(target.t_of(candidate.phi))
         return Outcome(best, t, False, outcome.open_combinations, outcome.unresolved)
@@ -306,7 +305,7 @@ class _FrontSearch:
         open_caps = np.full(len(self.form.goals), np.inf)
         found: list[Candidate] = []
         for k in range(self.m):
-            outcome = self._solve(self._target(k, open_caps), self.pool, self._best_known(found, k))
+            outcome = self._solve([Question(self._target(k, open_caps), self.pool, self._best_known(found, k))])[0]
             if outcome.best is None:
                 return
             found.append(self._improve(outcome.best, [k, *(j for j in range(self.m) if j != k)]))
@@ -327,7 +326,7 @@ class _FrontSearch:
                 first = False
                 if candidate.phi[k] <= caps[k]:
                     continue  # its own extreme is the optimum already
-            outcome = self._solve(self._target(k, caps), self.pool, candidate)
+            outcome = self._solve([Question(self._target(k, caps), self.pool, candidate)])[0]
             if outcome.best is not None:
                 candidate = outcome.best
                 caps[: self.m] = np.minimum(caps[: self.m], candidate.phi[: self.m])
@@ -354,25 +353,36 @@ class _FrontSearch:
         for point in phi:
             zones.add(point)
         while zones.zones and len(self.front) < self.points:
-            zone = max(zones.zones, key=zones.size)
+            largest = sorted(zones.zones, key=zones.size, reverse=True)
+            self._fill_zones(zones, largest[: min(TOGETHER, self.points - len(self.front))])
+            self._say("front", len(self.front) / self.points)
+        self.complete = self.closed and not zones.zones
+        self.front = self._distinct(self.front)
+
+    def _fill_zones(self, zones: Zones, chosen: Sequence[Zone]) -> None:
+        """Seek the middle of several zones at once; a zone that holds nothing is closed."""
+        questions = []
+        for zone in chosen:
+            zone.cover = self._narrowed(zone)
             lower = zones.lower(zone)
             base = np.full(len(self.form.goals), np.inf)
             slope = np.zeros(len(self.form.goals))
             base[: self.m], slope[: self.m] = lower, zone.upper - lower
-            zone.cover = self._narrowed(zone)
-            outcome = self._solve(Target(base, slope), zone.cover, self._inside(zone.upper), 1.0)
+            questions.append(Question(Target(base, slope), zone.cover, self._inside(zone.upper), 1.0))
+        outcomes = self._solve(questions)
+        found = []
+        for zone, question, outcome in zip(chosen, questions, outcomes, strict=True):
             if outcome.best is None or outcome.t >= 1.0 - TIE:
                 zones.close(zone)
                 continue
-            point = self._tightened(outcome.best, zone.cover, base[: self.m] + slope[: self.m] * outcome.t)
-            if any(np.all(np.abs(point.phi[: self.m] - c.phi[: self.m]) <= TIE) for c in self.front):
+            corner = question.target.base[: self.m] + question.target.slope[: self.m] * outcome.t
+            found.append((zone, outcome.best, corner))
+        for zone, point in self._tightened(found):
+            if any(np.all(c.phi[: self.m] <= point.phi[: self.m] + TIE) for c in self.front):
                 zones.close(zone)
                 continue
             self.front.append(point)
             zones.add(point.phi[: self.m])
-            self._say("front", len(self.front) / self.points)
-        self.complete = self.closed and not zones.zones
-        self.front = self._distinct(self.front)
 
     def _narrowed(self, zone: Zone) -> Boxes:
         """Return the boxes that reach into a zone, tightened to it and split a little; its parts start from them."""
@@ -389,20 +399,27 @@ class _FrontSearch:
             boxes = Boxes.joined(self.form.split(boxes))
         return boxes
 
-    def _tightened(self, candidate: Candidate, cover: Boxes, corner: np.ndarray) -> Candidate:
-        """Return a design of the middle of a zone, improved in the objectives that did not decide it.
+    def _tightened(
+        self, found: Sequence[tuple[Zone, Candidate, np.ndarray]]
+    ) -> list[tuple[Zone, Candidate]]:
+        """Improve designs from the middle of zones in the objectives that did not decide them.
 
         An objective that reaches the corner is proven already: less of it would have meant a smaller t.
         """
-        slack = relative_slack(self.form, self.gap, candidate.phi, self.ranges)[: self.m]
-        caps = np.full(len(self.form.goals), np.inf)
-        caps[: self.m] = candidate.phi[: self.m]
-        for k in np.flatnonzero(candidate.phi[: self.m] < corner - slack):
-            outcome = self._solve(self._target(int(k), caps), cover, candidate)
-            if outcome.best is not None:
-                candidate = outcome.best
-                caps[: self.m] = np.minimum(caps[: self.m], candidate.phi[: self.m])
-        return candidate
+        points = [candidate for _, candidate, _ in found]
+        for k in range(self.m):
+            asked, questions = [], []
+            for position, (zone, first, corner) in enumerate(found):
+                slack = relative_slack(self.form, self.gap, first.phi, self.ranges)[k]
+                if first.phi[k] < corner[k] - slack:
+                    caps = np.full(len(self.form.goals), np.inf)
+                    caps[: self.m] = points[position].phi[: self.m]
+                    asked.append(position)
+                    questions.append(Question(self._target(k, caps), zone.cover, points[position]))
+            for position, outcome in zip(asked, self._solve(questions) if questions else [], strict=True):
+                if outcome.best is not None:
+                    points[position] = outcome.best
+        return [(zone, point) for (zone, _, _), point in zip(found, points, strict=True)]
 
     def _inside(self, upper: np.ndarray) -> Candidate | None:
         """Return a known design that lies in a zone, if there is one."""
@@ -466,7 +483,7 @@ class _FrontSearch:
         first = self.m
         if self.m == 1 and len(form.goals) > 1:
             # One objective leaves whole families of parts open; the next objective is settled over all of them.
-            outcome = self._solve(self._target(first, caps), self.pool, current)
+            outcome = self._solve([Question(self._target(first, caps), self.pool, current)])[0]
             current = current if outcome.best is None else outcome.best
             caps[first] = current.phi[first] + TIE
             first += 1
@@ -479,7 +496,8 @@ class _FrontSearch:
             if current.phi[j] - np.min(form.phi_of(boxes.bounds)[:, j]) <= PINNED * max(1.0, abs(current.phi[j])):
                 caps[j] = current.phi[j] + TIE
                 continue
-            outcome = minimise(form, boxes, self._target(j, caps), SETTLE_GAP, self.clock, current, effort=SETTLE_EFFORT)
+            question = Question(self._target(j, caps), boxes, current)
+            outcome = minimise(form, [question], SETTLE_GAP, self.clock, effort=SETTLE_EFFORT)[0]
             current = current if outcome.best is None else outcome.best
             caps[j] = current.phi[j] + TIE
         others = [int(c) for c in self._ties(current) if c != current.combination]

@@ -8,7 +8,7 @@ survives is split. When nothing survives, the incumbent is proven. A solver neve
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -90,104 +90,157 @@ def relative_slack(form: Formulation, gap: float, level: np.ndarray, ranges: np.
     return np.where(form.log_goals, -np.log1p(-gap), gap * np.maximum(size, 1e-9))
 
 
-def minimise(
-    form: Formulation,
-    boxes: Boxes,
-    target: Target,
-    gap: float,
-    clock: Clock,
-    start: Candidate | None = None,
-    ceiling: float = np.inf,
-    ranges: np.ndarray | None = None,
-    effort: int = 400_000,
-    seed: int = 0,
-) -> Outcome:
-    """Find the least t over all boxes.
+@dataclass(frozen=True)
+class Question:
+    """One scalar problem: where to look, for what, and what is known already.
 
     Parameters
     ----------
-    form : Formulation
+    target : Target
     boxes : Boxes
         Where to search.
-    target : Target
-    gap : float
-        Relative improvement that need not be excluded.
-    clock : Clock
     start : Candidate, optional
         A design known to be feasible.
     ceiling : float
         Only designs with t below this are of interest.
+    """
+
+    target: Target
+    boxes: Boxes
+    start: Candidate | None = None
+    ceiling: float = np.inf
+
+
+def minimise(
+    form: Formulation,
+    questions: Sequence[Question],
+    gap: float,
+    clock: Clock,
+    ranges: np.ndarray | None = None,
+    effort: int = 400_000,
+) -> list[Outcome]:
+    """Find the least t of several scalar problems, all in one go so that they share the cost of a batch.
+
+    Parameters
+    ----------
+    form : Formulation
+    questions : list of Question
+    gap : float
+        Relative improvement that need not be excluded.
+    clock : Clock
     ranges : array, optional
         Range of each objective on the front, for objectives that may be zero.
     effort : int
-        Boxes that may be tightened before the search gives up proving.
+        Boxes that may be tightened per question before the search gives up proving.
 
     Returns
     -------
-    Outcome
+    list of Outcome, one per question
     """
-    search = _Search(form, target, gap, ranges, start, ceiling, seed)
-    search.improve_known()
-    waiting, tightened = boxes, 0
-    while len(waiting):
+    searches = [_Search(form, q, gap, ranges, tag) for tag, q in enumerate(questions)]
+    for search in searches:
+        search.improve_known()
+    while active := [s for s in searches if s.alive(effort)]:
         clock.check()
-        caps = search.caps()
-        waiting = waiting.take(np.all(form.phi_of(waiting.bounds) <= caps, axis=1))
-        if not len(waiting):
-            break
-        batch, waiting = _best(form, target, waiting)
-        tightened += len(batch)
-        batch = form.contract(batch, caps, combine=search.multipliers)
-        search.try_some(batch)
-        batch = batch.take(np.all(form.phi_of(batch.bounds) <= search.caps(), axis=1))
-        for _ in range(1 if len(batch) > FEW else 2):
-            # A small batch costs as much as a larger one, so that it is split twice at once.
-            batch, small = form.split(batch)
-            search.close_small(small)
-        waiting = Boxes.joined([waiting, batch])
-        if tightened > effort and len(waiting):
-            open_ones = np.unique(np.concatenate([waiting.combination, search.left_open]))
-            return Outcome(search.best, search.t, False, open_ones, len(waiting))
-    closed = not len(search.left_open)
-    return Outcome(search.best, search.t, closed, np.unique(search.left_open), len(search.left_open))
+        batches = [s.next_batch(max(BATCH // len(active), FEW)) for s in active]
+        multipliers = np.concatenate([s.multipliers[: max(1, VECTORS // len(active))] for s in active])
+        joined = form.contract(Boxes.joined(batches), _caps_of(searches, batches), combine=multipliers)
+        parts = {s: joined.take(joined.tag == s.tag) for s in active}
+        _probe(form, searches, parts)
+        for search, boxes in parts.items():
+            search.advance(boxes)
+    return [s.outcome() for s in searches]
 
 
-def _best(form: Formulation, target: Target, boxes: Boxes) -> tuple[Boxes, Boxes]:
-    if len(boxes) <= BATCH:
-        return boxes, boxes.take(np.zeros(0, dtype=np.int64))
-    t = target.t_of(form.phi_of(boxes.bounds))
-    order = np.argsort(t, kind="stable")
-    return boxes.take(order[:BATCH]), boxes.take(order[BATCH:])
+def _caps_of(searches: Sequence[_Search], batches: Sequence[Boxes]) -> np.ndarray:
+    """Return a row of caps per box, each from the incumbent of its own question."""
+    caps = np.array([s.caps() for s in searches])
+    return caps[np.concatenate([b.tag for b in batches])]
+
+
+def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Search, Boxes]) -> None:
+    """Evaluate points of the most promising boxes of every question that still looks for designs.
+
+    Gridded variables are fixed in the middle of a box; propagation then says what is left of the others.
+    """
+    chosen = [s.promising(boxes) for s, boxes in parts.items() if s.looks_for_designs() and len(boxes)]
+    if not chosen:
+        return
+    boxes = Boxes.joined(chosen)
+    if form.gridded.any():
+        middle = form.makeable(form.inside(boxes, 0.5))
+        boxes = replace(
+            boxes,
+            low=np.where(form.gridded, middle, boxes.low),
+            high=np.where(form.gridded, middle, boxes.high),
+        )
+        boxes = form.contract(boxes, _caps_of(searches, [boxes]))
+    for search in parts:
+        own = boxes.take(boxes.tag == search.tag)
+        for share in (EDGE, 0.5) if len(own) else ():
+            search.offer(form.candidates(form.makeable(form.inside(own, share)), own.combination))
 
 
 class _Search:
     """The incumbent of one scalar problem and the tries that improve it."""
 
     def __init__(
-        self,
-        form: Formulation,
-        target: Target,
-        gap: float,
-        ranges: np.ndarray | None,
-        start: Candidate | None,
-        ceiling: float,
-        seed: int,
+        self, form: Formulation, question: Question, gap: float, ranges: np.ndarray | None, tag: int
     ) -> None:
-        self.rng = np.random.default_rng(seed)
-        self.form, self.target, self.gap, self.ranges = form, target, gap, ranges
-        self.best = start
-        self.t = ceiling if start is None else min(ceiling, float(target.t_of(start.phi)))
+        self.form, self.target, self.gap, self.ranges, self.tag = form, question.target, gap, ranges, tag
+        self.rng = np.random.default_rng(tag)
+        self.waiting = question.boxes.tagged(tag)
+        self.best = question.start
+        known = np.inf if self.best is None else float(self.target.t_of(self.best.phi))
+        self.t = self.t_before = min(question.ceiling, known)
+        self.tightened = self.rounds = self.failures = 0
         self.tried: dict[int, int] = {}
-        self.rounds = self.failures = 0
         self.multipliers = np.empty((0, len(form.cuts) + len(form.goals)))
         self.left_open = np.empty(0, dtype=np.int64)
-        moving = target.slope > 0
+        moving = self.target.slope > 0
         self.task = Task(
             weights=np.where(moving, 1e-6 / max(1, int(moving.sum())), 0.0),
-            slopes=np.where(moving, target.slope, 0.0),
-            caps=np.where(np.isfinite(target.base), target.base, np.inf),
+            slopes=np.where(moving, self.target.slope, 0.0),
+            caps=np.where(np.isfinite(self.target.base), self.target.base, np.inf),
             goal_scales=form.goal_scales,
         )
+
+    def alive(self, effort: int) -> bool:
+        """Tell whether there are boxes left that may hold something better, and effort to look into them."""
+        self.waiting = self._possible(self.waiting)
+        return len(self.waiting) > 0 and self.tightened <= effort
+
+    def _possible(self, boxes: Boxes) -> Boxes:
+        return boxes.take(np.all(self.form.phi_of(boxes.bounds) <= self.caps(), axis=1))
+
+    def next_batch(self, size: int) -> Boxes:
+        """Take the boxes that promise most."""
+        batch, rest = self.waiting, self.waiting.take(np.zeros(0, dtype=np.int64))
+        if len(batch) > size:
+            order = np.argsort(self.t_of(batch), kind="stable")
+            batch, rest = batch.take(order[:size]), batch.take(order[size:])
+        self.waiting = rest
+        self.tightened += len(batch)
+        return batch
+
+    def t_of(self, boxes: Boxes) -> np.ndarray:
+        """Return the least t that the bounds of boxes allow."""
+        return self.target.t_of(self.form.phi_of(boxes.bounds))
+
+    def advance(self, boxes: Boxes) -> None:
+        """Look for better designs in tightened boxes, then split what may still hold some."""
+        self.try_some(boxes)
+        boxes = self._possible(boxes)
+        for _ in range(1 if len(boxes) > FEW else 2):
+            # A small batch costs as much as a larger one, so that it is split twice at once.
+            boxes, small = self.form.split(boxes)
+            self.close_small(small)
+        self.waiting = Boxes.joined([self.waiting, boxes])
+
+    def outcome(self) -> Outcome:
+        """Return what was found, and which combinations are left open."""
+        left = np.unique(np.concatenate([self.waiting.combination, self.left_open]))
+        return Outcome(self.best, self.t, not len(left), left, len(self.waiting) + len(self.left_open))
 
     def caps(self) -> np.ndarray:
         level = self.target.base + np.where(self.target.slope > 0, self.target.slope, 0.0) * (
@@ -233,25 +286,32 @@ class _Search:
         """Solve in the combination of a known design, starting from it."""
         self.try_box(self.form.root(np.array([candidate.combination])), candidate.variables)
 
+    def looks_for_designs(self) -> bool:
+        """Tell whether this round looks for designs: after some without success, only every few rounds."""
+        return self.failures < PATIENCE or self.rounds % (self.failures - PATIENCE + 2) == 0
+
+    def promising(self, boxes: Boxes) -> Boxes:
+        """Return the boxes to probe."""
+        return boxes.take(np.argsort(self.t_of(boxes), kind="stable")[:PROBES])
+
     def try_some(self, boxes: Boxes) -> None:
-        """Look for better designs: points of many boxes at once, then the continuous problem of the best."""
+        """Solve the continuous problem where the probes found a better design, or else where bounds promise one."""
+        looked = self.looks_for_designs()
         self.rounds += 1
-        # After some rounds without a better design, looking for one every few rounds is enough.
-        if not len(boxes) or (self.failures >= PATIENCE and self.rounds % (self.failures - PATIENCE + 2)):
+        if not looked or not len(boxes):
             return
-        form = self.form
-        before = self.t
-        self.failures += 1
-        t = self.target.t_of(form.phi_of(boxes.bounds))
-        order = np.argsort(t, kind="stable")
-        self.probe(boxes.take(order[:PROBES]))
-        if self.best is not None and self.t < before:
-            self.failures = 0
-            box = form.root(np.array([self.best.combination]))
-            self.try_box(box, self.best.variables)
-            return
+        found = self.t < self.t_before
+        if found and self.best is not None:
+            self.improve(self.best)
+        else:
+            self._try_best_bounds(boxes)
+        self.failures = 0 if self.t < self.t_before else self.failures + 1
+        self.t_before = self.t
+
+    def _try_best_bounds(self, boxes: Boxes) -> None:
+        t = self.t_of(boxes)
         tries = 0
-        for k in order[: 4 * TRIES_PER_ROUND]:
+        for k in np.argsort(t, kind="stable")[: 4 * TRIES_PER_ROUND]:
             combination = int(boxes.combination[k])
             if tries == TRIES_PER_ROUND or (np.isfinite(self.t) and t[k] >= self.t):
                 break
@@ -259,23 +319,7 @@ class _Search:
                 tries += 1
                 self.tried[combination] = self.tried.get(combination, 0) + 1
                 box = boxes.take(np.array([k]))
-                self.try_box(box, form.good_start(box, self.rng))
-        if self.t < before:
-            self.failures = 0
-
-    def probe(self, boxes: Boxes) -> None:
-        """Fix the gridded variables of every box in its middle and evaluate what propagation leaves of the rest."""
-        form = self.form
-        middle = form.makeable(form.inside(boxes, 0.5))
-        if form.gridded.any():
-            boxes = replace(
-                boxes,
-                low=np.where(form.gridded, middle, boxes.low),
-                high=np.where(form.gridded, middle, boxes.high),
-            )
-            boxes = form.contract(boxes, self.caps())
-        for share in (EDGE, 0.5) if len(boxes) else ():
-            self.offer(form.candidates(form.makeable(form.inside(boxes, share)), boxes.combination))
+                self.try_box(box, self.form.good_start(box, self.rng))
 
     def try_box(self, box: Boxes, start: np.ndarray) -> None:
         """Solve in one box; with a grid, round the answer and solve again for what remains."""
@@ -324,6 +368,7 @@ class _Search:
             np.where(np.isnan(choices), box.high, choices),
             np.repeat(box.bounds, count, axis=0),
             np.repeat(box.scores, count, axis=0),
+            np.repeat(box.tag, count),
         )
 
     def try_leaf(self, box: Boxes, near: np.ndarray) -> None:
