@@ -150,7 +150,10 @@ class Formulation:
         cuts += [Cut(x.sense, model.quantity_node[x.quantity], None, 1e-9, x.limit) for x in instance.extra]
         self.cuts = cuts
         self.bounds = [cut.bound for cut in cuts]
-        self.propagator = Propagator(model.program, self.n, cuts, self.goals)
+        self.traded = traded
+        # Objectives that only settle ties would cost time and mislead the splitting while others are traded off.
+        self._traded_only = Propagator(model.program, self.n, cuts, self.goals[:traded])
+        self._all_goals = Propagator(model.program, self.n, cuts, self.goals)
         self.lower, self.upper = instance.lower, instance.upper
         self.grids = instance.grids()
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
@@ -176,7 +179,7 @@ class Formulation:
             np.zeros((n, self.n)),
             np.zeros(n, dtype=np.int64),
         )
-        return self.contract(start.take(self._not_refused(combinations)), None, passes)
+        return self.contract(start.take(self._not_refused(combinations)), None, passes, every_goal=True)
 
     def _not_refused(self, combinations: np.ndarray) -> np.ndarray:
         keep = np.ones(len(combinations), dtype=bool)
@@ -191,27 +194,41 @@ class Formulation:
         return Program(self.model.inputs, [when], self.model.calls).compile()
 
     def contract(
-        self, boxes: Boxes, caps: np.ndarray | None, passes: int = 3, combine: np.ndarray | None = None
+        self,
+        boxes: Boxes,
+        caps: np.ndarray | None,
+        passes: int = 3,
+        combine: np.ndarray | None = None,
+        every_goal: bool = False,
     ) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
 
         ``caps`` bound phi: one row for all boxes, or a row per box. ``combine`` holds multipliers of
-        limits and caps (see ``Propagator``).
+        limits and caps (see ``Propagator``). ``every_goal``: also those objectives that only settle ties.
         """
         kept = []
         for first in range(0, len(boxes), CHUNK):
             rows = np.arange(first, min(first + CHUNK, len(boxes)))
             own = caps if caps is None or caps.ndim == 1 else caps[rows]
-            kept.append(self._contract(boxes.take(rows), own, passes, combine))
+            kept.append(self._contract(boxes.take(rows), own, passes, combine, every_goal))
         return Boxes.joined(kept) if kept else boxes
 
     def _contract(
-        self, boxes: Boxes, caps: np.ndarray | None, passes: int, combine: np.ndarray | None
+        self, boxes: Boxes, caps: np.ndarray | None, passes: int, combine: np.ndarray | None, every_goal: bool
     ) -> Boxes:
         self.contracted += len(boxes)
         data = self.instance.data(boxes.combination)
         limits = None if caps is None else list(np.moveaxis(self.values_of(caps), -1, 0))
-        result = self.propagator.contract(boxes.low, boxes.high, data, limits, passes, combine)
+        if every_goal:
+            result = self._all_goals.contract(boxes.low, boxes.high, data, limits, passes, combine)
+            bounds = np.maximum(result.bounds, boxes.bounds)
+        else:
+            m = self.traded
+            kept = None if combine is None else combine[:, : len(self.cuts) + m]
+            own = None if limits is None else limits[:m]
+            result = self._traded_only.contract(boxes.low, boxes.high, data, own, passes, kept)
+            bounds = boxes.bounds.copy()
+            bounds[:, :m] = np.maximum(bounds[:, :m], result.bounds)
         # An active limit loosened by the slack must not cost a grid point or a pinned value.
         low, high, alive = result.low, result.high, result.alive
         low, high = np.maximum(low, self.lower), np.minimum(high, self.upper)
@@ -224,7 +241,6 @@ class Formulation:
                 high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
         alive = alive & ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
         high = np.maximum(high, low)
-        bounds = np.maximum(result.bounds, boxes.bounds)
         if alive.any():
             self._positive_cuts &= result.positive_cuts
         return Boxes(boxes.combination, low, high, bounds, result.scores, boxes.tag).take(alive)

@@ -520,7 +520,7 @@ class _FrontSearch:
 
     def _within(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
         near = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
-        return self.form.contract(near, caps, 3) if len(near) else near
+        return self.form.contract(near, caps, every_goal=True) if len(near) else near
 
     def _isolated(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
         """Return what the caps leave of the boxes, split until gridded variables are fixed."""

@@ -42,6 +42,10 @@ class Target:
     base: np.ndarray
     slope: np.ndarray
 
+    def reaches_beyond(self, count: int) -> bool:
+        """Tell whether it speaks of more than the first objectives."""
+        return bool(np.any(self.slope[count:] > 0) or np.any(np.isfinite(self.base[count:])))
+
     def t_of(self, phi: np.ndarray) -> np.ndarray:
         """Return t of objectives (batch, objectives); infinite where a plain cap is broken."""
         moving = self.slope > 0
@@ -137,6 +141,7 @@ def minimise(
     -------
     list of Outcome, one per question
     """
+    every_goal = any(q.target.reaches_beyond(form.traded) for q in questions)
     searches = [_Search(form, q, gap, ranges, tag) for tag, q in enumerate(questions)]
     for search in searches:
         search.improve_known()
@@ -144,9 +149,11 @@ def minimise(
         clock.check()
         batches = [s.next_batch(max(BATCH // len(active), FEW)) for s in active]
         multipliers = np.concatenate([s.multipliers[: max(1, VECTORS // len(active))] for s in active])
-        joined = form.contract(Boxes.joined(batches), _caps_of(searches, batches), combine=multipliers)
+        joined = form.contract(
+            Boxes.joined(batches), _caps_of(searches, batches), combine=multipliers, every_goal=every_goal
+        )
         parts = {s: joined.take(joined.tag == s.tag) for s in active}
-        _probe(form, searches, parts)
+        _probe(form, searches, parts, every_goal)
         for search, boxes in parts.items():
             search.advance(boxes)
     return [s.outcome() for s in searches]
@@ -158,7 +165,7 @@ def _caps_of(searches: Sequence[_Search], batches: Sequence[Boxes]) -> np.ndarra
     return caps[np.concatenate([b.tag for b in batches])]
 
 
-def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Search, Boxes]) -> None:
+def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Search, Boxes], every_goal: bool) -> None:
     """Evaluate points of the most promising boxes of every question that still looks for designs.
 
     Gridded variables are fixed in the middle of a box; propagation then says what is left of the others.
@@ -174,7 +181,7 @@ def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Searc
             low=np.where(form.gridded, middle, boxes.low),
             high=np.where(form.gridded, middle, boxes.high),
         )
-        boxes = form.contract(boxes, _caps_of(searches, [boxes]))
+        boxes = form.contract(boxes, _caps_of(searches, [boxes]), every_goal=every_goal)
     for search in parts:
         own = boxes.take(boxes.tag == search.tag)
         for share in (EDGE, 0.5) if len(own) else ():
@@ -334,7 +341,11 @@ class _Search:
         if not form.gridded.any():
             self.offer(form.candidates(solution.variables[None, :], np.array([combination])))
             return
-        probes = form.contract(self._roundings(box, solution.variables), self.caps())
+        probes = form.contract(
+            self._roundings(box, solution.variables),
+            self.caps(),
+            every_goal=self.target.reaches_beyond(form.traded),
+        )
         t = self.target.t_of(form.phi_of(probes.bounds)) if len(probes) else np.empty(0)
         for k in np.argsort(t, kind="stable")[:4]:
             if t[k] < self.t:
