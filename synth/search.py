@@ -29,11 +29,6 @@ ZONE_BOXES = 12_000
 ZONE_SPLITS = 3
 MULTI_STARTS = 6
 EXHAUSTIVE_LIMIT = 3000
-SETTLE_GAP = 1e-6
-ISOLATE_SPLITS = 16
-ISOLATE_BOXES = 500
-SETTLE_EFFORT = 3000
-PINNED = 1e-5  # propagation loosens limits by some 1e-6; closer than this nothing is left to settle
 
 
 def synthesize(
@@ -480,64 +475,52 @@ class _FrontSearch:
         form, current = self.form, candidate
         caps = np.full(len(form.goals), np.inf)
         caps[: self.m] = candidate.phi[: self.m] + TIE
-        first = self.m
         if self.m == 1 and len(form.goals) > 1:
             # One objective leaves whole families of parts open; the next objective is settled over all of them.
-            outcome = self._solve([Question(self._target(first, caps), self.pool, current)])[0]
+            outcome = self._solve([Question(self._target(self.m, caps), self.pool, current)])[0]
             current = current if outcome.best is None else outcome.best
-            caps[first] = current.phi[first] + TIE
-            first += 1
         ties = self._ties(current)
-        boxes = form.root(np.unique(np.concatenate([ties, [current.combination]])))
-        for j in range(first, len(form.goals)):
-            boxes = self._isolated(boxes, caps)
-            if not len(boxes) or self._pinned(boxes):
-                break
-            if current.phi[j] - np.min(form.phi_of(boxes.bounds)[:, j]) <= PINNED * max(1.0, abs(current.phi[j])):
-                caps[j] = current.phi[j] + TIE
-                continue
-            question = Question(self._target(j, caps), boxes, current)
-            outcome = minimise(form, [question], SETTLE_GAP, self.clock, effort=SETTLE_EFFORT)[0]
-            current = current if outcome.best is None else outcome.best
-            caps[j] = current.phi[j] + TIE
-        others = [int(c) for c in self._ties(current) if c != current.combination]
+        current = min(ties, key=lambda c: tuple(np.round(c.phi[self.m :], 9)), default=current)
+        current = self._settle_variables(current, caps)
+        others = [c.combination for c in ties if c.combination != current.combination]
         return current, tuple(self._difference(current.combination, other) for other in others)
 
-    def _ties(self, candidate: Candidate) -> np.ndarray:
-        """Return the combinations that reach the same chosen objectives with the same dimensions."""
+    def _ties(self, candidate: Candidate) -> list[Candidate]:
+        """Return the designs of all combinations that reach the same chosen objectives with the same dimensions."""
         found = []
         phi = candidate.phi[: self.m]
         for first in range(0, self.instance.combinations, ROOT_CHUNK):
             numbers = np.arange(first, min(first + ROOT_CHUNK, self.instance.combinations), dtype=np.int64)
             variables = np.broadcast_to(candidate.variables, (len(numbers), self.form.n))
-            equal = [
-                c.combination
-                for c in self.form.feasible_points(variables, numbers)
-                if np.all(np.abs(c.phi[: self.m] - phi) <= TIE)
-            ]
-            found += equal
-        return np.array(found, dtype=np.int64)
+            points = self.form.feasible_points(variables, numbers)
+            found += [c for c in points if np.all(np.abs(c.phi[: self.m] - phi) <= TIE)]
+        return found
 
-    def _within(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
-        near = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
-        return self.form.contract(near, caps, every_goal=True) if len(near) else near
+    def _settle_variables(self, candidate: Candidate, caps: np.ndarray) -> Candidate:
+        """Make all objectives, the chosen ones first, then the variables, as small as possible in their order.
 
-    def _isolated(self, boxes: Boxes, caps: np.ndarray) -> Boxes:
-        """Return what the caps leave of the boxes, split until gridded variables are fixed."""
-        boxes = self._within(boxes, caps)
-        for _ in range(ISOLATE_SPLITS):
-            loose = ~self.form.on_grid(boxes)
-            if not loose.any() or len(boxes) > ISOLATE_BOXES:
-                break
-            halves, small = self.form.split(boxes.take(loose))
-            boxes = self._within(Boxes.joined([boxes.take(~loose), halves, small]), caps)
-        return boxes
-
-    @staticmethod
-    def _pinned(boxes: Boxes) -> bool:
-        width = boxes.high - boxes.low
-        one = len(np.unique(boxes.combination)) == 1
-        return one and len(boxes) == 1 and bool(np.all(width <= PINNED * np.abs(boxes.high)))
+        For the chosen ones this only takes what the gap of the search left; parts, counts and makeable
+        values stay.
+        """
+        form, current, caps = self.form, candidate, caps.copy()
+        low = np.where(form.gridded, candidate.variables, form.lower)
+        high = np.where(form.gridded, candidate.variables, form.upper)
+        for j in range(len(form.goals)):
+            task = Task(
+                weights=np.eye(len(form.goals))[j],
+                slopes=np.zeros(len(form.goals)),
+                caps=caps,
+                goal_scales=form.goal_scales,
+                t_weight=0.0,
+            )
+            solution = form.solve(task, current.combination, current.variables, low, high)
+            if solution is not None:
+                numbers = np.array([current.combination])
+                for better in form.feasible_points(solution.variables[None, :], numbers):
+                    if np.all(better.phi <= caps + TIE) and better.phi[j] < current.phi[j] - TIE:
+                        current = better
+            caps[j] = current.phi[j] + TIE
+        return current
 
     def _difference(self, combination: int, other: int) -> str:
         own, its = self.instance.describe(combination), self.instance.describe(other)

@@ -22,6 +22,7 @@ PATIENCE = 3
 TRIES_PER_ROUND = 2
 TRIES_PER_COMBINATION = 3
 PROBES = 256
+KNOWN = 20
 EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
 ROUNDINGS = 256
 VECTORS = 6
@@ -278,14 +279,14 @@ class _Search:
         if not len(archive):
             return
         t = self.target.t_of(archive.phi)
-        tries = 0
-        for k in np.argsort(t, kind="stable"):
-            if tries == TRIES_PER_ROUND or not np.isfinite(t[k]):
+        order = np.argsort(t, kind="stable")[:KNOWN]
+        # A list of its own: the archive changes while solving.
+        known = [archive[int(k)] for k in order if np.isfinite(t[k])]
+        self.offer(known[:1])
+        for candidate in known:
+            if len(self.tried) == TRIES_PER_ROUND:
                 break
-            candidate = archive[k]
-            self.offer([candidate])
             if candidate.combination not in self.tried:
-                tries += 1
                 self.tried[candidate.combination] = 1
                 self.improve(candidate)
 

@@ -443,7 +443,7 @@ def test_boxes_around_feasible_designs_survive(family, combined):
         values = form.evaluate(points, combinations).values
         signed = np.stack([values[name] for name in form.names], axis=1)
         spare = rng.exponential(0.1, signed.shape) * (rng.random(signed.shape) < 0.7)
-        caps = form.phi_of(signed) + spare * np.where(form.log_goals, 1.0, np.abs(signed))
+        caps = form.phi_of(signed) + (spare + TIE) * np.where(form.log_goals, 1.0, np.abs(signed)) + TIE
         multipliers = None
         if combined:
             rows = len(form.cuts) + len(form.goals)
