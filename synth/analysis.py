@@ -392,10 +392,12 @@ def _solve_for(
     lower, upper = np.array([v.lower for v in unknown]), np.array([v.upper for v in unknown])
 
     def difference(x: np.ndarray) -> np.ndarray:
-        return (np.asarray(function(x, variables, data)[0]).ravel() - target) / scale
+        missed: np.ndarray = (np.asarray(function(x, variables, data)[0]).ravel() - target) / scale
+        return missed
 
     def slope(x: np.ndarray) -> np.ndarray:
-        return np.asarray(function(x, variables, data)[1]) / scale[:, None]
+        relative: np.ndarray = np.asarray(function(x, variables, data)[1]) / scale[:, None]
+        return relative
 
     rng = np.random.default_rng(0)
     starts = [np.sqrt(np.maximum(lower, 1e-9) * upper)]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.formulation import Candidate, Formulation
+from synth.formulation import TIE, Candidate, Formulation
 from synth.nlp import Task
-from synth.tree import TIE
 
 NOISE = 1e-6
 
@@ -27,9 +26,7 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
     """
     result: dict[str, dict[str, float]] = {}
     names = [x.name for x in form.model.limits] + [x.name for x in form.instance.extra]
-    requirements = {
-        e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"
-    }
+    requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
     for k in range(chosen):
         if not form.log_goals[k]:
             continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 TOLERANCE = 1e-6
 
 
-class Status(str, Enum):
+class Status(StrEnum):
     """How a design (or a whole front) stands."""
 
     OPTIMAL = "optimal"  # within the gap that was asked for

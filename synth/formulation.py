@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from synth.declaration import Refusal
 from synth.feasibility import holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal, Propagator
 from synth.model import Evaluation
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated, spread_subset
+from synth.program import Program
 
 CHUNK = 4096
 SNAP = 1e-9
@@ -184,14 +187,15 @@ class Formulation:
     def _not_refused(self, combinations: np.ndarray) -> np.ndarray:
         keep = np.ones(len(combinations), dtype=bool)
         for refusal in self.instance.joint_refusals:
-            used = self.model.function(("refusal", refusal.code), lambda r=refusal: self._refusal_program(r.when))
-            keep &= ~(np.asarray(used([None] * self.n + self.instance.data(combinations))[0]) > 0.5)
+            refused = self._refusal_function(refusal)
+            keep &= ~(np.asarray(refused([None] * self.n + self.instance.data(combinations))[0]) > 0.5)
         return keep
 
-    def _refusal_program(self, when: object) -> object:
-        from synth.program import Program
-
-        return Program(self.model.inputs, [when], self.model.calls).compile()
+    def _refusal_function(self, refusal: Refusal) -> Any:
+        model = self.model
+        return model.function(
+            ("refusal", refusal.code), lambda: Program(model.inputs, [refusal.when], model.calls).compile()
+        )
 
     def contract(
         self,
@@ -286,7 +290,8 @@ class Formulation:
 
     def on_grid(self, boxes: Boxes) -> np.ndarray:
         """Tell which boxes hold one value only of every gridded variable."""
-        return np.all((boxes.high - boxes.low <= SNAP * np.abs(boxes.high)) | ~self.gridded, axis=1)
+        fixed: np.ndarray = np.all((boxes.high - boxes.low <= SNAP * np.abs(boxes.high)) | ~self.gridded, axis=1)
+        return fixed
 
     # -- objectives ----------------------------------------------------------------------------
 
@@ -355,7 +360,8 @@ class Formulation:
         """Return points inside boxes: share 0 is the lower, 1 the upper end; by ratio where positive."""
         with np.errstate(all="ignore"):
             ratio = boxes.low * (boxes.high / boxes.low) ** share
-        return np.where(boxes.low > 0, ratio, boxes.low + share * (boxes.high - boxes.low))
+        points: np.ndarray = np.where(boxes.low > 0, ratio, boxes.low + share * (boxes.high - boxes.low))
+        return points
 
     def makeable(self, variables: np.ndarray) -> np.ndarray:
         """Return points with gridded variables moved to the nearest makeable value."""
@@ -380,7 +386,8 @@ class Formulation:
         for r in result.residuals.values():
             worst = np.fmax(worst, np.where(np.isinf(r), 1e3, r))
         broken = np.any([~h for h in result.holds.values()], axis=0) if result.holds else np.zeros(count, dtype=bool)
-        return points[int(np.argmin(np.where(broken, np.maximum(worst, 1e-9), 0.0)))]
+        best: np.ndarray = points[int(np.argmin(np.where(broken, np.maximum(worst, 1e-9), 0.0)))]
+        return best
 
     # -- the continuous problem ----------------------------------------------------------------
 

@@ -14,7 +14,7 @@ import numpy as np
 from synth.conditions import parse_condition
 from synth.declaration import Part
 from synth.errors import InputError
-from synth.model import Model, part_column_value
+from synth.model import part_column_value
 from synth.problem import DesignProblem
 from synth.special import expanded
 from synth.tables import Catalogs, Table
@@ -431,10 +431,7 @@ class Instance:
             size, columns = len(values), {name: values}
         when = expanded(refusal.when, model.calls)
         bad = np.array(
-            [
-                number(when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5
-                for k in range(size)
-            ],
+            [number(when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5 for k in range(size)],
             dtype=bool,
         )
         if not bad.any():

@@ -533,7 +533,9 @@ class Propagator:
                 for i, k in enumerate(self.variables):
                     low[:, i] = np.fmax(low[:, i], box.low[k])
                     high[:, i] = np.fmin(high[:, i], box.high[k])
-            positive = np.array([self._surely_positive(cut, box, alive) for cut in self.cuts], dtype=bool)
+            positive = np.ones(len(self.cuts), dtype=bool)
+            for j, cut in enumerate(self.cuts):
+                positive[j] = box is not None and self._surely_positive(cut, box, alive)
         return Tightened(alive, low, np.maximum(high, low), bounds, scores, positive)
 
     @staticmethod

@@ -169,7 +169,7 @@ class Model:
     def kind_of(self, name: str) -> str:
         """Return what a declared name is, with its article."""
         d = self.declaration
-        kinds = {
+        kinds: dict[str, Mapping[str, Any]] = {
             "a requirement": d.requirements,
             "an option": d.options,
             "a variable": d.variables,

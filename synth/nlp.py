@@ -23,7 +23,7 @@ import numpy as np
 from synth.intervals import Cut, Goal
 from synth.program import OP_SELECT, Program
 
-IPOPT = {
+IPOPT: dict[str, Any] = {
     "print_time": False,
     "ipopt.print_level": 0,
     "ipopt.sb": "yes",
@@ -350,9 +350,9 @@ class ParametricNlp:
             data, bounds, sizes, task.weights, task.slopes, variable_weights,
             [task.t_weight, task.elastic], condition_sizes,
         ])  # fmt: skip
-        lower_g = [-np.inf if c.sense != "equal" else 0.0 for c in rows.cuts]
+        equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
         upper_g = np.zeros(len(rows.cuts))
-        lower_g = np.where(void, -np.inf, lower_g)
+        lower_g = np.where(void | ~equal, -np.inf, 0.0)
         upper_g[void] = np.inf
         lower = np.concatenate([lower_g, np.full(len(rows.goals) + len(positions), -np.inf)])
         upper = np.concatenate([upper_g, task.caps, np.zeros(len(positions))])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
 from typing import Any
 
 import moocore
@@ -81,7 +80,8 @@ class Zones:
                 if maker is not None:
                     other = 1 - k
                     result[other] = max(result[other], self.points[maker][other])
-        return np.minimum(result, zone.upper - SAME * self.range)
+        corner: np.ndarray = np.minimum(result, zone.upper - SAME * self.range)
+        return corner
 
     def size(self, zone: Zone) -> float:
         """Return how large a hole in the front the zone is, 0 .. 1."""

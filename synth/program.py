@@ -137,7 +137,7 @@ class Program:
         return None
 
     def _read(self, symbols: Sequence[Any], numbers: Sequence[int], expressions: Sequence[Any]) -> list[int]:
-        """Number the nodes of some expressions of symbols whose own nodes are known."""
+        """Return the nodes of some expressions of symbols whose own nodes are known."""
         function = ca.Function("trace", [ca.vertcat(*symbols)], [ca.vertcat(*expressions)])
         # Structural zeros are not instructions, so every output starts as the constant 0.
         outputs = [self._number(ca.OP_CONST, (), 0.0)] * len(expressions)
@@ -232,9 +232,8 @@ class Program:
             else:
                 code = TEMPLATES[node.op].format(*(names[a] for a in node.args))
             # Registers are handed on as soon as their last reader is done, so big batches stay small in memory.
-            for a in set(node.args):
-                if a in register and last_use[a] == k:
-                    free.append(register.pop(a))
+            done = [a for a in dict.fromkeys(node.args) if a in register and last_use[a] == k]
+            free.extend(register.pop(a) for a in done)
             slot = free.pop() if free else len(register) + len(free)
             while slot in register.values():
                 slot += 1

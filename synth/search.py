@@ -383,7 +383,7 @@ class _FrontSearch:
         """Return the boxes that reach into a zone, tightened to it and split a little; its parts start from them."""
         caps = np.full(len(self.form.goals), np.inf)
         caps[: self.m] = zone.upper
-        boxes = zone.cover
+        boxes: Boxes = zone.cover
         for _ in range(ZONE_SPLITS):
             self.clock.check()
             boxes = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
@@ -394,9 +394,7 @@ class _FrontSearch:
             boxes = Boxes.joined(self.form.split(boxes))
         return boxes
 
-    def _tightened(
-        self, found: Sequence[tuple[Zone, Candidate, np.ndarray]]
-    ) -> list[tuple[Zone, Candidate]]:
+    def _tightened(self, found: Sequence[tuple[Zone, Candidate, np.ndarray]]) -> list[tuple[Zone, Candidate]]:
         """Improve designs from the middle of zones in the objectives that did not decide them.
 
         An objective that reaches the corner is proven already: less of it would have meant a smaller t.
@@ -431,7 +429,7 @@ class _FrontSearch:
     # -- the report ----------------------------------------------------------------------------
 
     def _designs(self, frame: Frame, weights: Sequence[float], interrupted: bool) -> list[Design]:
-        settled, alternatives = [], []
+        settled, alternatives = list[Candidate](), list[tuple[str, ...]]()
         for k, candidate in enumerate(self.front):
             if interrupted:
                 settled.append(candidate)
@@ -441,10 +439,8 @@ class _FrontSearch:
             settled.append(final)
             alternatives.append(others)
             self._say("report", (k + 1) / len(self.front))
-        values = np.array([
-            [float(self.form.evaluate(c.variables[None, :], np.array([c.combination])).values[name][0]) for name in self.chosen]
-            for c in settled
-        ])  # fmt: skip
+        results = [self.form.evaluate(c.variables[None, :], np.array([c.combination])) for c in settled]
+        values = np.array([[float(r.values[name][0]) for name in self.chosen] for r in results])
         ranking = rank(self.chosen, values, weights)
         designs = []
         for position, k in enumerate(ranking.order):

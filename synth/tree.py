@@ -28,7 +28,7 @@ ROUNDINGS = 256
 VECTORS = 6
 
 
-class Stopped(Exception):  # noqa: N818 - not a fault: the user's time or patience is over
+class Stopped(Exception):
     """The time limit is reached, or the user interrupted."""
 
     def __init__(self, reason: str) -> None:
@@ -163,7 +163,8 @@ def minimise(
 def _caps_of(searches: Sequence[_Search], batches: Sequence[Boxes]) -> np.ndarray:
     """Return a row of caps per box, each from the incumbent of its own question."""
     caps = np.array([s.caps() for s in searches])
-    return caps[np.concatenate([b.tag for b in batches])]
+    rows: np.ndarray = caps[np.concatenate([b.tag for b in batches])]
+    return rows
 
 
 def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Search, Boxes], every_goal: bool) -> None:
@@ -192,9 +193,7 @@ def _probe(form: Formulation, searches: Sequence[_Search], parts: Mapping[_Searc
 class _Search:
     """The incumbent of one scalar problem and the tries that improve it."""
 
-    def __init__(
-        self, form: Formulation, question: Question, gap: float, ranges: np.ndarray | None, tag: int
-    ) -> None:
+    def __init__(self, form: Formulation, question: Question, gap: float, ranges: np.ndarray | None, tag: int) -> None:
         self.form, self.target, self.gap, self.ranges, self.tag = form, question.target, gap, ranges, tag
         self.rng = np.random.default_rng(tag)
         self.waiting = question.boxes.tagged(tag)

@@ -67,7 +67,8 @@ def test_pack_length_is_the_plates_one_by_one():
 
 def test_annulus_mass_is_the_difference_of_two_discs():
     discs = [7850 * 3 * 0.002 * math.pi * r**2 for r in (0.11, 0.07)]
-    assert plates.annulus_mass(7850, 3, 0.002, 0.11 + 0.07, 0.11 - 0.07) == pytest.approx(discs[0] - discs[1], rel=1e-13)
+    mass = plates.annulus_mass(7850, 3, 0.002, 0.11 + 0.07, 0.11 - 0.07)
+    assert mass == pytest.approx(discs[0] - discs[1], rel=1e-13)
 
 
 def test_drag_torque_is_the_shear_integral():
