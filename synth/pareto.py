@@ -10,6 +10,7 @@ import moocore
 import numpy as np
 
 SAME = 1e-9
+DIGITS = 9
 
 
 @dataclass(eq=False)
@@ -96,10 +97,11 @@ class Zones:
 
 
 def non_dominated(phi: np.ndarray) -> np.ndarray:
-    """Return the mask of the non-dominated rows; of equal rows the first is kept."""
+    """Return the mask of the non-dominated rows; of rows equal to nine digits the first is kept."""
     if not len(phi):
         return np.zeros(0, dtype=bool)
-    return np.asarray(moocore.is_nondominated(phi, keep_weakly=False), dtype=bool)
+    # Compared as they stand, two designs that differ in the last digits of the solver would both be kept.
+    return np.asarray(moocore.is_nondominated(np.round(phi, DIGITS), keep_weakly=False), dtype=bool)
 
 
 def spread_subset(phi: np.ndarray, count: int) -> np.ndarray:

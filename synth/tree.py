@@ -398,6 +398,8 @@ class _Search:
         self.offer(self.form.candidates(middle, boxes.combination))
         for k in range(min(len(boxes), 8)):
             self.try_leaf(boxes.take(np.array([k])), middle[k])
-        better = np.all(self.form.phi_of(boxes.bounds) <= self.caps(), axis=1)
+        # A box that is a single point is settled by its evaluation; a small one only nearly so.
+        point = np.all(boxes.high - boxes.low <= 1e-12 * np.abs(boxes.high), axis=1)
+        better = np.all(self.form.phi_of(boxes.bounds) <= self.caps(), axis=1) & ~point
         if better.any():
             self.left_open = np.concatenate([self.left_open, boxes.combination[better]])
