@@ -338,7 +338,8 @@ class Formulation:
 
     def _feasible(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         result = self.evaluate(variables, combinations)
-        feasible = result.feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
+        feasible = result.feasible & self._not_refused(combinations)
+        feasible = feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
         for extra in self.instance.extra:
             r = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
             feasible = feasible & holds(r, guard=False)

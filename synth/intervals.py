@@ -25,6 +25,7 @@ from synth.program import COMPARISONS, OP_SELECT, OP_SPECIAL, Node, Program
 
 SLACK = 2e-6
 ROUNDING = 1e-8
+CANCELLATION = 1e-12
 
 Interval = tuple[Any, Any]
 
@@ -181,17 +182,22 @@ def _atan2(a: Interval, b: Interval) -> Interval:
     return np.where(inside, np.arctan(ratio[0]), -np.pi), np.where(inside, np.arctan(ratio[1]), np.pi)
 
 
+def _truth(sure: Any, never: Any) -> Interval:
+    """Return 1 where surely true, 0 where surely not, and both where nothing is known."""
+    return np.asarray(sure, dtype=float), 1.0 - np.asarray(never, dtype=float)
+
+
 def _lt(a: Interval, b: Interval) -> Interval:
-    return (a[1] < b[0]).astype(float), (a[0] < b[1]).astype(float)
+    return _truth(a[1] < b[0], a[0] >= b[1])
 
 
 def _le(a: Interval, b: Interval) -> Interval:
-    return (a[1] <= b[0]).astype(float), (a[0] <= b[1]).astype(float)
+    return _truth(a[1] <= b[0], a[0] > b[1])
 
 
 def _eq(a: Interval, b: Interval) -> Interval:
     sure = (a[0] == a[1]) & (b[0] == b[1]) & (a[0] == b[0])
-    return sure.astype(float), ((a[0] <= b[1]) & (b[0] <= a[1])).astype(float)
+    return _truth(sure, (a[0] > b[1]) | (b[0] > a[1]))
 
 
 def _ne(a: Interval, b: Interval) -> Interval:
@@ -205,14 +211,14 @@ def _not(a: Interval) -> Interval:
 
 def _if_else_zero(c: Interval, x: Interval) -> Interval:
     sure, possible = c[0] > 0.5, c[1] > 0.5
-    low = np.where(sure, x[0], np.where(possible, np.fmin(x[0], 0.0), 0.0))
-    return low, np.where(sure, x[1], np.where(possible, np.fmax(x[1], 0.0), 0.0))
+    low = np.where(sure, x[0], np.where(possible, np.minimum(x[0], 0.0), 0.0))
+    return low, np.where(sure, x[1], np.where(possible, np.maximum(x[1], 0.0), 0.0))
 
 
 def _select(c: Interval, x: Interval, y: Interval) -> Interval:
     sure, never = c[0] > 0.5, c[1] < 0.5
-    low = np.where(sure, x[0], np.where(never, y[0], np.fmin(x[0], y[0])))
-    return low, np.where(sure, x[1], np.where(never, y[1], np.fmax(x[1], y[1])))
+    low = np.where(sure, x[0], np.where(never, y[0], np.minimum(x[0], y[0])))
+    return low, np.where(sure, x[1], np.where(never, y[1], np.maximum(x[1], y[1])))
 
 
 FORWARD: dict[int, Callable[..., Interval]] = {
@@ -279,6 +285,13 @@ def _quotient(a: Interval, b: Interval) -> Interval:
     return np.where(free, low, -np.inf), np.where(free, high, np.inf)
 
 
+def _widened(result: Interval, *terms: Interval) -> Interval:
+    """Widen a difference by what the rounding of its large terms may have cost."""
+    size = sum(np.maximum(np.abs(t[0]), np.abs(t[1])) for t in terms)
+    blur = np.where(np.isfinite(size), CANCELLATION * size, 0.0)
+    return result[0] - blur, result[1] + blur
+
+
 def _back_sq(r: Interval, a: Interval) -> tuple[Interval]:
     root = np.sqrt(np.maximum(r[1], 0.0)), np.sqrt(np.maximum(r[0], 0.0))
     low = np.where(a[0] >= 0, root[1], -root[0])
@@ -308,8 +321,8 @@ def _back_select(r: Interval, c: Interval, x: Interval, y: Interval) -> tuple[No
 
 
 BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
-    ca.OP_ADD: lambda r, a, b: (_sub(r, b), _sub(r, a)),
-    ca.OP_SUB: lambda r, a, b: (_add(r, b), _sub(a, r)),
+    ca.OP_ADD: lambda r, a, b: (_widened(_sub(r, b), r, b), _widened(_sub(r, a), r, a)),
+    ca.OP_SUB: lambda r, a, b: (_widened(_add(r, b), r, b), _widened(_sub(a, r), a, r)),
     ca.OP_MUL: lambda r, a, b: (_quotient(r, b), _quotient(r, a)),
     ca.OP_DIV: lambda r, a, b: (_mul(r, b), _quotient(a, r)),
     ca.OP_NEG: lambda r, a: (_neg(r),),
@@ -398,7 +411,8 @@ def _local_slopes(op: int, r: Interval, args: Sequence[Interval]) -> tuple[Inter
         first = _le(args[0], args[1])
         return first, (1.0 - first[1], 1.0 - first[0])
     if op in COMPARISONS:
-        return tuple((0.0, 0.0) for _ in args)
+        undecided = ~(r[0] == r[1])  # there the value jumps
+        return tuple((np.where(undecided, -np.inf, 0.0), np.where(undecided, np.inf, 0.0)) for _ in args)
     return tuple(None for _ in args)
 
 
@@ -521,7 +535,8 @@ class Propagator:
             for sweep in range(passes):
                 box = self._forward(low, high, fixed, caps, alive, box)
                 if sweep == passes - 1:
-                    slopes = self._slopes(box)
+                    free = self._free(box, fixed)
+                    slopes = self._slopes(free)
                     self._corner_cuts(box, slopes, inputs, alive)
                     self._score(box, slopes, scores)
                     if combine is not None and caps is not None and len(combine):
@@ -562,17 +577,36 @@ class Propagator:
         for k in [*self.fixed, *self.variables]:
             self._cut_node(box, k, caps, alive)
         for k in self.order:
-            node = self.program.nodes[k]
-            args = [(box.low[a], box.high[a]) for a in node.args]
-            if node.op == OP_SPECIAL:
-                box.low[k], box.high[k] = self._special(node, args)
-            else:
-                forward = FORWARD.get(node.op)
-                box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
+            self._compute(box, k)
             if before is not None:
                 box.cut(k, (before.low[k], before.high[k]), alive)
             self._cut_node(box, k, caps, alive)
         return box
+
+    def _free(self, cut: _Box, fixed: list[Any]) -> _Box:
+        """Compute the intervals over the boxes without any limit.
+
+        A slope is used along a line from one point of the box to another, and the points between
+        need not keep the limits: so its interval must not know of them.
+        """
+        box = _Box(len(self.program.nodes))
+        for k, value in zip(self.fixed, fixed, strict=True):
+            box.low[k] = box.high[k] = np.asarray(value, dtype=float)
+        for k in self.variables:
+            box.low[k], box.high[k] = cut.low[k], np.maximum(cut.high[k], cut.low[k])
+        for k in self.order:
+            self._compute(box, k)
+        return box
+
+    def _compute(self, box: _Box, k: int) -> None:
+        """Set the interval of a node from those of its arguments."""
+        node = self.program.nodes[k]
+        args = [(box.low[a], box.high[a]) for a in node.args]
+        if node.op == OP_SPECIAL:
+            box.low[k], box.high[k] = self._special(node, args)
+        else:
+            forward = FORWARD.get(node.op)
+            box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
 
     def _special(self, node: Node, args: Sequence[Interval]) -> Interval:
         """Return the range of a special function: it is monotone in every argument."""

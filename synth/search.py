@@ -159,7 +159,8 @@ class _FrontSearch:
         self.form = Formulation(instance, self._chain(), len(chosen))
         self.m = len(chosen)
         self.started = time.monotonic()
-        self.clock = Clock(math.inf if time_limit is None else self.started + time_limit)
+        self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
+        self.stage, self.done = "", 0.0
         self.rng = np.random.default_rng(seed)
         self.progress = progress
         self.stage_seconds: dict[str, float] = {}
@@ -222,7 +223,13 @@ class _FrontSearch:
             self.stage_seconds[stage] = self.stage_seconds.get(stage, 0.0) + time.monotonic() - begin
             self._say(stage, 1.0)
 
+    def _working(self, open_boxes: int) -> None:
+        """Show that work goes on inside a stage."""
+        if open_boxes:
+            self._say(self.stage, self.done, f"{open_boxes} boxes open")
+
     def _say(self, stage: str, done: float, message: str = "") -> None:
+        self.stage, self.done = stage, done
         if self.progress is not None:
             self.progress({
                 "stage": stage,

@@ -67,10 +67,11 @@ class Clock:
     """The time that is left, and the way to say how far the search has come."""
 
     deadline: float = np.inf
-    report: Callable[[str], None] = lambda message: None
+    report: Callable[[int], None] = lambda open_boxes: None
 
-    def check(self) -> None:
-        """Raise Stopped when time is over."""
+    def check(self, open_boxes: int = 0) -> None:
+        """Tell how many boxes are open, and raise Stopped when time is over."""
+        self.report(open_boxes)
         if time.monotonic() > self.deadline:
             raise Stopped("time limit")
 
@@ -147,7 +148,7 @@ def minimise(
     for search in searches:
         search.improve_known()
     while active := [s for s in searches if s.alive(effort)]:
-        clock.check()
+        clock.check(sum(len(s.waiting) for s in active))
         batches = [s.next_batch(max(BATCH // len(active), FEW)) for s in active]
         multipliers = np.concatenate([s.multipliers[: max(1, VECTORS // len(active))] for s in active])
         joined = form.contract(

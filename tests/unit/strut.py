@@ -1,0 +1,45 @@
+"""A small problem with one of everything, for tests of instances, results and elasticities."""
+
+import pandas as pd
+
+import synth
+
+RODS = pd.DataFrame({
+    "designation": ["soft", "hard", "odd"],
+    "stress_allow [N/mm2]": [80.0, 160.0, None],
+    "density [kg/m3]": [7850.0, 7850.0, 7900.0],
+    "source": ["handbook", "handbook", "guess"],
+})  # fmt: skip
+NEEDED = {"load": "20 kN"}
+
+
+class Strut(synth.DesignProblem):
+    """A bar in tension: mass against flexibility."""
+
+    name, title = "strut", "Strut"
+    sources = ("statics",)
+
+    def declare(self, d):
+        finish = d.option("finish", ("plain", "coated"), "plain", symbol="fin")
+        load = d.requirement("load", "kN", lower=1, upper=100, symbol="F")
+        room = d.requirement("room", "mm", lower=1, upper=500, optional=True, symbol="b_max")
+        safety = d.requirement("safety", "-", 1.5, lower=1, upper=10, symbol="k")
+        width = d.variable("width", "mm", 5, 200, grid=1, symbol="b")
+        length = d.variable("length", "mm", 100, 300, symbol="L")
+        plates = d.count("plates", 1, 4, symbol="n")
+        end = d.choice("end", ("hook", "eye"), symbol="e")
+        plate = d.part("plate", "core_plates", where="thickness >= 1", symbol="pl")
+        rod = d.part("material", "rods", symbol="mat")
+        area = d.derive("area", "mm2", plates * width * plate.thickness, symbol="A")
+        weight = 1.01 if finish == "coated" else 1.0
+        d.derive("mass", "kg", rod.density * area * length * weight * end.select({"hook": 1.2, "eye": 1.1}), symbol="m")
+        d.derive("flexibility", "-", 1e6 * length / (210e9 * area))
+        d.at_most("stress", safety * load / area, rod.optional("stress_allow"), "N/mm2")
+        d.at_least("reach", length, 0.1 + 0.02 * plates, "mm")
+        if room is not None:
+            d.at_most("room", width, room, "mm")
+        d.objective("mass")
+        d.objective("flexibility")
+        d.objective("width", default=False)
+        d.refuse("heavy_hook", load > 90e3, "at most 90 kN")
+        d.advise("wide", width > 0.05, "a wide bar")

@@ -1,0 +1,242 @@
+"""Dominance, search zones, spreading and ranking of a front."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import synth
+from synth.pareto import Zones, non_dominated, rank, spread_subset
+
+
+def dominated_by_hand(phi):
+    """Return the mask of the non-dominated rows, row against row."""
+    keep = []
+    for k, row in enumerate(phi):
+        better = np.all(phi <= row, axis=1) & np.any(phi < row, axis=1)
+        earlier_twin = np.all(phi[:k] == row, axis=1).any()
+        keep.append(not better.any() and not earlier_twin)
+    return np.array(keep, dtype=bool)
+
+
+# -- dominance ---------------------------------------------------------------------------------------
+
+
+@given(st.integers(0, 10**6), st.integers(1, 4), st.integers(0, 60))
+@settings(deadline=None, derandomize=True, max_examples=150)
+def test_non_dominated_rows(seed, objectives, count):
+    rng = np.random.default_rng(seed)
+    phi = rng.integers(0, 6, (count, objectives)) / 5.0
+    assert non_dominated(phi).tolist() == dominated_by_hand(phi).tolist()
+
+
+def test_rows_that_differ_by_rounding_are_one():
+    phi = np.array([[1.0, 2.0], [1.0 + 1e-13, 2.0 - 1e-13], [2.0, 1.0]])
+    assert non_dominated(phi).sum() == 2
+
+
+def test_nothing_is_not_dominated():
+    assert non_dominated(np.empty((0, 2))).tolist() == []
+
+
+# -- zones -------------------------------------------------------------------------------------------
+
+
+def front_points(rng, objectives, count):
+    """Return mutually non-dominated points inside the unit cube."""
+    phi = rng.random((count, objectives))
+    return phi[dominated_by_hand(phi)]
+
+
+@given(st.integers(0, 10**6), st.integers(2, 4), st.integers(0, 12))
+@settings(deadline=None, derandomize=True, max_examples=80)
+def test_zones_cover_all_that_no_point_dominates_and_nothing_else(seed, objectives, count):
+    rng = np.random.default_rng(seed)
+    zones = Zones(np.zeros(objectives), np.ones(objectives))
+    known = front_points(rng, objectives, count)
+    for point in known:
+        zones.add(point)
+    probes = rng.random((300, objectives)) * (1 - 1e-6)
+    in_zone = np.zeros(300, dtype=bool)
+    for zone in zones.zones:
+        in_zone |= np.all(probes < zone.upper, axis=1)
+    dominated = np.zeros(300, dtype=bool)
+    for point in known:
+        dominated |= np.all(probes >= point, axis=1)
+    assert (in_zone == ~dominated).all()
+
+
+@given(st.integers(0, 10**6), st.integers(2, 4), st.integers(1, 10))
+@settings(deadline=None, derandomize=True, max_examples=50)
+def test_no_zone_lies_in_another(seed, objectives, count):
+    rng = np.random.default_rng(seed)
+    zones = Zones(np.zeros(objectives), np.ones(objectives))
+    points = np.round(front_points(rng, objectives, count), 1)  # shared coordinates make equal corners
+    for point in points[dominated_by_hand(points)]:
+        zones.add(point)
+    uppers = [z.upper for z in zones.zones]
+    for k, upper in enumerate(uppers):
+        assert not any(np.all(upper <= other) for j, other in enumerate(uppers) if j != k)
+
+
+def test_two_objectives_make_one_zone_more_than_points():
+    zones = Zones(np.zeros(2), np.ones(2))
+    for k, x in enumerate((0.5, 0.2, 0.8, 0.35)):
+        zones.add(np.array([x, 1 - x]))
+        assert len(zones.zones) == k + 2
+    assert len({tuple(z.upper) for z in zones.zones}) == 5
+
+
+def test_a_zone_between_neighbours_is_bounded_by_both():
+    zones = Zones(np.zeros(2), np.ones(2))
+    zones.add(np.array([0.2, 0.7]))
+    zones.add(np.array([0.6, 0.3]))
+    middle = next(z for z in zones.zones if z.upper.tolist() == [0.6, 0.7])
+    assert zones.lower(middle).tolist() == [0.2, 0.3]
+    assert zones.size(middle) == pytest.approx(0.4)
+    assert zones.size(max(zones.zones, key=zones.size)) >= zones.size(middle)
+    zones.close(middle)
+    assert len(zones.zones) == 2
+    assert all(z is not middle for z in zones.zones)
+
+
+def test_points_on_the_border_of_the_region_close_nothing_inside():
+    zones = Zones(np.zeros(2), np.ones(2))
+    zones.add(np.array([0.0, 1.0]))
+    zones.add(np.array([1.0, 0.0]))
+    assert [z.upper.tolist() for z in zones.zones] == [[1.0, 1.0]]
+
+
+# -- spreading ---------------------------------------------------------------------------------------
+
+
+def test_a_short_front_is_kept_whole():
+    assert spread_subset(np.array([[1.0, 2.0], [2.0, 1.0]]), 5).tolist() == [0, 1]
+
+
+@given(st.integers(0, 10**6), st.integers(2, 3), st.integers(2, 8))
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_a_spread_subset_has_the_extremes_and_no_row_twice(seed, objectives, count):
+    phi = np.random.default_rng(seed).random((40, objectives)) * 10 ** np.arange(objectives)
+    chosen = spread_subset(phi, count)
+    assert len(set(chosen.tolist())) == count
+    if count >= objectives:
+        assert set(np.argmin(phi, axis=0).tolist()) <= set(chosen.tolist())
+
+
+def test_a_spread_subset_spreads():
+    x = np.linspace(0, 1, 101)
+    chosen = spread_subset(np.stack([x, 1 - x], axis=1), 5)
+    assert np.diff(x[chosen]) == pytest.approx([0.25] * 4, abs=0.02)
+
+
+# -- ranking -----------------------------------------------------------------------------------------
+
+SENSES = {"mass": "min", "force": "min"}
+
+
+def test_rank_orders_by_distance_to_the_ideal():
+    values = np.array([[1.0, 10.0], [2.0, 2.0], [5.0, 1.0]])
+    ranking = rank(SENSES, values, [1, 1])
+    assert ranking.order == [1, 0, 2]
+    assert ranking.scores == pytest.approx([np.sqrt(0.5), np.sqrt((1 / 16 + 1 / 81) / 2), np.sqrt(0.5)])
+    assert ranking.notes == ["smallest mass", "knee", "smallest force"]
+
+
+def test_weights_tilt_the_rank():
+    values = np.array([[1.0, 10.0], [2.0, 2.0], [5.0, 1.0]])
+    assert rank(SENSES, values, [1, 0]).order == [0, 1, 2]
+    assert rank(SENSES, values, [0, 1]).order == [2, 1, 0]
+    assert rank(SENSES, values, [1, 0]).scores == pytest.approx([0, 0.25, 1])
+
+
+def test_equal_scores_are_ordered_by_the_objectives():
+    values = np.array([[2.0, 1.0], [1.0, 2.0]])
+    assert rank(SENSES, values, [1, 1]).order == [1, 0]
+
+
+def test_what_is_to_be_large_is_ideal_when_large():
+    values = np.array([[1.0, 3.0], [2.0, 4.0], [3.0, 9.0]])
+    ranking = rank({"mass": "min", "margin": "max"}, values, [1, 3])
+    assert ranking.notes[2].startswith("largest margin")
+    assert ranking.notes[0].startswith("smallest mass")
+    assert ranking.scores[0] == pytest.approx(np.sqrt(0.75))
+    assert ranking.scores[2] == pytest.approx(0.5)
+
+
+def test_a_single_design_is_ideal():
+    assert rank(SENSES, np.array([[3.0, 4.0]]), [1, 1]).notes == ["only non-dominated design"]
+    single = rank({"mass": "min"}, np.array([[3.0]]), [1])
+    assert (single.order, single.scores.tolist(), single.notes) == ([0], [0.0], ["optimum"])
+
+
+@given(st.integers(0, 10**6), st.integers(1, 4), st.integers(1, 20))
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_scores_lie_between_zero_and_one(seed, objectives, count):
+    rng = np.random.default_rng(seed)
+    senses = {f"o{k}": rng.choice(["min", "max"]) for k in range(objectives)}
+    ranking = rank(senses, rng.normal(size=(count, objectives)), rng.random(objectives) + 0.1)
+    assert sorted(ranking.order) == list(range(count))
+    assert np.all((ranking.scores >= 0) & (ranking.scores <= 1 + 1e-12))
+    assert np.all(np.diff(ranking.scores[ranking.order]) >= -1e-12)
+
+
+# -- whole fronts of discrete problems ---------------------------------------------------------------
+
+
+def discrete(points):
+    """Return a problem whose designs are the given points, one per count."""
+
+    class Discrete(synth.DesignProblem):
+        name = "discrete"
+
+        def declare(self, d):
+            n = d.count("number", 1, len(points))
+            for k in range(len(points[0])):
+                value = points[-1][k]
+                for j, point in enumerate(points[:-1]):
+                    value = np.where(n == j + 1, point[k], value)
+                d.derive(f"objective_{k}", "-", value + 0 * n)
+                d.objective(f"objective_{k}")
+
+    return Discrete()
+
+
+def found(designs, **more):
+    front = synth.synthesize(discrete(designs), {}, **more)
+    names = list(front.frame.objectives)
+    return front, sorted(tuple(round(d.values[n], 9) for n in names) for d in front.designs)
+
+
+def test_a_front_of_three_objectives_reaches_beyond_the_extremes():
+    # The last point is worse in objective 2 than every design that is best in one objective.
+    points = [(1.0, 1.5, 1.5), (1.5, 1.0, 1.5), (1.5, 1.5, 1.0), (1.2, 1.2, 1.9), (1.6, 1.6, 1.6)]
+    front, values = found(points)
+    assert values == sorted(points[:4])
+    assert front.complete
+
+
+@pytest.mark.parametrize("objectives", [2, 3])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_discrete_front_is_found_whole(seed, objectives):
+    points = np.round(1 + np.random.default_rng(seed).random((14, objectives)), 3)
+    front, values = found([tuple(p) for p in points.tolist()], points=50)
+    wanted = sorted(map(tuple, points[dominated_by_hand(points)].tolist()))
+    assert values == wanted
+    assert front.complete
+    assert front.status.value == "optimal"
+
+
+def test_objectives_that_may_be_zero_or_negative_are_traded_too():
+    points = [(-2.0, 3.0), (-1.0, 0.0), (0.0, -1.0), (1.0, -2.0), (1.0, 3.0)]
+    front, values = found(points)
+    assert values == sorted(points[:4])
+    assert front.complete
+
+
+def test_fewer_points_than_there_are():
+    points = [(1 + 0.1 * k, 2 - 0.1 * k) for k in range(9)]
+    front, values = found(points, points=3)
+    assert len(values) == 3
+    assert not front.complete
+    assert {values[0], values[-1]} == {(1.0, 2.0), (1.8, 1.2)}
