@@ -30,7 +30,7 @@ def print_front(front: ParetoFront, console: Console, every: bool = False) -> No
         All designs instead of the first ten.
     """
     count = len(front.designs) if every else min(SHOWN, len(front.designs))
-    console.print(f"{front.frame.title} ({front.frame.family}): {len(front.designs)} designs")
+    console.print(f"{front.frame.title} ({front.frame.family}): {_counted(len(front.designs))}")
     console.print()
     for table in ranked_tables(front, count, console.width):
         console.print(table)
@@ -201,3 +201,7 @@ def _distance(front: ParetoFront, design: Design, other: Design) -> float:
         if span > 0:
             total += ((design.objectives[name] - other.objectives[name]) / span) ** 2
     return total
+
+
+def _counted(designs: int) -> str:
+    return "1 design" if designs == 1 else f"{designs} designs"

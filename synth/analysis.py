@@ -45,7 +45,19 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
         kinds={name: kind for name, _, kind in d.quantities()},
         limit_units=limit_units,
         limit_senses=limit_senses,
+        restated=_restated(instance),
     )
+
+
+def _restated(instance: Instance) -> dict[str, Any]:
+    """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
+    restated: dict[str, Any] = {}
+    if instance.asked_limits:
+        restated["limits"] = {n: c if isinstance(c, str) else list(c) for n, c in instance.asked_limits.items()}
+    files = instance.catalogs.files()
+    if files:
+        restated["catalogs"] = files
+    return restated
 
 
 def make_design(

@@ -143,7 +143,7 @@ class Part:
             raise AttributeError(column)
         if column not in self.known:
             raise InputError(
-                f"table {self.table}", column, f"a number column of this name, which slot {self.slot} uses"
+                f"table {self.table}, column {column}", None, f"a number column, which slot {self.slot} uses"
             )
         return self._symbol((column,), required=True)
 

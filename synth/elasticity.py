@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
 from synth.nlp import Task
 
 NOISE = 1e-6
+TIGHT = 1e-5
 
 
 def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[str, dict[str, float]]:
@@ -26,6 +28,8 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
     """
     result: dict[str, dict[str, float]] = {}
     names = [x.name for x in form.model.limits] + [x.name for x in form.instance.extra]
+    immovable = _immovable(form)
+    tight = [int(j) for j in np.flatnonzero(immovable) if _is_tight(form, candidate, int(j))]
     requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
     for k in range(chosen):
         if not form.log_goals[k]:
@@ -41,7 +45,7 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
             t_weight=0.0,
         )
         start = np.clip(candidate.variables, form.lower, form.upper)
-        solution = form.solve(task, candidate.combination, start, form.lower, form.upper, gradient=True)
+        solution = form.solve(task, candidate.combination, start, form.lower, form.upper, True, immovable)
         if solution is None or not solution.converged or solution.lagrangian_data_gradient is None:
             continue
         own: dict[str, float] = {}
@@ -52,8 +56,31 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
             if abs(value) > NOISE and form.nlp().rows.log_cuts[j]:
                 own[name] = value
         for name, position in requirements.items():
+            if any(_speaks_of(form, j, position) for j in tight):
+                continue  # the least change breaks a limit that no variable can restore
             value = float(solution.lagrangian_data_gradient[position]) * form.instance.requirements[name]
             if abs(value) > NOISE:
                 own[name] = value
         result[form.names[k]] = own
     return result
+
+
+def _immovable(form: Formulation) -> np.ndarray:
+    """Return which limits depend on no variable that is free to move."""
+    free = [k for k in range(form.n) if form.lower[k] < form.upper[k]]
+    moving = form.model.program.dependence(free)
+    sides = [[k for k in (c.value, c.limit) if k is not None] for c in form.cuts]
+    return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
+
+
+def _is_tight(form: Formulation, candidate: Candidate, j: int) -> bool:
+    result = form.evaluate(candidate.variables[None, :], np.array([candidate.combination]))
+    if j < len(form.model.limits):
+        return abs(float(result.residuals[form.model.limits[j].name][0])) < TIGHT
+    extra = form.instance.extra[j - len(form.model.limits)]
+    return abs(float(residual(result.values[extra.quantity][0], extra.limit, extra.sense, 1e-9))) < TIGHT
+
+
+def _speaks_of(form: Formulation, j: int, position: int) -> bool:
+    marked = form.model.program.dependence([form.n + position])
+    return any(marked[k] for k in (form.cuts[j].value, form.cuts[j].limit) if k is not None)

@@ -409,13 +409,20 @@ class Formulation:
         return self._nlp
 
     def solve(
-        self, task: Task, combination: int, start: np.ndarray, low: np.ndarray, high: np.ndarray, gradient: bool = False
+        self,
+        task: Task,
+        combination: int,
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        gradient: bool = False,
+        skipped: np.ndarray | None = None,
     ) -> Solution | None:
-        """Solve the continuous problem of one combination inside a box, from one start."""
+        """Solve the continuous problem of one combination inside a box, from one start; leave some limits out."""
         data = [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.array([combination]))]
         self.solved_combinations.add(combination)
         self.nlp_solves += 1
-        void = np.zeros(len(self.cuts), dtype=bool)
+        void = np.zeros(len(self.cuts), dtype=bool) if skipped is None else skipped.copy()
         for j, limit in enumerate(self.model.limits):
-            void[j] = any(np.isnan(data[k]) for k in self.model.void_inputs[limit.name])
+            void[j] |= any(np.isnan(data[k]) for k in self.model.void_inputs[limit.name])
         return self.nlp().solve(task, data, start, low, high, self.bounds, void, gradient)

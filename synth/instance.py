@@ -145,6 +145,7 @@ class Instance:
         self.upper = np.array([v.upper for v in self.model.variables])
         self.pinned = np.zeros(len(self.model.variables), dtype=bool)
         self.extra: list[ExtraLimit] = []
+        self.asked_limits = dict(limits or {})
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
         for word, conditions in as_mapping(limits, "limits", "{'mass': '<= 20 kg'}").items():

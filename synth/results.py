@@ -54,7 +54,10 @@ class PartRow(Mapping[str, Any]):
 
 @dataclass(frozen=True)
 class Frame:
-    """What the designs of one front share: how to show them and how to state them again."""
+    """What the designs of one front share: how to show them and how to state them again.
+
+    ``restated`` holds what a DESIGN.yaml must repeat so that a check sees the same question: limits, catalogs.
+    """
 
     family: str
     title: str
@@ -67,6 +70,7 @@ class Frame:
     kinds: Mapping[str, str]
     limit_units: Mapping[str, str]
     limit_senses: Mapping[str, str]
+    restated: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -107,6 +111,7 @@ class Design:
         if frame.options:
             spec["options"] = dict(frame.options)
         spec["requirements"] = dict(frame.requirements)
+        spec.update(frame.restated)
         spec["values"] = values
         spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
         return spec
@@ -152,6 +157,8 @@ class Certificate:
     def sentence(self) -> str:
         """Return the certificate in words."""
         n = f"{self.combinations:,}".replace(",", " ")
+        if self.kind == "global" and self.gap is None:
+            return f"proven: none of the {n} combinations of parts and counts can meet the requirements"
         if self.kind == "global":
             return (
                 f"proven: over all {n} combinations of parts and counts no design improves one listed here "
@@ -263,6 +270,7 @@ class ParetoFront:
             "kinds": dict(frame.kinds),
             "limit_units": dict(frame.limit_units),
             "limit_senses": dict(frame.limit_senses),
+            "restated": _plain(frame.restated),
             "settings": dict(self.settings),
             "versions": installed_versions(),
             "status": self.status.value,
@@ -312,6 +320,7 @@ def load_front(folder: str | Path) -> ParetoFront:
         kinds=content["kinds"],
         limit_units=content["limit_units"],
         limit_senses=content["limit_senses"],
+        restated=content["restated"],
     )
     rows = content["parts"]
     designs = tuple(_design_from_json(frame, d, rows) for d in content["designs"])

@@ -933,6 +933,15 @@ class Catalogs:
                     raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
         return found
 
+    def files(self) -> dict[str, Any]:
+        """Return the user's own tables that are files, as a spec states them, with absolute paths."""
+        result: dict[str, Any] = {}
+        for name, (extends, sources) in self._spec.items():
+            paths = [str(self._path(s).resolve()) for s in sources if isinstance(s, (str, Path))]
+            if len(paths) == len(sources):
+                result[name] = ["+", *paths] if extends else paths[0]
+        return result
+
     def names(self) -> tuple[str, ...]:
         """Names of all tables, sorted."""
         return tuple(sorted({*self._shipped, *self._spec}))

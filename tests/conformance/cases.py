@@ -1,0 +1,155 @@
+"""Example data of every family for the conformance suite: a new family adds an entry and is tested in full."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+import synth
+from synth.instance import Instance, as_catalogs
+
+
+@dataclass(frozen=True)
+class Case:
+    """One question: what is asked, and the restrictions that keep it small.
+
+    ``tighten`` holds requirements moved the hard way.
+    """
+
+    requirements: Mapping[str, Any]
+    options: Mapping[str, str] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    tighten: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Family:
+    """What the suite needs to know of a family.
+
+    ``option_sets`` are the structures to trace, ``optional`` values for all optional requirements.
+    """
+
+    option_sets: Mapping[str, Mapping[str, str]]
+    requirements: Mapping[str, Any]
+    optional: Mapping[str, Any]
+    feasible: Mapping[str, Case]
+    infeasible: Case
+    culprits: frozenset[str]
+    sound: Any
+
+
+def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with rings of a sensible ratio and forces of a sensible size."""
+    low, high = instance.lower, instance.upper
+    x = low * (high / low) ** rng.random((count, len(low)))
+    names = [v.name for v in instance.model.variables]
+    outer = rng.uniform(0.14, 0.5, count)
+    x[:, names.index("ring_outer_diameter")] = outer
+    x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.6, 0.8, count)
+    x[:, names.index("actuation_force")] = rng.uniform(5e3, 5e4, count)
+    x[:, names.index("ramp_time")] = rng.uniform(0.05, 4, count)
+    return x
+
+
+HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
+
+CASES: dict[str, Family] = {
+    "multi_plate_clutch": Family(
+        option_sets={
+            "default": {},
+            "exponential_form": {"guide_series": "exponential_form"},
+            "lipka": {"guide_series": "lipka"},
+            "exponential_K": {"guide_series": "exponential_K"},
+            "exact": {"guide_series": "exact"},
+            "cz": {"guide_model": "cz"},
+            "active": {"load_kind": "active"},
+            "worst_case": {"friction_basis": "worst_case"},
+            "catalogue": {"spline_choice": "catalogue"},
+            "dry": {"lubrication": "dry", "cooling": "fan"},
+            "forced_oil": {"cooling": "through_oil", "release_aid": "wavy_rings", "shaft_position": "vertical"},
+            "obsolete": {"allow_obsolete": "yes", "release_aid": "sine_plates"},
+        },
+        requirements=HOIST,
+        optional={
+            "startup_torque": "1080 N*m",
+            "overload_torque": "4000 N*m",
+            "actuation_force_limit": "60 kN",
+            "outer_diameter_limit": "400 mm",
+            "length_limit": "200 mm",
+            "jerk_limit": "60 rad/s3",
+            "acceleration_limit": "40 rad/s2",
+            "hub_bore_diameter": "60 mm",
+            "drag_torque_limit": "20 N*m",
+        },
+        feasible={
+            "hoist": Case(
+                requirements={**HOIST, "outer_diameter_limit": "330 mm", "jerk_limit": "18 rad/s3"},
+                settings={
+                    "parts": {
+                        "friction_pair": ["paper_wet", "sinter_bronze_wet"],
+                        "inner_plate": ["core 2"],
+                        "outer_plate": ["core 1.5", "core 2"],
+                    },
+                    "limits": {"friction_surfaces": "12 .. 16"},
+                    "fix": {"ramp_time": "2 s"},
+                },
+                tighten={
+                    "load_torque": "620 N*m",
+                    "outer_diameter_limit": "215 mm",
+                    "safety_factor": "1.6",
+                    "lug_pressure_limit": "12 N/mm2",
+                },
+            ),
+            "dry_drive": Case(
+                requirements={
+                    "load_torque": "120 N*m",
+                    "driver_speed": "960 rpm",
+                    "driven_inertia": "0.8 kg*m2",
+                    "actuation_force_limit": "6 kN",
+                    "hub_bore_diameter": "50 mm",
+                },
+                options={"lubrication": "dry", "friction_basis": "worst_case"},
+                settings={
+                    "parts": {
+                        "friction_pair": ["sinter_bronze_dry", "sinter_iron_dry"],
+                        "inner_plate": ["core 2"],
+                        "outer_plate": ["core 2", "core 3"],
+                    },
+                    "limits": {"friction_surfaces": "6 .. 8", "outer_diameter": "<= 400 mm"},
+                    "fix": {"ramp_time": "0.3 s"},
+                },
+                tighten={
+                    "load_torque": "125 N*m",
+                    "actuation_force_limit": "5 kN",
+                    "hub_bore_diameter": "70 mm",
+                },
+            ),
+        },
+        infeasible=Case(
+            requirements={**HOIST, "outer_diameter_limit": "150 mm", "actuation_force_limit": "9 kN"},
+            settings={
+                "parts": {"friction_pair": ["paper_wet"], "inner_plate": ["core 2"], "outer_plate": ["core 2"]},
+                "limits": {"friction_surfaces": "2 .. 8"},
+            },
+        ),
+        culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force", "lug_pressure_outer"}),
+        sound=sound_rings,
+    ),
+}
+
+
+def question(family: str, options: Mapping[str, str], optional: bool) -> Instance:
+    """Return a question to the whole catalogue, with or without the optional requirements."""
+    data = CASES[family]
+    requirements = {**data.requirements, **(data.optional if optional else {})}
+    return Instance(synth.load(family, **options), requirements, as_catalogs(None))
+
+
+def answer(family: str, case: Case, **more: Any) -> synth.ParetoFront:
+    """Return the front of a case; a guard on the time shows a search that does not end."""
+    requirements = {**case.requirements, **more.pop("requirements", {})}
+    settings = {"points": 4, "time_limit": 60, **case.settings, **more}
+    return synth.synthesize(synth.load(family, **case.options), requirements, **settings)

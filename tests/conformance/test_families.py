@@ -1,0 +1,308 @@
+"""What every family must keep: complete words, sound dimensions, exact evaluation, and answers that can be trusted."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+
+import synth
+from synth.formulation import Formulation
+from synth.instance import Instance, as_catalogs
+from synth.nlp import Task
+from synth.special import expanded
+from synth.units import parse_unit
+from tests.conformance.cases import CASES, answer, question
+
+STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
+EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
+POINTS = 400
+
+
+def test_every_registered_family_has_cases():
+    assert set(CASES) == set(synth.families())
+
+
+@pytest.fixture(scope="module", params=STRUCTURES, ids=lambda p: f"{p[0]}-{p[1]}")
+def traced(request):
+    """Return the question with all optional requirements, and random points with sensible proportions."""
+    family, structure = request.param
+    instance = question(family, CASES[family].option_sets[structure], optional=True)
+    rng = np.random.default_rng(3)
+    variables = CASES[family].sound(rng, instance, POINTS)
+    combinations = rng.integers(0, instance.combinations, POINTS)
+    data = [np.broadcast_to(np.asarray(x, dtype=float), (POINTS,)) for x in instance.data(combinations)]
+    return instance, variables, data
+
+
+# -- words -------------------------------------------------------------------------------------------
+
+
+def test_everything_has_a_unit_a_text_and_a_source(traced):
+    d = traced[0].model.declaration
+    with_units = [*d.requirements.values(), *d.variables.values(), *d.counts.values(), *d.derived.values(), *d.limits.values()]
+    for item in [*with_units, *d.options.values(), *d.choices.values(), *d.slots.values()]:
+        assert len(item.text) > 5, item
+        assert len(item.source) > 1, item
+    for item in with_units:
+        assert parse_unit(item.unit).kind
+    for remark in [*d.refusals, *d.advices]:
+        assert len(remark.message) > 5
+        assert remark.code.isidentifier()
+
+
+def test_the_class_names_itself_and_its_sources(traced):
+    problem = traced[0].problem
+    assert problem.title
+    assert problem.sources
+    assert (type(problem).__doc__ or "").strip()
+
+
+def test_default_objectives_are_two_or_three(traced):
+    objectives = traced[0].model.declaration.objectives.values()
+    assert 2 <= sum(o.default for o in objectives) <= 3
+
+
+def test_limit_sides_have_the_kind_of_their_unit(traced):
+    d = traced[0].model.declaration
+    for limit in d.limits.values():
+        same = [q for q in d.derived.values() if q.sx.element_hash() == ca.SX(limit.value).element_hash()]
+        for quantity in same:
+            assert parse_unit(quantity.unit).kind == parse_unit(limit.unit).kind, limit.name
+
+
+# -- numbers -----------------------------------------------------------------------------------------
+
+
+def outputs(model):
+    """Return every quantity and side of a limit, special functions written out, with its unit."""
+    named = [(name, e, model.units[name]) for name, e in model.quantity_sx.items()]
+    for limit in model.limits:
+        named += [(f"{limit.name}: value", limit.value, limit.unit), (f"{limit.name}: limit", limit.limit, limit.unit)]
+    return [(name, expanded(e, model.calls), unit) for name, e, unit in named]
+
+
+def sound_rows(instance, variables, data):
+    """Return the points whose guards hold."""
+    result = instance.model.evaluate(variables, data)
+    guards = [result.holds[x.name] for x in instance.model.limits if x.guard]
+    rows = np.flatnonzero(np.logical_and.reduce(guards)) if guards else np.arange(len(variables))
+    assert len(rows) > 20
+    return rows
+
+
+def test_the_evaluator_equals_casadi(traced):
+    instance, variables, data = traced
+    model = instance.model
+    named = outputs(model)
+    rows = sound_rows(instance, variables, data)
+    inputs = np.array([*variables.T, *data])[:, rows]
+    function = ca.Function("reference", [ca.vertcat(*model.inputs)], [ca.vertcat(*[e for _, e, _ in named])])
+    reference = np.array(function(inputs))
+    result = model.evaluate(variables[rows], [x[rows] for x in data])
+    found = list(result.values.values()) + [side for x in model.limits for side in result.limits[x.name]]
+    for (name, _, _), wanted, value in zip(named, reference, found, strict=True):
+        np.testing.assert_allclose(value, wanted, rtol=1e-12, atol=1e-300, err_msg=name)
+
+
+def test_gradients_equal_differences(traced):
+    instance, variables, data = traced
+    model = instance.model
+    named = outputs(model)
+    rows = sound_rows(instance, variables, data)[:15]
+    x = ca.vertcat(*model.inputs)
+    n = len(model.variables)
+    values = ca.vertcat(*[e for _, e, _ in named])
+    slope = ca.Function("slope", [x], [ca.jacobian(values, x[:n]) if n > 1 else ca.jacobian(values, x[0])])
+    for row in rows:
+        at = np.array([*variables[row], *(v[row] for v in data)])
+        exact = np.array(slope(at))
+        for k in range(n):
+            # Two step sizes: of the truncated and the rounded difference the better one counts.
+            error = np.full(len(named), np.inf)
+            for step in (1e-4, 1e-6):
+                shifted = np.repeat(variables[row][None, :], 4, axis=0)
+                shifted[:, k] *= 1 + step * np.array([-2, -1, 1, 2])
+                result = model.evaluate(shifted, [v[row] for v in data])
+                raw = list(result.values.values()) + [s for y in model.limits for s in result.limits[y.name]]
+                f = np.array([np.broadcast_to(v, 4) for v in raw])
+                size = np.abs(f).max(axis=1) + np.abs(exact[:, k] * at[k])
+                numeric = (f[:, 0] - 8 * f[:, 1] + 8 * f[:, 2] - f[:, 3]) / (12 * step * at[k])
+                error = np.fmin(error, np.abs(numeric - exact[:, k]) * at[k] / np.where(size > 0, size, 1))
+            assert np.all((error < 1e-7) | np.isinf(error)), (named[int(np.nanargmax(error))][0], k)
+
+
+def input_dimensions(instance):
+    """Return the exponents of kg, m, s, K and A of every input of the model."""
+    model, d = instance.model, instance.model.declaration
+    result = [parse_unit(v.unit).dimension for v in model.variables]
+    for entry in model.data_inputs:
+        if entry.kind == "requirement":
+            unit = parse_unit(d.requirements[entry.name].unit)
+        elif entry.kind in ("part", "row"):
+            table = instance.catalogs.table((d.slots if entry.kind == "part" else d.rows)[entry.name].table)
+            unit = next(table.columns[c].scale for c in entry.columns if table.has(c))
+        else:
+            unit = parse_unit("-")
+        result.append(unit.dimension)
+    return np.array(result, dtype=float)
+
+
+def test_formulas_scale_like_their_units(traced):
+    # Kilogram, metre, second, kelvin and ampere of another size: sound formulas say the same thing in them.
+    instance, variables, data = traced
+    model = instance.model
+    dimensions = input_dimensions(instance)
+    rows = sound_rows(instance, variables, data)[:100]
+    before = model.evaluate(variables[rows], [v[rows] for v in data])
+    rng = np.random.default_rng(8)
+    for _ in range(6):
+        scale = rng.uniform(0.4, 2.5, 5)
+        factors = np.prod(scale**dimensions, axis=1)
+        n = len(model.variables)
+        after = model.evaluate(variables[rows] * factors[:n], [v[rows] * f for v, f in zip(data, factors[n:], strict=True)])
+        for name, value in before.values.items():
+            factor = np.prod(scale ** np.array(parse_unit(model.units[name]).dimension))
+            np.testing.assert_allclose(after.values[name], value * factor, rtol=1e-8, err_msg=name)
+        for limit in model.limits:
+            factor = np.prod(scale ** np.array(parse_unit(limit.unit).dimension))
+            for old, new in zip(before.limits[limit.name], after.limits[limit.name], strict=True):
+                np.testing.assert_allclose(new, old * factor, rtol=1e-8, err_msg=limit.name)
+            assert (after.holds[limit.name] == before.holds[limit.name]).mean() > 0.98
+
+
+def test_limits_of_optional_requirements_are_not_asked_without_them():
+    for family, data in CASES.items():
+        without = question(family, {}, optional=False)
+        with_all = question(family, {}, optional=True)
+        assert set(without.not_asked) == set(data.optional)
+        assert with_all.not_asked == []
+        assert {x.name for x in without.model.limits} < {x.name for x in with_all.model.limits}
+
+
+# -- answers -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda p: f"{p[0]}-{p[1]}")
+def example(request):
+    family, name = request.param
+    case = CASES[family].feasible[name]
+    front = answer(family, case)
+    assert front.interrupted == ""
+    return family, case, front
+
+
+def test_feasible_examples_are_answered_and_proven(example):
+    _, _, front = example
+    assert front.status.value == "optimal"
+    assert 2 <= len(front.designs) <= 4
+    assert front.certificate.kind == "global"
+    objectives = list(front.frame.objectives)
+    values = np.array([[d.values[n] for n in objectives] for d in front.designs])
+    for k, row in enumerate(values):
+        assert not any(np.all(other <= row) for j, other in enumerate(values) if j != k)
+
+
+def test_every_limit_has_a_utilisation(example):
+    _, _, front = example
+    for design in front.designs:
+        assert set(design.utilisation) == set(front.frame.limit_units)
+        unchecked = {remark.split()[2].rstrip(",") for remark in design.not_checked}
+        for name, used in design.utilisation.items():
+            if used is None:
+                assert name in unchecked
+            else:
+                assert 0 <= used <= 1 + 2e-6
+
+
+def test_designs_are_makeable(example):
+    _, _, front = example
+    for design in front.designs:
+        assert design.off_grid == {}
+
+
+def test_checking_a_design_gives_its_values_again(example):
+    family, case, front = example
+    for design in front.designs:
+        spec = design.to_spec()
+        again = synth.evaluate(synth.load(family, **spec.get("options", {})), spec["requirements"], spec)
+        assert again.status.value == "feasible"
+        assert again.violated == ()
+        for name, value in design.values.items():
+            assert again.values[name] == value or (math.isnan(value) and math.isnan(again.values[name]))
+        assert again.utilisation == design.utilisation
+        assert again.advice == design.advice
+
+
+def best(family, case, objective, **more):
+    front = answer(family, case, objectives=[objective], points=1, **more)
+    assert front.interrupted == ""
+    return front.designs[0] if front.designs else None
+
+
+def first_objective(family):
+    declared = question(family, {}, optional=False).model.declaration.objectives.values()
+    return next(o for o in declared if o.default)
+
+
+def test_five_seeds_reach_the_same_optimum(example):
+    family, case, front = example
+    objective = first_objective(family).name
+    found = [best(family, case, objective, seed=seed).values[objective] for seed in range(5)]
+    assert found == pytest.approx([found[0]] * 5, rel=1e-3)
+    extreme = min(d.values[objective] for d in front.designs)
+    assert found[0] == pytest.approx(extreme, rel=1e-3)
+
+
+def test_random_starts_of_the_solver_find_nothing_better(example):
+    family, case, _ = example
+    objective = first_objective(family)
+    settings = {k: v for k, v in case.settings.items() if k in ("parts", "limits", "fix")}
+    optimum = best(family, case, objective.name, grid=False).values[objective.name]
+    instance = Instance(
+        synth.load(family, **case.options), case.requirements, as_catalogs(None), **settings, grid=False
+    )
+    form = Formulation(instance, {objective.name: objective.sense}, 1)
+    form.settle_objectives(form.root(np.arange(instance.combinations)))
+    task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), form.goal_scales, t_weight=0.0)
+    rng = np.random.default_rng(4)
+    reached = []
+    for combination in rng.permutation(instance.combinations)[:12]:
+        box = form.root(np.array([combination]))
+        for _ in range(2 * len(box)):
+            start = box.low[0] * (box.high[0] / box.low[0]) ** rng.random(form.n)
+            solution = form.solve(task, int(combination), start, box.low[0], box.high[0])
+            if solution is not None:
+                value = form.evaluate(solution.variables[None, :], np.array([combination]))
+                if value.feasible[0]:
+                    reached.append(float(value.values[objective.name][0]))
+    assert len(reached) >= 4
+    assert min(reached) >= optimum * (1 - 1e-3)
+
+
+def test_tightening_never_improves_an_objective(example):
+    family, case, _ = example
+    objective = first_objective(family)
+    assert objective.sense == "min"
+    free = best(family, case, objective.name).values[objective.name]
+    for name, value in case.tighten.items():
+        tight = best(family, case, objective.name, requirements={name: value})
+        if tight is not None:
+            assert tight.values[objective.name] >= free * (1 - 1e-3), name
+    loose = best(family, case, objective.name, gap=0.05)
+    assert loose.values[objective.name] <= free * 1.06
+
+
+@pytest.mark.parametrize("family", CASES)
+def test_the_infeasible_example_is_explained_by_name(family):
+    front = answer(family, CASES[family].infeasible)
+    assert front.status.value == "infeasible"
+    assert len(front.designs) == 0
+    named = [c["limit"] for c in front.explanation["conflicts"]]
+    assert named
+    assert set(named) <= set(front.frame.limit_units)
+    assert set(named) & CASES[family].culprits
+    for name in named:
+        assert name in front.explanation["message"]
+    guards = {x.name for x in question(family, {}, optional=True).model.limits if x.guard}
+    assert not set(named) & guards  # a guard cannot be relaxed, so it explains nothing

@@ -1,0 +1,170 @@
+"""Names, symbols, units, defaults and bounds of a family against the table of its public names."""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+import synth
+from synth.instance import Instance, as_catalogs
+from synth.units import from_si, parse_unit
+from tests.conformance.cases import CASES
+
+FOLDER = Path(__file__).parent
+TABLES = sorted(FOLDER.glob("names_*.csv"))
+
+
+def rows_of(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def models(family):
+    """Return the models of all structures of the family."""
+    data = CASES[family]
+    return [
+        Instance(synth.load(family, **options), {**data.requirements, **data.optional}, as_catalogs(None)).model
+        for options in data.option_sets.values()
+    ]
+
+
+@pytest.fixture(scope="module", params=TABLES, ids=lambda p: p.stem.removeprefix("names_"))
+def named(request):
+    family = request.param.stem.removeprefix("names_")
+    return family, rows_of(request.param), models(family)
+
+
+def test_every_family_has_its_table():
+    assert {p.stem.removeprefix("names_") for p in TABLES} == set(synth.families())
+
+
+def numbers(text):
+    return float(text) if text else None
+
+
+def test_requirements(named):
+    _, rows, (default, *_) = named
+    wanted = {r["name"]: r for r in rows if r["kind"] in ("req", "opt")}
+    declared = default.declaration.requirements
+    assert set(declared) == set(wanted)
+    instance = Instance(
+        synth.load(named[0]), CASES[named[0]].requirements, as_catalogs(None)
+    )  # expressions get their numbers here
+    for name, row in wanted.items():
+        r = declared[name]
+        assert (r.symbol, r.unit, r.optional) == (row["symbol"], row["unit"], row["kind"] == "opt"), name
+        unit = parse_unit(r.unit)
+        assert from_si(r.lower, unit) == pytest.approx(numbers(row["lower"])), name
+        assert from_si(r.upper, unit) == pytest.approx(numbers(row["upper"])), name
+        if row["default"]:
+            assert from_si(instance.requirements[name], unit) == pytest.approx(float(row["default"])), name
+        else:
+            assert r.default is None, name
+
+
+def test_options(named):
+    _, rows, (default, *_) = named
+    wanted = {r["name"]: r for r in rows if r["kind"] == "option"}
+    declared = default.declaration.options
+    assert set(declared) == set(wanted)
+    for name, row in wanted.items():
+        o = declared[name]
+        assert (o.symbol, o.default) == (row["symbol"], row["default"]), name
+        assert set(o.choices) == set(row["choices"].split(";")), name
+
+
+def test_variables_and_counts(named):
+    _, rows, (default, *_) = named
+    d = default.declaration
+    wanted = {r["name"]: r for r in rows if r["kind"] == "var"}
+    assert set(d.variables) == set(wanted)
+    for name, row in wanted.items():
+        v = d.variables[name]
+        assert (v.symbol, v.unit) == (row["symbol"], row["unit"]), name
+        lower, upper = from_si(v.lower, v.unit), from_si(v.upper, v.unit)
+        assert (lower, upper) == (float(row["lower"]), float(row["upper"])), name
+        if row["step"]:
+            steps = from_si(v.grid, v.unit)
+            assert len(steps) == round((upper - lower) / float(row["step"])) + 1
+            assert steps[1] - steps[0] == pytest.approx(float(row["step"]))
+        else:
+            assert not len(v.grid), name
+    wanted = {r["name"]: r for r in rows if r["kind"] == "count"}
+    assert set(d.counts) == set(wanted)
+    for name, row in wanted.items():
+        values = d.counts[name].values
+        assert d.counts[name].symbol == row["symbol"]
+        assert (values[0], values[-1], values[1] - values[0]) == tuple(
+            float(row[k]) for k in ("lower", "upper", "step")
+        )
+
+
+def test_slots_and_their_columns(named):
+    _, rows, everything = named
+    slots = {r["name"]: r for r in rows if r["kind"] == "slot"}
+    seen = {name: part for model in everything for name, part in model.declaration.slots.items()}
+    assert set(seen) == set(slots)
+    for name, row in slots.items():
+        assert (seen[name].symbol, seen[name].table) == (row["symbol"], row["choices"]), name
+    used = {
+        f"{part.slot}.{c}"
+        for model in everything
+        for part in model.declaration.slots.values()
+        for column in part.columns.values()
+        for c in column.columns
+    }
+    columns = {r["name"]: r for r in rows if r["kind"] in ("col", "col?")}
+    text = {name for name, row in columns.items() if not row["unit"]}
+    assert set(columns) - text <= used
+    conditions = " ".join(w for model in everything for p in model.declaration.slots.values() for w in p.where)
+    for name in text:
+        assert name.split(".")[1] in conditions
+    for name, row in columns.items():
+        if row["unit"]:
+            slot, column = name.split(".")
+            table = as_catalogs(None).table(slots[slot]["choices"])
+            found, expected = table.columns[column].scale, parse_unit(row["unit"], table.columns[column].scale.kind)
+            assert (found.dimension, found.factor) == (expected.dimension, pytest.approx(expected.factor)), name
+
+
+def test_optional_columns_are_those_of_the_table(named):
+    _, rows, everything = named
+    wanted = {r["name"] for r in rows if r["kind"] == "col?"}
+    for model in everything:
+        for limit in model.limits:
+            for k in model.void_inputs[limit.name]:
+                assert model.data_inputs[k].label in wanted, limit.name
+    voids = {model.data_inputs[k].label for model in everything for v in model.void_inputs.values() for k in v}
+    assert voids == wanted
+
+
+def test_derived_quantities(named):
+    _, rows, everything = named
+    wanted = {r["name"]: r for r in rows if r["kind"] == "out"}
+    for model in everything:
+        declared = model.declaration.derived
+        assert set(declared) == set(wanted) | {r["name"] for r in rows if r["kind"] == "obj"}
+        for name, quantity in declared.items():
+            row = next(r for r in rows if r["name"] == name)
+            assert (quantity.symbol, quantity.unit) == (row["symbol"], row["unit"]), name
+
+
+def test_objectives(named):
+    _, rows, everything = named
+    wanted = {r["name"]: r["objective"] for r in rows if r["objective"]}
+    wanted |= {r["name"]: "on request" for r in rows if r["kind"] == "obj"}
+    for model in everything:
+        found = {
+            o.name: "default" if o.default else "on request" for o in model.declaration.objectives.values()
+        }
+        assert found == wanted
+
+
+def test_a_symbol_works_wherever_the_name_does(named):
+    family, rows, (default, *_) = named
+    spellings = default.declaration.names()
+    structural = {r["name"] for r in rows if "." not in r["name"]} - {"inner_spline"}
+    for row in rows:
+        if row["name"] in structural:
+            assert spellings[row["symbol"]] == row["name"]
+            assert spellings[row["name"]] == row["name"]
+    assert family == default.title
