@@ -145,10 +145,10 @@ class Instance:
         self.upper = np.array([v.upper for v in self.model.variables])
         self.pinned = np.zeros(len(self.model.variables), dtype=bool)
         self.extra: list[ExtraLimit] = []
-        self.asked_limits = dict(limits or {})
+        self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
-        for word, conditions in as_mapping(limits, "limits", "{'mass': '<= 20 kg'}").items():
+        for word, conditions in self.asked_limits.items():
             self._add_limit(str(word), conditions)
         for word, value in as_mapping(fix, "fix", "{'mass': '20 kg'}").items():
             self._pin(str(word), value)

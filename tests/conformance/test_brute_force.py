@@ -87,7 +87,9 @@ def search(requirements, limits, **more):
     return front
 
 
-@pytest.fixture(scope="module", params=[(n, o) for n in INSTANCES for o in ("mass", "actuation_force", "friction_work")])
+@pytest.fixture(
+    scope="module", params=[(n, o) for n in INSTANCES for o in ("mass", "actuation_force", "friction_work")]
+)
 def single(request):
     name, objective = request.param
     requirements, limits = INSTANCES[name]

@@ -40,7 +40,13 @@ def traced(request):
 
 def test_everything_has_a_unit_a_text_and_a_source(traced):
     d = traced[0].model.declaration
-    with_units = [*d.requirements.values(), *d.variables.values(), *d.counts.values(), *d.derived.values(), *d.limits.values()]
+    with_units = [
+        *d.requirements.values(),
+        *d.variables.values(),
+        *d.counts.values(),
+        *d.derived.values(),
+        *d.limits.values(),
+    ]
     for item in [*with_units, *d.options.values(), *d.choices.values(), *d.slots.values()]:
         assert len(item.text) > 5, item
         assert len(item.source) > 1, item
@@ -160,7 +166,9 @@ def test_formulas_scale_like_their_units(traced):
         scale = rng.uniform(0.4, 2.5, 5)
         factors = np.prod(scale**dimensions, axis=1)
         n = len(model.variables)
-        after = model.evaluate(variables[rows] * factors[:n], [v[rows] * f for v, f in zip(data, factors[n:], strict=True)])
+        after = model.evaluate(
+            variables[rows] * factors[:n], [v[rows] * f for v, f in zip(data, factors[n:], strict=True)]
+        )
         for name, value in before.values.items():
             factor = np.prod(scale ** np.array(parse_unit(model.units[name]).dimension))
             np.testing.assert_allclose(after.values[name], value * factor, rtol=1e-8, err_msg=name)
@@ -225,7 +233,8 @@ def test_checking_a_design_gives_its_values_again(example):
     family, case, front = example
     for design in front.designs:
         spec = design.to_spec()
-        again = synth.evaluate(synth.load(family, **spec.get("options", {})), spec["requirements"], spec)
+        problem = synth.load(family, **spec.get("options", {}))
+        again = synth.evaluate(problem, spec["requirements"], spec, limits=case.settings.get("limits"))
         assert again.status.value == "feasible"
         assert again.violated == ()
         for name, value in design.values.items():

@@ -153,9 +153,7 @@ def test_objectives(named):
     wanted = {r["name"]: r["objective"] for r in rows if r["objective"]}
     wanted |= {r["name"]: "on request" for r in rows if r["kind"] == "obj"}
     for model in everything:
-        found = {
-            o.name: "default" if o.default else "on request" for o in model.declaration.objectives.values()
-        }
+        found = {o.name: "default" if o.default else "on request" for o in model.declaration.objectives.values()}
         assert found == wanted
 
 

@@ -256,7 +256,9 @@ def test_conditions_may_be_several_and_empty_ones_are_none():
 
 def test_a_column_that_the_table_lacks_or_that_is_text_is_refused():
     rod = declaration().part("rod", "rods")
-    with pytest.raises(synth.InputError, match=r"table rods: got 'mass'; expected a number column"):
+    with pytest.raises(
+        synth.InputError, match=r"table rods, column mass: is missing; expected a number column, which slot rod uses"
+    ):
         _ = rod.mass
     with pytest.raises(synth.InputError, match="number column"):
         _ = rod.note
@@ -500,9 +502,7 @@ def test_a_refusal_over_a_part_or_count_leaves_rows_out():
     with pytest.raises(synth.InputError, match="too_thin: got 'thin, thick, odd'; expected a thicker rod"):
         Instance(problem(declare)(), {"least": "30 mm"}, CATALOGS)
     with pytest.raises(synth.InputError, match="too_thin"):
-        synth.evaluate(
-            problem(declare), {}, values={"x": 1, "n": 2}, parts={"rod": "thin"}, catalogs={"rods": RODS}
-        )
+        synth.evaluate(problem(declare), {}, values={"x": 1, "n": 2}, parts={"rod": "thin"}, catalogs={"rods": RODS})
 
 
 def test_a_refusal_over_two_unknowns_leaves_their_combinations_out():
@@ -515,7 +515,8 @@ def test_a_refusal_over_two_unknowns_leaves_their_combinations_out():
 
     front = synth.synthesize(problem(declare), {}, catalogs={"rods": RODS})
     best = front.designs[0]
-    assert (str(best.parts["rod"]), best.values["n"]) == ("thick", 1)
+    # Two thick rods (40 mm) and two odd ones (30 mm) are too many; two thin ones are as good as one thick.
+    assert (str(best.parts["rod"]), best.values["n"]) in {("thick", 1), ("thin", 2)}
     assert best.values["total"] == pytest.approx(-0.019, rel=1e-6)
 
 

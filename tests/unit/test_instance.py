@@ -9,7 +9,18 @@ from synth.instance import Instance, as_catalogs
 from synth.tables import Catalogs
 from tests.unit.strut import NEEDED, RODS, Strut
 
-PLATES = ("core 1", "core 1.2", "core 1.5", "core 1.6", "core 1.8", "core 2", "core 2.5", "core 3", "core 3.5", "core 4")
+PLATES = (
+    "core 1",
+    "core 1.2",
+    "core 1.5",
+    "core 1.6",
+    "core 1.8",
+    "core 2",
+    "core 2.5",
+    "core 3",
+    "core 3.5",
+    "core 4",
+)
 
 
 def instance(requirements=NEEDED, rods=RODS, catalogs=None, **more):
@@ -238,7 +249,9 @@ class Hinted(synth.DesignProblem):
     name = "hinted"
 
     def declare(self, d):
-        pair = d.part("pair", "friction_materials", where=("'multi_plate_clutch' in family_hint", "lubrication == 'oil'"))
+        pair = d.part(
+            "pair", "friction_materials", where=("'multi_plate_clutch' in family_hint", "lubrication == 'oil'")
+        )
         x = d.variable("x", "mm", 1, 2)
         d.derive("y", "-", x * pair.mu_dynamic)
         d.objective("y")

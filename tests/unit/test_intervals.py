@@ -198,7 +198,7 @@ def random_expressions(rng, symbols, data, count):
         lambda a, b: np.where(np.logical_and(a > 0, b > 0), a, -b),
     ]
     for _ in range(count):
-        pool.append(makers[rng.integers(len(makers))](pick(), pick()))
+        pool.append(makers[rng.integers(len(makers))](pick(), pick()))  # noqa: PERF401 - each may use those before it
     return pool[-4:]
 
 
