@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from synth.feasibility import holds, residual
-from synth.formulation import Boxes, Formulation
+from synth.formulation import Formulation
 from synth.nlp import Task
 from synth.units import format_quantity
 
 TRIES = 60
 
 
-def explain_infeasible(form: Formulation, pool: Boxes | None, rng: np.random.Generator) -> Mapping[str, Any]:
+def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
     """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.

@@ -28,7 +28,7 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
     """
     result: dict[str, dict[str, float]] = {}
     names = [x.name for x in form.model.limits] + [x.name for x in form.instance.extra]
-    immovable = _immovable(form)
+    immovable = form.immovable
     tight = [int(j) for j in np.flatnonzero(immovable) if _is_tight(form, candidate, int(j))]
     requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
     for k in range(chosen):
@@ -63,14 +63,6 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
                 own[name] = value
         result[form.names[k]] = own
     return result
-
-
-def _immovable(form: Formulation) -> np.ndarray:
-    """Return which limits depend on no variable that is free to move."""
-    free = [k for k in range(form.n) if form.lower[k] < form.upper[k]]
-    moving = form.model.program.dependence(free)
-    sides = [[k for k in (c.value, c.limit) if k is not None] for c in form.cuts]
-    return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
 
 
 def _is_tight(form: Formulation, candidate: Candidate, j: int) -> bool:

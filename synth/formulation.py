@@ -21,6 +21,8 @@ CHUNK = 4096
 SNAP = 1e-9
 PINNED = 1e-12
 TIE = 1e-9
+# Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
+SEARCH_TOLERANCE = 1e-8
 CAP_POINTS = 150
 
 
@@ -149,7 +151,7 @@ class Formulation:
         self.goals = [
             Goal(model.quantity_node[name], 1 if sense == "min" else -1) for name, sense in objectives.items()
         ]
-        cuts = [Cut(x.sense, *model.limit_nodes[x.name], x.scale) for x in model.limits]
+        cuts = [Cut(x.sense, *model.limit_nodes[x.name], x.scale, guard=x.guard) for x in model.limits]
         cuts += [Cut(x.sense, model.quantity_node[x.quantity], None, 1e-9, x.limit) for x in instance.extra]
         self.cuts = cuts
         self.bounds = [cut.bound for cut in cuts]
@@ -162,12 +164,20 @@ class Formulation:
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
         self.log_goals = np.zeros(len(self.goals), dtype=bool)
         self.goal_scales = np.ones(len(self.goals))
+        self.immovable = self._immovable()
         self.contracted = 0
         self.nlp_solves = 0
         self.solved_combinations: set[int] = set()
         self.archive = Archive(traded, self.n, len(self.goals))
         self._nlp: ParametricNlp | None = None
         self._positive_cuts = np.ones(len(cuts), dtype=bool)
+
+    def _immovable(self) -> np.ndarray:
+        """Return which limits depend on no variable that is free to move."""
+        free = [k for k in range(self.n) if self.lower[k] < self.upper[k]]
+        moving = self.model.program.dependence(free)
+        sides = [[k for k in (c.value, c.limit) if k is not None] for c in self.cuts]
+        return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
 
     # -- boxes ---------------------------------------------------------------------------------
 
@@ -194,7 +204,7 @@ class Formulation:
     def _refusal_function(self, refusal: Refusal) -> Any:
         model = self.model
         return model.function(
-            ("refusal", refusal.code), lambda: Program(model.inputs, [refusal.when], model.calls).compile()
+            ("refusal", id(refusal)), lambda: Program(model.inputs, [refusal.when], model.calls).compile()
         )
 
     def contract(
@@ -251,6 +261,8 @@ class Formulation:
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
+        if not self.n:
+            return boxes.take(np.zeros(0, dtype=np.int64)), boxes
         width = self._widths(boxes)
         score = np.where(width > 0, boxes.scores * 1.0, -1.0)
         # Where no score tells (nothing depends on the box any more, or the slopes are unbounded) the widest is split.
@@ -339,6 +351,10 @@ class Formulation:
     def _feasible(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         result = self.evaluate(variables, combinations)
         feasible = result.feasible & self._not_refused(combinations)
+        for limit, fixed in zip(self.model.limits, self.immovable, strict=False):
+            if not fixed:
+                r = result.residuals[limit.name]
+                feasible = feasible & (np.isnan(r) | (r <= SEARCH_TOLERANCE))
         feasible = feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
         for extra in self.instance.extra:
             r = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
@@ -397,7 +413,7 @@ class Formulation:
         if self._nlp is None:
             log_variables = tuple(bool(x > 0) for x in self.lower)
             rows = Rows(
-                cuts=tuple(Cut(c.sense, c.value, c.limit, c.scale) for c in self.cuts),
+                cuts=tuple(replace(c, bound=0.0) for c in self.cuts),
                 goals=tuple(self.goals),
                 log_cuts=tuple(
                     bool(p) and c.sense != "equal" for p, c in zip(self._positive_cuts, self.cuts, strict=True)

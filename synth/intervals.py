@@ -425,6 +425,7 @@ class Cut:
     limit: int | None
     scale: float
     bound: float = 0.0
+    guard: bool = False
 
 
 @dataclass(frozen=True)

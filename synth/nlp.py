@@ -38,6 +38,7 @@ IPOPT: dict[str, Any] = {
     "calc_lam_p": False,
 }
 ACTIVE = 1e-6
+GUARD_MARGIN = 1e-6
 MAX_FLIPS = 6
 
 
@@ -241,7 +242,9 @@ class ParametricNlp:
         cut_rows = []
         for j, cut in enumerate(rows.cuts):
             form = ca.log(values[j] / limits[j]) if rows.log_cuts[j] else (values[j] - limits[j]) / sizes[j]
-            cut_rows.append((-form if cut.sense == "at_least" else form) - elastic * t)
+            # A guard never gives way, and holds only strictly: beyond it the other formulas do not exist.
+            give = -GUARD_MARGIN if cut.guard else elastic * t
+            cut_rows.append((-form if cut.sense == "at_least" else form) - give)
         phi = []
         for j, goal in enumerate(rows.goals):
             form = ca.log(goals[j]) if rows.log_goals[j] else goals[j] / sizes[len(rows.cuts) + j]

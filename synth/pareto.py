@@ -17,7 +17,7 @@ DIGITS = 9
 class Zone:
     """A region ``phi < upper`` that may hold a further non-dominated point.
 
-    ``upper`` comes from known points: component k from the point ``makers[k]`` (None: the nadir).
+    ``upper`` comes from known points: component k from the point ``makers[k]`` (None: it is open, infinite).
     ``cover`` is the searcher's own: what it knows of the region; parts of a zone inherit it.
     """
 
@@ -32,7 +32,8 @@ class Zones:
     Parameters
     ----------
     ideal, nadir : array (objectives,)
-        Corners of the region of interest, in phi.
+        Least and largest values of the extreme designs, in phi; they set the scale. Designs beyond the
+        nadir are not left out: with three objectives the extremes do not tell where the front ends.
     cover : object
         What the searcher knows of the whole region.
     """
@@ -41,7 +42,7 @@ class Zones:
         self.ideal, self.nadir = ideal, nadir
         self.range = np.maximum(nadir - ideal, 1e-300)
         self.points: list[np.ndarray] = []
-        self.zones = [Zone(nadir.copy(), (None,) * len(nadir), cover)]
+        self.zones = [Zone(np.full(len(nadir), np.inf), (None,) * len(nadir), cover)]
 
     def add(self, point: np.ndarray) -> None:
         """Take a new non-dominated point: zones that it lies in are replaced by what remains of them."""
@@ -86,7 +87,7 @@ class Zones:
 
     def size(self, zone: Zone) -> float:
         """Return how large a hole in the front the zone is, 0 .. 1."""
-        edges = np.clip((zone.upper - self.lower(zone)) / self.range, 0.0, None)
+        edges = np.clip((np.minimum(zone.upper, self.nadir) - self.lower(zone)) / self.range, 0.0, None)
         if len(edges) == 2:
             return float(np.linalg.norm(edges) / np.sqrt(2))
         return float(np.prod(edges) ** (1 / len(edges)))

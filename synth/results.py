@@ -177,7 +177,7 @@ class ParetoFront:
     """The ranked non-dominated designs for one requirement."""
 
     frame: Frame
-    designs: tuple[Design, ...]
+    designs: list[Design]
     status: Status
     complete: bool
     statistics: Mapping[str, Any]
@@ -323,7 +323,7 @@ def load_front(folder: str | Path) -> ParetoFront:
         restated=content["restated"],
     )
     rows = content["parts"]
-    designs = tuple(_design_from_json(frame, d, rows) for d in content["designs"])
+    designs = [_design_from_json(frame, d, rows) for d in content["designs"]]
     return ParetoFront(
         frame=frame,
         designs=designs,
@@ -347,12 +347,12 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         values={n: _number(v) for n, v in d["values"].items()},
         parts=parts,
         choices=d["choices"],
-        objectives=d["objectives"],
+        objectives={n: _number(v) for n, v in d["objectives"].items()},
         limits={n: (_number(v), _number(x)) for n, (v, x) in d["limits"].items()},
         residuals={n: _number(v) for n, v in d["residuals"].items()},
         utilisation={n: None if u is None else float(u) for n, u in d["utilisation"].items()},
         status=Status(d["status"]),
-        elasticity=d["elasticity"],
+        elasticity={o: {n: _number(v) for n, v in e.items()} for o, e in d["elasticity"].items()},
         gap=d["gap"],
         rank=d["rank"],
         score=d["score"],

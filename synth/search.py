@@ -191,27 +191,25 @@ class _FrontSearch:
     def run(self, weights: Sequence[float], settings: Mapping[str, Any]) -> ParetoFront:
         frame = make_frame(self.instance, self.chosen)
         interrupted = ""
+        designs: list[Design] = []
+        explanation = None
         try:
             self._timed("bounds", self._root)
             if len(self.pool):
                 self._timed("extremes", self._extremes)
             if self.front:
                 self._timed("front", self._fill)
+                designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
+            else:
+                explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:
             interrupted = "interrupted"
         if interrupted:
-            self.closed = False
-            self.exhausted = False
-            self.complete = False
+            self.closed = self.exhausted = self.complete = False
             self._take_from_archive()
-        designs: list[Design] = []
-        explanation = None
-        if self.front:
-            designs = self._timed("report", lambda: self._designs(frame, weights, bool(interrupted)))
-        elif not interrupted:
-            explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.pool, self.rng))
+            designs = self._designs(frame, weights, settle=False) if self.front else []
         return self._result(frame, designs, settings, explanation, interrupted)
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
@@ -369,7 +367,8 @@ class _FrontSearch:
             lower = zones.lower(zone)
             base = np.full(len(self.form.goals), np.inf)
             slope = np.zeros(len(self.form.goals))
-            base[: self.m], slope[: self.m] = lower, zone.upper - lower
+            closed = np.flatnonzero(np.isfinite(zone.upper))
+            base[closed], slope[closed] = lower[closed], (zone.upper - lower)[closed]
             questions.append(Question(Target(base, slope), zone.cover, self._inside(zone.upper), 1.0))
         outcomes = self._solve(questions)
         found = []
@@ -435,10 +434,10 @@ class _FrontSearch:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _designs(self, frame: Frame, weights: Sequence[float], interrupted: bool) -> list[Design]:
+    def _designs(self, frame: Frame, weights: Sequence[float], settle: bool) -> list[Design]:
         settled, alternatives = list[Candidate](), list[tuple[str, ...]]()
         for k, candidate in enumerate(self.front):
-            if interrupted:
+            if not settle:
                 settled.append(candidate)
                 alternatives.append(())
                 continue
@@ -453,7 +452,7 @@ class _FrontSearch:
         for position, k in enumerate(ranking.order):
             c = settled[k]
             parts, _, choices = self.instance.describe(c.combination)
-            proven = self.closed and not interrupted
+            proven = self.closed and settle
             designs.append(
                 make_design(
                     self.instance,
@@ -468,7 +467,7 @@ class _FrontSearch:
                     score=float(ranking.scores[k]),
                     note=ranking.notes[k],
                     alternatives=alternatives[k],
-                    elasticity={} if interrupted else elasticities(self.form, c, self.m),
+                    elasticity={} if not settle else elasticities(self.form, c, self.m),
                 )
             )
         return designs
@@ -572,7 +571,7 @@ class _FrontSearch:
             status = Status.INFEASIBLE
         return ParetoFront(
             frame=frame,
-            designs=tuple(designs),
+            designs=list(designs),
             status=status,
             complete=self.complete and not interrupted,
             statistics=statistics,

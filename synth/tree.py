@@ -263,6 +263,8 @@ class _Search:
         if not solution.converged or not np.isfinite(total) or total == 0:
             return
         row = np.where(np.abs(row) > 1e-4 * total, row / total, 0.0)
+        either_sign = np.array([c.sense == "equal" for c in self.form.cuts] + [False] * len(self.form.goals))
+        row = np.where(either_sign, row, np.maximum(row, 0.0))
         known = np.any(np.all(np.abs(self.multipliers - row) < 0.02, axis=1))
         if not known:
             self.multipliers = np.vstack([row, self.multipliers])[:VECTORS]
