@@ -13,6 +13,7 @@ from synth.nlp import Task
 from synth.units import format_quantity
 
 TRIES = 60
+STARTS = 200
 
 
 def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
@@ -32,7 +33,6 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
         elastic=1.0,
     )
     best: tuple[float, int, np.ndarray] | None = None
-    start = np.where(form.lower > 0, np.sqrt(np.maximum(form.lower * form.upper, 0)), 0.5 * (form.lower + form.upper))
     queue = [int(c) for c in numbers]
     tried: set[int] = set()
     while queue:
@@ -40,6 +40,7 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
         if combination in tried:
             continue
         tried.add(combination)
+        start = form.good_start(form.whole(combination), rng, STARTS)
         solution = form.solve(task, combination, start, form.lower, form.upper)
         if solution is None:
             continue

@@ -171,6 +171,7 @@ class Formulation:
         self.archive = Archive(traded, self.n, len(self.goals))
         self._nlp: ParametricNlp | None = None
         self._positive_cuts = np.ones(len(cuts), dtype=bool)
+        self._seen_feasible_boxes = False
 
     def _immovable(self) -> np.ndarray:
         """Return which limits depend on no variable that is free to move."""
@@ -183,8 +184,16 @@ class Formulation:
 
     def root(self, combinations: np.ndarray, passes: int = 3) -> Boxes:
         """Return the boxes of the combinations that no bound excludes, over the whole range of the variables."""
+        start = self._start(combinations)
+        return self.contract(start.take(self._not_refused(combinations)), None, passes, every_goal=True)
+
+    def whole(self, combination: int) -> Boxes:
+        """Return the box of one combination over the whole range of the variables."""
+        return self._start(np.array([combination], dtype=np.int64))
+
+    def _start(self, combinations: np.ndarray) -> Boxes:
         n, m = len(combinations), len(self.goals)
-        start = Boxes(
+        return Boxes(
             combinations,
             np.broadcast_to(self.lower, (n, self.n)),
             np.broadcast_to(self.upper, (n, self.n)),
@@ -192,7 +201,6 @@ class Formulation:
             np.zeros((n, self.n)),
             np.zeros(n, dtype=np.int64),
         )
-        return self.contract(start.take(self._not_refused(combinations)), None, passes, every_goal=True)
 
     def _not_refused(self, combinations: np.ndarray) -> np.ndarray:
         keep = np.ones(len(combinations), dtype=bool)
@@ -257,6 +265,7 @@ class Formulation:
         high = np.maximum(high, low)
         if alive.any():
             self._positive_cuts &= result.positive_cuts
+            self._seen_feasible_boxes = True
         return Boxes(boxes.combination, low, high, bounds, result.scores, boxes.tag).take(alive)
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
@@ -400,8 +409,11 @@ class Formulation:
         points = self.inside(many, share)
         result = self.evaluate(points, many.combination)
         worst = np.zeros(count)
-        for r in result.residuals.values():
-            worst = np.fmax(worst, np.where(np.isinf(r), 1e3, r))
+        for limit in self.model.limits:
+            r = result.residuals[limit.name]
+            # Behind a guard that fails nothing else is known, so it counts most.
+            guard = limit.guard & ~result.holds[limit.name]
+            worst = np.fmax(worst, np.where(guard, 1e3, np.where(np.isinf(r), 1e2, r)))
         broken = np.any([~h for h in result.holds.values()], axis=0) if result.holds else np.zeros(count, dtype=bool)
         best: np.ndarray = points[int(np.argmin(np.where(broken, np.maximum(worst, 1e-9), 0.0)))]
         return best
@@ -411,13 +423,13 @@ class Formulation:
     def nlp(self) -> ParametricNlp:
         """Return the NLP of this question; built once per model and set of rows."""
         if self._nlp is None:
+            # Where no box is left, nothing proves a sign, and logarithms would not exist.
+            positive = self._positive_cuts & self._seen_feasible_boxes
             log_variables = tuple(bool(x > 0) for x in self.lower)
             rows = Rows(
                 cuts=tuple(replace(c, bound=0.0) for c in self.cuts),
                 goals=tuple(self.goals),
-                log_cuts=tuple(
-                    bool(p) and c.sense != "equal" for p, c in zip(self._positive_cuts, self.cuts, strict=True)
-                ),
+                log_cuts=tuple(bool(p) and c.sense != "equal" for p, c in zip(positive, self.cuts, strict=True)),
                 log_goals=tuple(bool(x) for x in self.log_goals),
                 log_variables=log_variables,
             )
