@@ -117,7 +117,16 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
     )
     cooling_row = d.row("cooling_options", cooling)
     if lubrication is not None and _row_text(d, "cooling_options", cooling, "lubrication") not in ("", lubrication):
-        raise InputError("lubrication_mismatch", f"cooling {cooling}", f"a cooling for lubrication {lubrication}")
+        fitting = [
+            c
+            for c in d.designations("cooling_options")
+            if _row_text(d, "cooling_options", c, "lubrication") == lubrication
+        ]
+        raise InputError(
+            "lubrication_mismatch",
+            f"cooling {cooling}",
+            f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}",
+        )
     load_torque = d.requirement(
         "load_torque", "N*m", lower=0.1, upper=1e6, symbol="M_load",
         text="Torque of the load during start-up", source=f"{S1}, M2",
@@ -645,6 +654,12 @@ def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
         "friction_radius", "mm", ring_formulas.friction_radius(mean, ratio), symbol="r",
         text="Friction radius at uniform pressure", source=f"{S0}, friction radius",
     )  # fmt: skip
+    d.advise(
+        "bad_ring",
+        inner >= outer,
+        "ring_inner_diameter is not below ring_outer_diameter: this is no ring, and its other figures mean nothing",
+        source=S0,
+    )
     d.at_least(
         "ring_ratio_min", ratio, least, "-",
         text="The ring is not too narrow", source=f"{S1}, empirical range of c",

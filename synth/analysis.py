@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from synth.declaration import Variable
 from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
-from synth.instance import Instance, as_catalogs, as_mapping
+from synth.instance import Instance, as_mapping, catalogs_for
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
@@ -219,7 +219,7 @@ def _evaluate(
     in_si: bool,
 ) -> Design:
     problem = load(p)
-    instance = Instance(problem, requirements, as_catalogs(catalogs), limits=limits, restrict=False)
+    instance = Instance(problem, requirements, catalogs_for(problem, catalogs), limits=limits, restrict=False)
     model = instance.model
     rows = _chosen_rows(instance, parts)
     known, choices, derived = _read_values(model, values, in_si)

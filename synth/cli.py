@@ -173,8 +173,8 @@ def check(
     from synth.analysis import evaluate
     from synth.console import output, print_check, write_check
     from synth.description import describe as describe_problem
+    from synth.instance import catalogs_for
     from synth.spec import read_spec
-    from synth.tables import Catalogs
 
     asked = read_spec(design)
     if asked.values is None:
@@ -191,7 +191,7 @@ def check(
         _check_output(folder)
     with _blamed_on(asked.file):
         problem = _load(asked.family, asked.options)
-        catalogs = None if asked.catalogs is None else Catalogs(asked.catalogs, base=asked.folder)
+        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         result = evaluate(
             problem, asked.requirements, values=asked.values, parts=_one_each(asked),
             catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
@@ -258,6 +258,8 @@ def _blamed_on(file: str) -> Iterator[None]:
 
 def _check_output(folder: Path) -> None:
     """Refuse a folder that cannot be written before the search, not after it."""
+    if str(folder) in ("", "."):
+        raise InputError("--output", str(folder), "the name of a folder for the results, for example out/")
     place = folder
     while not place.exists() and place != place.parent:
         place = place.parent
@@ -269,12 +271,12 @@ def _check_output(folder: Path) -> None:
 
 def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
     from synth.console import progress_display
+    from synth.instance import catalogs_for
     from synth.search import synthesize
-    from synth.tables import Catalogs
 
     with _blamed_on(asked.file), progress_display(quiet) as progress:
         problem = _load(asked.family, asked.options)
-        catalogs = None if asked.catalogs is None else Catalogs(asked.catalogs, base=asked.folder)
+        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         try:
             return synthesize(
                 problem, asked.requirements, catalogs=catalogs, progress=progress, **asked.search_settings()

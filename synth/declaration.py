@@ -336,8 +336,9 @@ class Declaration:
         labels = tuple(choices)
         if default not in labels:
             raise DeclarationError(f"{self.problem}: default {default!r} of option {name} is not one of {labels}")
-        asked = self._asked_options.get(symbol, default) if symbol in self._asked_options else None
-        chosen = self._asked_options.get(name, asked if asked is not None else default)
+        if name != symbol and name in self._asked_options and symbol in self._asked_options:
+            raise InputError(f"options: {name}", symbol, "each option once (name and symbol mean the same)")
+        chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
         if isinstance(chosen, bool):
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         if chosen not in labels:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -24,6 +26,29 @@ SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "
 CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*(.+)$", re.DOTALL)
 
 _shipped: dict[str, Catalogs] = {}
+
+
+def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) -> Catalogs:
+    """Return catalogues for what the user gave with a question.
+
+    Raises
+    ------
+    InputError
+        When a table is neither shipped nor used by the problem: its rows would be ignored in silence.
+    """
+    if spec is None or isinstance(spec, Catalogs):
+        return as_catalogs(spec)
+    catalogs = Catalogs(spec, base=base)
+    if not catalogs.added:
+        return catalogs
+    d = problem.model(frozenset(), catalogs).declaration
+    used = {part.table for part in [*d.slots.values(), *d.rows.values()]}
+    for name in catalogs.added:
+        if name not in used:
+            close = difflib.get_close_matches(name, used, n=2, cutoff=0.4)
+            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            raise InputError("catalogs", name, f"a table that is used ({', '.join(sorted(used)) or 'none'}){hint}")
+    return catalogs
 
 
 def as_catalogs(spec: Any) -> Catalogs:
@@ -148,10 +173,14 @@ class Instance:
         self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
-        for word, conditions in self.asked_limits.items():
-            self._add_limit(str(word), conditions)
-        for word, value in as_mapping(fix, "fix", "{'mass': '20 kg'}").items():
-            self._pin(str(word), value)
+        quantities = list(self.model.quantity_sx)
+        for word, conditions in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
+            self._add_limit(word, conditions)
+        pinned = as_mapping(fix, "fix", "{'mass': '20 kg'}")
+        among = [*quantities, *d.choices, *d.slots]
+        kinds = "a variable, count, choice, slot or derived quantity"
+        for name, value in self.model.by_name(pinned, "fix", among, kinds).items():
+            self._pin(name, value)
         self.selection = Selection()
         if restrict:
             self._select_rows(as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}"))
@@ -238,9 +267,8 @@ class Instance:
 
     # -- limits and fix ------------------------------------------------------------------------
 
-    def _add_limit(self, word: str, conditions: Any) -> None:
+    def _add_limit(self, name: str, conditions: Any) -> None:
         model = self.model
-        name = model.name_of(word, "limits", list(model.quantity_sx), "a quantity")
         unit = model.units[name]
         for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
             for sense, bound in self._read_limit(name, unit, text):
@@ -279,12 +307,15 @@ class Instance:
         else:
             sign = {"at_most": "<=", "at_least": ">=", "equal": "=="}[sense]
             label = f"{name} {sign} {format_quantity(bound, unit, None)}"
+            for other in self.extra:
+                if other.quantity == name and _contradict(other.sense, other.limit, sense, bound):
+                    raise InputError(
+                        f"limits: {name}", f"{other.name} and {label}", "limits that do not exclude each other"
+                    )
             self.extra.append(ExtraLimit(label, name, sense, bound, unit))
 
-    def _pin(self, word: str, value: Any) -> None:
+    def _pin(self, name: str, value: Any) -> None:
         model, d = self.model, self.model.declaration
-        among = [*model.quantity_sx, *d.choices, *d.slots]
-        name = model.name_of(word, "fix", among, "a variable, count, choice, slot or derived quantity")
         if name in d.slots or name in d.choices:
             self._fixed_discrete[name] = value
             return
@@ -310,9 +341,7 @@ class Instance:
 
     def _select_rows(self, parts: Mapping[str, Any]) -> None:
         d = self.model.declaration
-        wanted: dict[str, Any] = {}
-        for word, rule in parts.items():
-            wanted[self.model.name_of(str(word), "parts", list(d.slots), "a slot")] = rule
+        wanted = self.model.by_name(parts, "parts", list(d.slots), "a slot")
         for part in d.slots.values():
             table = self.catalogs.table(part.table)
             self.selection.offered[part.slot] = len(table)
@@ -324,13 +353,9 @@ class Instance:
             keep = self._complete_rows(part, table, keep)
             rows = np.flatnonzero(keep)
             if not len(rows):
-                reasons = {e["reason"] for e in self.selection.left_out if e["slot"] == part.slot}
-                why = "; ".join(sorted(reasons)) or "the conditions " + " and ".join(
-                    [*part.where, *([str(wanted[part.slot])] if part.slot in wanted else [])]
-                )
-                raise InputError(
-                    f"slot {part.slot}", None, f"at least one row of table {part.table}; none is left by {why}"
-                )
+                asked = [wanted[part.slot]] if part.slot in wanted else []
+                asked += [self._fixed_discrete[part.slot]] if part.slot in self._fixed_discrete else []
+                self._refuse_empty(part, table, asked)
             columns = {
                 key: part_column_value(
                     column,
@@ -341,20 +366,43 @@ class Instance:
             }
             self.selection.slots.append(SlotRows(part.slot, table, rows, columns))
 
+    def _refuse_empty(self, part: Part, table: Table, asked: list[Any]) -> None:
+        """Say why no row is left for a slot: by which condition, rule or missing value."""
+        rows = np.ones(len(table), dtype=bool)
+        for rule in asked:
+            rows &= self._part_rule(part, table, rule)
+        names = ", ".join(table.designations[k] for k in np.flatnonzero(rows)[:5]) or "no row"
+        lacking = sorted({e["reason"] for e in self.selection.left_out if e["slot"] == part.slot})
+        failing = [c for c in part.where if not self._meets(c, table)[rows].any()]
+        if not rows.any():
+            expected = f"rules for this slot that leave at least one row of table {part.table}"
+        elif failing:
+            expected = f"a row of table {part.table} with {' and '.join(failing)}"
+        elif lacking:
+            expected = f"a row of table {part.table} that is complete ({'; '.join(lacking)})"
+        else:
+            expected = f"a row of table {part.table} with {' and '.join(part.where)}"
+        raise InputError(f"slot {part.slot}", names, expected)
+
+    @staticmethod
+    def _meets(text: str, table: Table) -> np.ndarray:
+        condition = parse_condition(text)
+        missing = [c for c in condition.columns if not table.has(c)]
+        if missing and table.user_rows.all():
+            # A user's own table need not have the columns that sort the shipped one.
+            return np.ones(len(table), dtype=bool)
+        mask: np.ndarray = condition.mask(table)
+        if "family_hint" in condition.columns:
+            hints = np.array([not h for h in table.text("family_hint")])
+            mask = mask | (table.user_rows & hints)
+        return mask
+
     @staticmethod
     def offers(part: Part, table: Table) -> np.ndarray:
         """Return which rows of the table meet the conditions of the slot."""
         keep = np.ones(len(table), dtype=bool)
         for text in part.where:
-            condition = parse_condition(text)
-            missing = [c for c in condition.columns if not table.has(c)]
-            if missing and table.user_rows.all():
-                continue  # a user's own table need not have the columns that sort the shipped one
-            mask = condition.mask(table)
-            if "family_hint" in condition.columns:
-                hints = np.array([not h for h in table.text("family_hint")])
-                mask |= table.user_rows & hints
-            keep &= mask
+            keep &= Instance._meets(text, table)
         return keep
 
     @staticmethod
@@ -395,10 +443,12 @@ class Instance:
                 values = values[np.abs(values - self._fixed_discrete[count.name]) < 1e-9]
             if not len(values):
                 low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
-                asked = self._fixed_discrete.get(
-                    count.name, [(s, b) for n, s, b in self._count_bounds if n == count.name]
-                )
-                raise InputError(count.name, asked, f"a value from {low:g} to {high:g} in steps of {step:g}")
+                signs = {"at_most": "<=", "at_least": ">=", "equal": "=="}
+                asked = [f"{signs[s]} {b:g}" for n, s, b in self._count_bounds if n == count.name]
+                if count.name in self._fixed_discrete:
+                    asked.append(f"== {self._fixed_discrete[count.name]:g}")
+                expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
+                raise InputError(count.name, " and ".join(asked), expected)
             self.selection.counts[count.name] = values
         for choice in d.choices.values():
             indices = np.arange(len(choice.labels))
@@ -519,6 +569,13 @@ def number(expression: Any, values: Mapping[str, float]) -> float:
     symbols = ca.symvar(ca.SX(expression))
     function = ca.Function("number", symbols, [ca.SX(expression)])
     return float(function.call([values[str(s)] for s in symbols])[0])
+
+
+def _contradict(first: str, one: float, second: str, other: float) -> bool:
+    """Tell whether two limits on one quantity leave nothing between them."""
+    lows = [b for s, b in ((first, one), (second, other)) if s in ("at_least", "equal")]
+    highs = [b for s, b in ((first, one), (second, other)) if s in ("at_most", "equal")]
+    return bool(lows and highs and max(lows) > min(highs) + 1e-9 * abs(min(highs)))
 
 
 def _compare(values: np.ndarray, sense: str, bound: float) -> np.ndarray:

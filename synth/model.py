@@ -166,6 +166,16 @@ class Model:
         hint = f" (did you mean {' or '.join(close)}?)" if close else ""
         raise InputError(field, word, f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them")
 
+    def by_name(self, mapping: Mapping[Any, Any], field: str, among: Sequence[str], what: str) -> dict[str, Any]:
+        """Return a mapping of names or symbols by public name; each may be given once."""
+        result: dict[str, Any] = {}
+        for word, value in mapping.items():
+            name = self.name_of(str(word), field, among, what)
+            if name in result:
+                raise InputError(f"{field}: {name}", str(word), "each name once (name and symbol mean the same)")
+            result[name] = value
+        return result
+
     def kind_of(self, name: str) -> str:
         """Return what a declared name is, with its article."""
         d = self.declaration

@@ -15,7 +15,7 @@ from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.formulation import TIE, Boxes, Candidate, Formulation
-from synth.instance import Instance, as_catalogs
+from synth.instance import Instance, as_mapping, catalogs_for
 from synth.nlp import Task
 from synth.pareto import Zone, Zones, non_dominated, rank, spread_subset
 from synth.problem import DesignProblem, load
@@ -92,8 +92,8 @@ def synthesize(
         For everything that is wrong with the input, in one sentence.
     """
     problem = load(p)
-    _check_settings(points, gap, workers, seed, time_limit)
-    instance = Instance(problem, requirements, as_catalogs(catalogs), parts, limits, fix, grid)
+    _check_settings(points, gap, grid, workers, seed, progress, time_limit)
+    instance = Instance(problem, requirements, catalogs_for(problem, catalogs), parts, limits, fix, grid)
     chosen = chosen_objectives(instance.model, objectives)
     weight_list = _weights(instance, chosen, weights)
     settings = {
@@ -110,7 +110,7 @@ def synthesize(
     return search.run(weight_list, settings)
 
 
-def _check_settings(points: Any, gap: Any, workers: Any, seed: Any, time_limit: Any) -> None:
+def _check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
     def whole(value: Any) -> bool:
         return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
 
@@ -121,6 +121,10 @@ def _check_settings(points: Any, gap: Any, workers: Any, seed: Any, time_limit: 
         raise InputError("points", points, "a whole number of designs, at least 1")
     if not real(gap) or not 1e-6 <= gap <= 0.5:
         raise InputError("gap", gap, "a fraction from 1e-6 to 0.5, for example 0.001")
+    if not isinstance(grid, (bool, np.bool_)):
+        raise InputError("grid", grid, "true or false")
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "a function of one mapping, or none")
     if not whole(workers) or workers < 1:
         raise InputError("workers", workers, "a whole number, at least 1")
     if not whole(seed) or seed < 0:
@@ -131,14 +135,14 @@ def _check_settings(points: Any, gap: Any, workers: Any, seed: Any, time_limit: 
 
 def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str, float] | None) -> list[float]:
     values = dict.fromkeys(chosen, 1.0)
-    for word, weight in (weights or {}).items():
-        name = instance.model.name_of(str(word), "weights", list(chosen), "a chosen objective")
+    asked = as_mapping(weights, "weights", "{'mass': 2}")
+    for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
         number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan
         if not (math.isfinite(number) and number >= 0):
             raise InputError(f"weights: {name}", weight, "a number that is not negative")
         values[name] = float(number)
     if not any(values.values()):
-        raise InputError("weights", weights, "at least one weight above 0")
+        raise InputError("weights", dict(asked), "at least one weight above 0")
     return list(values.values())
 
 
@@ -358,6 +362,14 @@ class _FrontSearch:
             self._say("front", len(self.front) / self.points)
         self.complete = self.closed and not zones.zones
         self.front = self._distinct(self.front)
+        self._keep_points()
+
+    def _keep_points(self) -> None:
+        """Keep at most as many designs as were asked for."""
+        if len(self.front) > self.points:
+            phi = np.array([c.phi[: self.m] for c in self.front])
+            self.front = [self.front[k] for k in spread_subset(phi, self.points)]
+            self.complete = False
 
     def _fill_zones(self, zones: Zones, chosen: Sequence[Zone]) -> None:
         """Seek the middle of several zones at once; a zone that holds nothing is closed."""

@@ -199,9 +199,15 @@ def test_parts_narrow_a_slot(rule, expected):
     ("parts", "words"),
     [
         ({"plate": ["core 9"]}, "core 9"),
-        ({"plate": "thickness > 100"}, "slot plate: is missing; expected at least one row of table core_plates"),
+        (
+            {"plate": "thickness > 100"},
+            "slot plate: got 'no row'; expected rules for this slot that leave at least one row of table core_plates",
+        ),
         ({"plate": []}, "at least one row"),
-        ({"plate": ["core 0.8"]}, "none is left by the conditions thickness >= 1"),
+        (
+            {"plate": ["core 0.8"]},
+            "slot plate: got 'core 0.8'; expected a row of table core_plates with thickness >= 1",
+        ),
         ({"plate": "thicknes > 1"}, "perhaps thickness"),
         ({"plate": "thickness >"}, "condition"),
         ({"plate": 5}, "a list of designations, or a condition on columns"),
@@ -233,7 +239,9 @@ def test_a_row_without_a_value_that_is_used_is_left_out_and_named():
 
 def test_an_emptied_slot_names_the_column():
     rods = RODS.assign(**{"density [kg/m3]": [None, None, None]})
-    with pytest.raises(synth.InputError, match=r"slot material.*none is left by no value in column density"):
+    with pytest.raises(
+        synth.InputError, match=r"slot material: got 'soft, hard, odd'.*complete \(no value in column density\)"
+    ):
         instance(rods=rods)
     with pytest.raises(synth.InputError, match="density"):
         instance(rods=RODS.drop(columns="density [kg/m3]"))
