@@ -205,7 +205,10 @@ class _FrontSearch:
                 self._timed("front", self._fill)
                 designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
             else:
+                searched = set(self.form.solved_combinations)
                 explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
+                # What was solved only to explain does not change how the combinations were excluded.
+                self.form.solved_combinations = searched
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:
