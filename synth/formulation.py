@@ -309,11 +309,6 @@ class Formulation:
                 left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
         return left, right
 
-    def on_grid(self, boxes: Boxes) -> np.ndarray:
-        """Tell which boxes hold one value only of every gridded variable."""
-        fixed: np.ndarray = np.all((boxes.high - boxes.low <= SNAP * np.abs(boxes.high)) | ~self.gridded, axis=1)
-        return fixed
-
     # -- objectives ----------------------------------------------------------------------------
 
     def settle_objectives(self, boxes: Boxes) -> None:

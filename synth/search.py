@@ -315,7 +315,7 @@ class _FrontSearch:
             outcome = self._solve([Question(self._target(k, open_caps), self.pool, self._best_known(found, k))])[0]
             if outcome.best is None:
                 return
-            found.append(self._improve(outcome.best, [k, *(j for j in range(self.m) if j != k)]))
+            found.append(self._improve(outcome.best, [j for j in range(self.m) if j != k]))
             self._say("extremes", (k + 1) / self.m)
         self.front = self._distinct(found)
 
@@ -327,12 +327,7 @@ class _FrontSearch:
         """Return a design at least as good in every objective, improved in each in turn."""
         caps = np.full(len(self.form.goals), np.inf)
         caps[: self.m] = candidate.phi[: self.m]
-        first = True
         for k in order:
-            if first and len(order) > 1 and order[0] == k and self.m > 1:
-                first = False
-                if candidate.phi[k] <= caps[k]:
-                    continue  # its own extreme is the optimum already
             outcome = self._solve([Question(self._target(k, caps), self.pool, candidate)])[0]
             if outcome.best is not None:
                 candidate = outcome.best
@@ -355,8 +350,7 @@ class _FrontSearch:
             return
         phi = np.array([c.phi[: self.m] for c in self.front])
         zones = Zones(phi.min(axis=0), phi.max(axis=0), self.pool)
-        scale = np.maximum(zones.range, 0.0)
-        self.ranges = np.concatenate([scale, np.ones(len(self.form.goals) - self.m)])
+        self.ranges = np.concatenate([zones.range, np.ones(len(self.form.goals) - self.m)])
         for point in phi:
             zones.add(point)
         while zones.zones and len(self.front) < self.points:
