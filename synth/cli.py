@@ -18,14 +18,15 @@ if TYPE_CHECKING:
     from synth.results import ParetoFront
     from synth.spec import Spec
 
-FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED = 0, 1, 2, 3, 4
+FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
 REPORTS = "clutchsynth.reports"
 
 app = typer.Typer(
     name="clutchsynth",
     help="Design synthesis for clutches and shaft couplings: requirement in, ranked Pareto designs out.",
     epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written), "
-    "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved).",
+    "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved), "
+    "5 what verify checked does not hold.",
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -202,6 +203,26 @@ def check(
         print(f"\nwritten: {write_check(result, details, folder)}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def verify(
+    folder: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
+    time_limit: Annotated[
+        str | None, typer.Option(help="Give the proof up after this time, in seconds or such as '2 min'.")
+    ] = None,
+) -> None:
+    """Check a saved front without the search: its files, every design, and the proof of the certificate."""
+    from synth.console import output, print_verification
+    from synth.results import load_front
+    from synth.units import parse_quantity
+
+    front = load_front(folder)
+    limit = {} if time_limit is None else {"time_limit": parse_quantity(time_limit, "s", "--time-limit")}
+    verification = front.verify(**limit)
+    print_verification(verification, output())
+    if not verification.holds:
+        raise typer.Exit(DOES_NOT_HOLD)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------

@@ -24,6 +24,8 @@ from synth.units import format_quantity, from_si
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.verify import Verification
+
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
@@ -116,7 +118,11 @@ def _meaning(row: Mapping[Any, Any]) -> str:
         text = f"{text}: {row['choices']}" if text else str(row["choices"])
     if row["kind"] == "requirement" and isinstance(row["default"], str):
         text = f"{text}; default {row['default']} (SI)"
-    return f"{text} [{row['source']}]" if row["source"] and row["kind"] in ("derived", "limit") else text
+    if row["source"] and row["kind"] in ("derived", "limit"):
+        text = f"{text} [{row['source']}]"
+    if row["classification"] and row["kind"] in ("limit", "objective"):
+        text = f"{text}\n" * bool(text) + f"class: {row['classification']}"
+    return text
 
 
 # ---- check ----------------------------------------------------------------------------------------------------------
@@ -280,6 +286,13 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
         leader = front.designs[0]
         for remark in (*leader.advice, *leader.not_checked):
             console.print(f"remark on #{leader.rank}: {remark}")
+
+
+def print_verification(verification: Verification, console: Console) -> None:
+    """Print what checking a front again has shown: every finding, then the outcome."""
+    for finding in verification.findings:
+        console.print(f"- {finding}")
+    console.print(verification.sentence())
 
 
 def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:

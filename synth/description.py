@@ -10,9 +10,10 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Declaration, Part, Requirement, Variable
-from synth.instance import as_catalogs, number
-from synth.model import part_column_value
+from synth.instance import Instance, as_catalogs, number
+from synth.model import DataInput, Model, part_column_value
 from synth.problem import DesignProblem, load
+from synth.structure import classify
 from synth.tables import Catalogs
 from synth.units import from_si
 
@@ -51,7 +52,9 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     pandas.DataFrame
         One row per option, requirement, variable, count, choice, slot, column used, derived quantity, limit,
         objective, refusal and advice; numbers in the unit of their row, defaults that follow from other
-        quantities as text. Limits of optional requirements are included.
+        quantities as text. Limits of optional requirements are included. The column classification says what kind of
+        function a derived quantity, limit or objective is over all that may be declared and chosen
+        (see ``synth.structure``).
 
     Raises
     ------
@@ -71,6 +74,7 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     tables = as_catalogs(catalogs)
     everything = frozenset(problem.model(frozenset(), tables).declaration.requirements)
     d = problem.model(everything, tables).declaration
+    kinds = _classifications(problem, everything, tables)
     rows = [_row("option", o, default=o.default, choices=", ".join(o.choices)) for o in d.options.values()]
     fixed_rows = _row_values(d, tables)
     rows += [_requirement(r, fixed_rows) for r in d.requirements.values()]
@@ -86,11 +90,18 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
             _row("slot", part, name=part.slot, choices=f"rows of {part.table}" + (f" where {where}" if where else ""))
         )
         rows += _columns(part, tables)
-    rows += [_row("derived", q) for q in d.derived.values()]
-    rows += [_row("limit", x, sense=x.sense) for x in d.limits.values()]
+    rows += [_row("derived", q, classification=kinds["derived", q.name]) for q in d.derived.values()]
+    rows += [_row("limit", x, sense=x.sense, classification=kinds["limit", x.name]) for x in d.limits.values()]
     units = {name: unit for name, unit, _ in d.quantities()}
     rows += [
-        _row("objective", o, unit=units[o.name], sense=o.sense, default="yes" if o.default else "no")
+        _row(
+            "objective",
+            o,
+            unit=units[o.name],
+            sense=o.sense,
+            default="yes" if o.default else "no",
+            classification=kinds["objective", o.name],
+        )
         for o in d.objectives.values()
     ]
     rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
@@ -99,6 +110,63 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     # One column of numbers, words and nothing: kept as it is, never turned into text.
     frame.insert(COLUMNS.index("default"), "default", pd.Series([row["default"] for row in rows], dtype=object))
     return frame
+
+
+def declared_ranges(model: Model, catalogs: Catalogs) -> tuple[np.ndarray, np.ndarray]:
+    """Return the range that is declared for every input of a model's program, in SI.
+
+    Parameters
+    ----------
+    model : Model
+    catalogs : Catalogs
+        The tables whose rows fill the slots.
+
+    Returns
+    -------
+    tuple of arrays (inputs,)
+        Least and largest value: bounds, steps, and columns over the rows that a slot offers; not-a-number for a
+        column that no row has.
+    """
+    variables = [(v.lower, v.upper) for v in model.variables]
+    ranges = np.array(variables + [_data_range(e, model.declaration, catalogs) for e in model.data_inputs], dtype=float)
+    return ranges[:, 0], ranges[:, 1]
+
+
+def _data_range(entry: DataInput, d: Declaration, tables: Catalogs) -> tuple[float, float]:
+    if entry.kind == "requirement":
+        return d.requirements[entry.name].lower, d.requirements[entry.name].upper
+    if entry.kind == "count":
+        return float(d.counts[entry.name].values[0]), float(d.counts[entry.name].values[-1])
+    if entry.kind == "choice":
+        return 0.0, len(d.choices[entry.name].labels) - 1.0
+    if entry.kind == "row":
+        part = d.rows[entry.name]
+        table = tables.table(part.table)
+        rows = np.array([table.row_index(part.slot.split(":", 1)[1])])
+    else:
+        part = d.slots[entry.name]
+        table = tables.table(part.table)
+        rows = np.flatnonzero(Instance.offers(part, table))
+    numbers = {c: table.number(c)[rows] if table.has(c) else np.full(len(rows), np.nan) for c in entry.columns}
+    values = part_column_value(entry, numbers)
+    present = values[~np.isnan(values)]
+    return (float(present.min()), float(present.max())) if len(present) else (math.nan, math.nan)
+
+
+def _classifications(
+    problem: DesignProblem, everything: frozenset[str], tables: Catalogs
+) -> dict[tuple[str, str], str]:
+    """Return the kind of function of every derived quantity, limit and objective, as text.
+
+    An optional requirement can replace a formula; what exists without any is judged without any.
+    """
+    result: dict[tuple[str, str], str] = {}
+    for given in (everything, frozenset[str]()):
+        model = problem.model(given, tables)
+        found = classify(model, *declared_ranges(model, tables))
+        for kind, shapes in (("derived", found.quantities), ("limit", found.limits), ("objective", found.objectives)):
+            result |= {(kind, name): shape.text for name, shape in shapes.items()}
+    return result
 
 
 def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
 import numpy as np
 
+from synth.batch_nlp import Tasks
 from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
-from synth.nlp import Task
 
 NOISE = 1e-6
 TIGHT = 1e-5
 
 
-def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[str, dict[str, float]]:
-    """Return the elasticity of each chosen objective to every limit and requirement.
+def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int) -> list[dict[str, dict[str, float]]]:
+    """Return, per design, the elasticity of each chosen objective to every limit and requirement.
 
     The other chosen objectives are held at their values, parts and counts are fixed, gridded
     variables are taken as continuous. Objectives that are not positive, and designs where the solver
@@ -22,55 +26,97 @@ def elasticities(form: Formulation, candidate: Candidate, chosen: int) -> dict[s
     Parameters
     ----------
     form : Formulation
-    candidate : Candidate
+    candidates : list of Candidate
     chosen : int
         How many objectives, from the first, are traded off.
     """
-    result: dict[str, dict[str, float]] = {}
+    results: list[dict[str, dict[str, float]]] = [{} for _ in candidates]
+    if not candidates:
+        return results
     names = [x.name for x in form.model.limits] + [x.name for x in form.instance.extra]
-    immovable = form.immovable
-    tight = [int(j) for j in np.flatnonzero(immovable) if _is_tight(form, candidate, int(j))]
+    combinations = np.array([c.combination for c in candidates])
+    start = np.array([c.variables for c in candidates])
+    phi = np.array([c.phi for c in candidates])
+    count, goals = phi.shape
+    data = form.instance.data(combinations)
     requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
+    gradient = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
+    tight, sizes = _tight(form, start, combinations)
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
-        caps = np.full(len(form.goals), np.inf)
-        caps[:chosen] = candidate.phi[:chosen] + TIE
-        caps[k] = np.inf
-        task = Task(
-            weights=np.eye(len(form.goals))[k],
-            slopes=np.zeros(len(form.goals)),
-            caps=caps,
-            goal_scales=form.goal_scales,
-            t_weight=0.0,
-        )
-        start = np.clip(candidate.variables, form.lower, form.upper)
-        solution = form.solve(task, candidate.combination, start, form.lower, form.upper, True, immovable)
-        if solution is None or not solution.converged or solution.lagrangian_data_gradient is None:
-            continue
-        own: dict[str, float] = {}
-        for j, name in enumerate(names):
-            value = -float(solution.cut_multipliers[j])
-            if form.cuts[j].sense == "at_least":
-                value = -value
-            if abs(value) > NOISE and form.nlp().rows.log_cuts[j]:
-                own[name] = value
-        for name, position in requirements.items():
-            if any(_speaks_of(form, j, position) for j in tight):
-                continue  # the least change breaks a limit that no variable can restore
-            value = float(solution.lagrangian_data_gradient[position]) * form.instance.requirements[name]
-            if abs(value) > NOISE:
-                own[name] = value
-        result[form.names[k]] = own
-    return result
+        caps = np.full((count, goals), np.inf)
+        caps[:, :chosen] = phi[:, :chosen] + TIE
+        caps[:, k] = np.inf
+        tasks = Tasks(np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0)
+        # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
+        answer = form.solve_many(tasks, combinations, start, skipped=form.immovable)
+        for i in np.flatnonzero(answer.converged):
+            own: dict[str, float] = {}
+            for j, name in enumerate(names):
+                value = -float(answer.cut_multipliers[i, j])
+                value = -value if form.cuts[j].sense == "at_least" else value
+                if abs(value) > NOISE and form.rows().log_cuts[j]:
+                    own[name] = value
+            point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
+            slopes = gradient(
+                answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
+            )
+            for name, position in requirements.items():
+                if any(_speaks_of(form, int(j), position) for j in np.flatnonzero(tight[i])):
+                    continue  # the least change breaks a limit that no variable can restore
+                value = float(slopes[position]) * form.instance.requirements[name]
+                if abs(value) > NOISE:
+                    own[name] = value
+            results[i][form.names[k]] = own
+    return results
 
 
-def _is_tight(form: Formulation, candidate: Candidate, j: int) -> bool:
-    result = form.evaluate(candidate.variables[None, :], np.array([candidate.combination]))
-    if j < len(form.model.limits):
-        return abs(float(result.residuals[form.model.limits[j].name][0])) < TIGHT
-    extra = form.instance.extra[j - len(form.model.limits)]
-    return abs(float(residual(result.values[extra.quantity][0], extra.limit, extra.sense, 1e-9))) < TIGHT
+def _gradient(form: Formulation) -> Any:
+    """Return the derivative of the Lagrangian to the data inputs as a function of point, data and multipliers."""
+    rows, program, n = form.rows(), form.model.program, form.n
+    x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
+    values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
+    bounds, sizes = ca.SX.sym("bounds", len(rows.cuts)), ca.SX.sym("sizes", len(rows.cuts))
+    cut_rows = []
+    for j, cut in enumerate(rows.cuts):
+        value, limit = values[cut.value], bounds[j] if cut.limit is None else values[cut.limit]
+        row = ca.log(value / limit) if rows.log_cuts[j] else (value - limit) / sizes[j]
+        cut_rows.append(-row if cut.sense == "at_least" else row)
+    phi = []
+    for j, goal in enumerate(rows.goals):
+        form_of = ca.log(values[goal.node]) if rows.log_goals[j] else values[goal.node]
+        phi.append(goal.sign * form_of)
+    cut_weights, goal_weights = ca.SX.sym("cuts", len(cut_rows)), ca.SX.sym("goals", len(phi))
+    total = ca.dot(cut_weights, ca.vertcat(*cut_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
+    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], [ca.gradient(total, data)])
+
+    def evaluate(
+        point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray, goals: np.ndarray, k: int
+    ) -> np.ndarray:
+        clean = [1.0 if np.isnan(v) else v for v in known]
+        weights = np.where(np.isfinite(goals), goals, 0.0) / np.where(rows.log_goals, 1.0, form.goal_scales)
+        weights[k] += 1.0
+        found = function(point, clean, form.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
+        slopes: np.ndarray = np.nan_to_num(np.asarray(found).ravel())
+        return slopes
+
+    return evaluate
+
+
+def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which limits that no variable can move are active, and the size of every limit (designs, limits)."""
+    result = form.evaluate(variables, combinations)
+    tight = np.zeros((len(variables), len(form.cuts)), dtype=bool)
+    sizes = np.ones(tight.shape)
+    sides = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
+    sides += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra]
+    for j, (value, limit, sense, scale) in enumerate(sides):
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
+        sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
+        if form.immovable[j]:
+            tight[:, j] = np.abs(residual(value, limit, sense, scale)) < TIGHT
+    return tight, sizes
 
 
 def _speaks_of(form: Formulation, j: int, position: int) -> bool:

@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from synth.batch_nlp import BatchNlp, Solutions, Tasks
 from synth.declaration import Refusal
 from synth.feasibility import holds, residual
 from synth.instance import Instance
-from synth.intervals import Cut, Goal, Propagator
+from synth.intervals import Cut, Goal
 from synth.model import Evaluation
 from synth.nlp import ParametricNlp, Rows, Solution, Task
-from synth.pareto import non_dominated, spread_subset
+from synth.pareto import non_dominated
 from synth.program import Program
+from synth.propagation import Propagation
 
 CHUNK = 4096
 SNAP = 1e-9
@@ -23,17 +25,19 @@ PINNED = 1e-12
 TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
-CAP_POINTS = 150
+CAP_ROWS = 512
+COMPILED_FROM = 5000
 
 
 @dataclass(frozen=True)
 class Boxes:
-    """A batch of boxes: the combination of each, its ends, and lower bounds of the objectives.
+    """A batch of boxes: the cell of combinations of each, its ends, and lower bounds of the objectives.
 
-    ``tag`` tells which of several questions a box belongs to, when they share a batch.
+    ``scores`` tell how much each variable and factor still blurs limits and objectives; ``tag`` which of
+    several questions a box belongs to, when they share a batch.
     """
 
-    combination: np.ndarray
+    cell: np.ndarray
     low: np.ndarray
     high: np.ndarray
     bounds: np.ndarray
@@ -41,28 +45,25 @@ class Boxes:
     tag: np.ndarray
 
     def __len__(self) -> int:
-        return len(self.combination)
+        return len(self.cell)
 
-    def take(self, rows: np.ndarray) -> Boxes:
+    def take(self, rows: np.ndarray | slice) -> Boxes:
         """Return some of the boxes, by mask or positions."""
         return Boxes(
-            self.combination[rows],
-            self.low[rows],
-            self.high[rows],
-            self.bounds[rows],
-            self.scores[rows],
-            self.tag[rows],
+            self.cell[rows], self.low[rows], self.high[rows], self.bounds[rows], self.scores[rows], self.tag[rows]
         )
 
     def tagged(self, tag: int) -> Boxes:
         """Return the same boxes with another tag."""
-        return replace(self, tag=np.full(len(self), tag))
+        return replace(self, tag=np.full(len(self), tag, dtype=np.int32))
 
     @staticmethod
     def joined(batches: Sequence[Boxes]) -> Boxes:
         """Return several batches as one."""
+        if len(batches) == 1:
+            return batches[0]
         return Boxes(
-            np.concatenate([b.combination for b in batches]),
+            np.concatenate([b.cell for b in batches]),
             np.concatenate([b.low for b in batches]),
             np.concatenate([b.high for b in batches]),
             np.concatenate([b.bounds for b in batches]),
@@ -85,14 +86,14 @@ class Archive:
 
     Parameters
     ----------
-    traded : int
-        How many objectives count for dominance.
+    columns : list of int
+        The objectives that count for dominance.
     variables, objectives : int
         Width of the stored rows.
     """
 
-    def __init__(self, traded: int, variables: int, objectives: int) -> None:
-        self.traded = traded
+    def __init__(self, columns: Sequence[int], variables: int, objectives: int) -> None:
+        self.columns = list(columns)
         self.combination = np.empty(0, dtype=np.int64)
         self.variables = np.empty((0, variables))
         self.phi = np.empty((0, objectives))
@@ -108,26 +109,40 @@ class Archive:
 
     def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
         """Take new designs and keep what is not dominated."""
-        if not len(combination):
+        if not len(combination) or combination is self.combination:
             return
         combination = np.concatenate([self.combination, combination])
         variables = np.concatenate([self.variables, variables])
         phi = np.concatenate([self.phi, phi])
-        keep = non_dominated(phi[:, : self.traded])
+        keep = non_dominated(phi[:, self.columns])
         self.combination, self.variables, self.phi = combination[keep], variables[keep], phi[keep]
 
-    def caps(self, lower: np.ndarray) -> np.ndarray:
-        """Return, per box with lower bounds ``lower`` (boxes, objectives), what a design must keep to be of use.
+    def caps(self, lower: np.ndarray, slack: np.ndarray) -> np.ndarray:
+        """Return, per box with lower bounds ``lower`` (boxes, columns), what a design must keep to be of use.
 
-        Cap k is the least value of objective k among the known designs that beat the box in all other objectives.
+        A known design covers what is not better by more than ``slack`` in any objective. Cap k is the least
+        value of objective k, less its slack, among the known designs that cover the box in all other objectives.
         """
-        m = self.traded
+        m = len(self.columns)
         result = np.full(lower.shape, np.inf)
-        known = self.phi[spread_subset(self.phi[:, :m], CAP_POINTS)][:, :m] if len(self) else self.phi[:, :m]
-        for k in range(m if len(known) else 0):
-            others = [j for j in range(m) if j != k]
-            beaten = np.all(known[None, :, others] <= lower[:, None, others], axis=2)
-            result[:, k] = np.where(beaten, known[None, :, k], np.inf).min(axis=1) + TIE
+        known = self.phi[:, self.columns] - slack
+        if not len(known):
+            return result
+        if m == 1:
+            result[:, 0] = known[:, 0].min()
+        elif m == 2:
+            for k in (0, 1):
+                order = np.argsort(known[:, 1 - k], kind="stable")
+                least = np.minimum.accumulate(known[order, k])
+                place = np.searchsorted(known[order, 1 - k], lower[:, 1 - k], side="right")
+                result[:, k] = np.where(place > 0, least[place - 1], np.inf)
+        else:
+            for first in range(0, len(lower), CAP_ROWS):
+                rows = slice(first, first + CAP_ROWS)
+                under = known[None, :, :] <= lower[rows, None, :]
+                for k in range(m):
+                    others = under[:, :, [j for j in range(m) if j != k]].all(axis=2)
+                    result[rows, k] = np.where(others, known[None, :, k], np.inf).min(axis=1)
         return result
 
 
@@ -156,53 +171,77 @@ class Formulation:
         self.cuts = cuts
         self.bounds = [cut.bound for cut in cuts]
         self.traded = traded
-        # Objectives that only settle ties would cost time and mislead the splitting while others are traded off.
-        self._traded_only = Propagator(model.program, self.n, cuts, self.goals[:traded])
-        self._all_goals = Propagator(model.program, self.n, cuts, self.goals)
         self.lower, self.upper = instance.lower, instance.upper
         self.grids = instance.grids()
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
-        self.log_goals = np.zeros(len(self.goals), dtype=bool)
-        self.goal_scales = np.ones(len(self.goals))
         self.immovable = self._immovable()
         self.contracted = 0
+        self.workers = 1
         self.nlp_solves = 0
         self.solved_combinations: set[int] = set()
-        self.archive = Archive(traded, self.n, len(self.goals))
-        self._nlp: ParametricNlp | None = None
-        self._positive_cuts = np.ones(len(cuts), dtype=bool)
-        self._seen_feasible_boxes = False
+        self.archive = Archive(range(traded), self.n, len(self.goals))
+        self._rows: Rows | None = None
+        self.propagation = Propagation(instance, cuts, self.goals, traded)
+        self.cells = self.propagation.cells
+        positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
+        self.log_goals = np.array(positive, dtype=bool)
+        self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
 
     def _immovable(self) -> np.ndarray:
-        """Return which limits depend on no variable that is free to move."""
-        free = [k for k in range(self.n) if self.lower[k] < self.upper[k]]
+        """Return which limits depend on no continuous variable that is free to move."""
+        free = [k for k in range(self.n) if self.lower[k] < self.upper[k] and not self.gridded[k]]
         moving = self.model.program.dependence(free)
         sides = [[k for k in (c.value, c.limit) if k is not None] for c in self.cuts]
         return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
 
     # -- boxes ---------------------------------------------------------------------------------
 
-    def root(self, combinations: np.ndarray, passes: int = 3) -> Boxes:
-        """Return the boxes of the combinations that no bound excludes, over the whole range of the variables."""
-        start = self._start(combinations)
-        return self.contract(start.take(self._not_refused(combinations)), None, passes, every_goal=True)
+    def combination(self, boxes: Boxes) -> np.ndarray:
+        """Return a combination of each box; the only one where its cell is single."""
+        return self.cells.combination(boxes.cell)
+
+    def root(self, passes: int = 3) -> Boxes:
+        """Return the box of everything, tightened; no box where nothing is feasible."""
+        boxes = self._boxes(self.cells.whole())
+        if self.propagation.empty or not self.instance.combinations:
+            return boxes.take(np.zeros(0, dtype=np.int64))
+        return self.contract(boxes, None, passes, every_goal=True)
+
+    def nothing(self) -> Boxes:
+        """Return no boxes."""
+        return self._boxes(self.cells.whole()).take(slice(0, 0))
+
+    def one(self, box: Boxes) -> Boxes:
+        """Return a box with a single combination of its cell (the first)."""
+        digits = [tree.first[box.cell[0, f]] for f, tree in enumerate(self.cells.trees)]
+        return replace(box, cell=self.cells.leaf_of(digits))
+
+    def leaves(self, combinations: np.ndarray, low: np.ndarray | None = None, high: np.ndarray | None = None) -> Boxes:
+        """Return a box per combination, over the whole range of the variables unless ends are given."""
+        digits = self.instance.digits(combinations)
+        leaves = [tree.leaf_of_row[d] for tree, d in zip(self.cells.trees, digits, strict=True)]
+        cell = np.stack(leaves, axis=1) if leaves else np.zeros((len(combinations), 0), dtype=np.int32)
+        boxes = self._boxes(cell)
+        return boxes if low is None or high is None else replace(boxes, low=low, high=high)
 
     def whole(self, combination: int) -> Boxes:
         """Return the box of one combination over the whole range of the variables."""
-        return self._start(np.array([combination], dtype=np.int64))
+        digits = [int(x[0]) for x in self.instance.digits(np.array([combination]))]
+        return self._boxes(self.cells.leaf_of(digits))
 
-    def _start(self, combinations: np.ndarray) -> Boxes:
-        n, m = len(combinations), len(self.goals)
+    def _boxes(self, cell: np.ndarray) -> Boxes:
+        n, m = len(cell), len(self.goals)
         return Boxes(
-            combinations,
-            np.broadcast_to(self.lower, (n, self.n)),
-            np.broadcast_to(self.upper, (n, self.n)),
+            cell,
+            np.broadcast_to(self.propagation.low, (n, self.n)).copy(),
+            np.broadcast_to(self.propagation.high, (n, self.n)).copy(),
             np.full((n, m), -np.inf),
-            np.zeros((n, self.n)),
-            np.zeros(n, dtype=np.int64),
+            np.ones((n, self.n + len(self.cells.trees)), dtype=np.float32),
+            np.zeros(n, dtype=np.int32),
         )
 
-    def _not_refused(self, combinations: np.ndarray) -> np.ndarray:
+    def not_refused(self, combinations: np.ndarray) -> np.ndarray:
+        """Tell which combinations no refusal over several slots forbids."""
         keep = np.ones(len(combinations), dtype=bool)
         for refusal in self.instance.joint_refusals:
             refused = self._refusal_function(refusal)
@@ -215,86 +254,108 @@ class Formulation:
             ("refusal", id(refusal)), lambda: Program(model.inputs, [refusal.when], model.calls).compile()
         )
 
-    def contract(
-        self,
-        boxes: Boxes,
-        caps: np.ndarray | None,
-        passes: int = 3,
-        combine: np.ndarray | None = None,
-        every_goal: bool = False,
-    ) -> Boxes:
+    def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
 
-        ``caps`` bound phi: one row for all boxes, or a row per box. ``combine`` holds multipliers of
-        limits and caps (see ``Propagator``). ``every_goal``: also those objectives that only settle ties.
+        ``caps`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
+        that only settle ties.
         """
+        if len(boxes) <= CHUNK:
+            return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
         kept = []
         for first in range(0, len(boxes), CHUNK):
-            rows = np.arange(first, min(first + CHUNK, len(boxes)))
+            rows = slice(first, min(first + CHUNK, len(boxes)))
             own = caps if caps is None or caps.ndim == 1 else caps[rows]
-            kept.append(self._contract(boxes.take(rows), own, passes, combine, every_goal))
-        return Boxes.joined(kept) if kept else boxes
+            kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
+        return Boxes.joined(kept)
 
-    def _contract(
-        self, boxes: Boxes, caps: np.ndarray | None, passes: int, combine: np.ndarray | None, every_goal: bool
-    ) -> Boxes:
+    def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int, every: bool) -> Boxes:
         self.contracted += len(boxes)
-        data = self.instance.data(boxes.combination)
-        limits = None if caps is None else list(np.moveaxis(self.values_of(caps), -1, 0))
-        if every_goal:
-            result = self._all_goals.contract(boxes.low, boxes.high, data, limits, passes, combine)
-            bounds = np.maximum(result.bounds, boxes.bounds)
-        else:
-            m = self.traded
-            kept = None if combine is None else combine[:, : len(self.cuts) + m]
-            own = None if limits is None else limits[:m]
-            result = self._traded_only.contract(boxes.low, boxes.high, data, own, passes, kept)
-            bounds = boxes.bounds.copy()
-            bounds[:, :m] = np.maximum(bounds[:, :m], result.bounds)
+        values = None if caps is None else self.values_of(caps)
+        packed = self.propagation.packed(
+            boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
+            values, passes, every, (SNAP, PINNED), self.workers,
+        )  # fmt: skip
+        if packed is not None:
+            result = Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
+            return self._without_refused(result) if self.instance.joint_refusals else result
+        limits = None if values is None else list(np.moveaxis(values, -1, 0))
+        found = self.propagation.run(boxes.cell, boxes.low, boxes.high, limits, passes, every)
+        low, high = found.low, found.high
+        alive = found.alive & self._snap(low, high)
+        bounds = boxes.bounds.copy()
+        for j, least in enumerate(found.goals):
+            bounds[:, j] = np.fmax(bounds[:, j], least)
+        scores = self.propagation.scores(boxes.cell, low, high, found.open, len(found.goals))
+        result = Boxes(boxes.cell, low, high, bounds, scores, boxes.tag).take(alive)
+        return self._without_refused(result) if self.instance.joint_refusals else result
+
+    def _without_refused(self, boxes: Boxes) -> Boxes:
+        keep = ~self.cells.single(boxes.cell)
+        single = ~keep
+        keep[single] = self.not_refused(self.combination(boxes.take(single)))
+        return boxes.take(keep)
+
+    def _snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
+        alive = np.ones(len(low), dtype=bool)
         # An active limit loosened by the slack must not cost a grid point or a pinned value.
-        low, high, alive = result.low, result.high, result.alive
-        low, high = np.maximum(low, self.lower), np.minimum(high, self.upper)
+        np.maximum(low, self.lower, out=low)
+        np.minimum(high, self.upper, out=high)
         for k, grid in enumerate(self.grids):
             if len(grid):
                 first = np.searchsorted(grid, low[:, k] * (1 - SNAP) - PINNED)
                 last = np.searchsorted(grid, high[:, k] * (1 + SNAP) + PINNED, side="right") - 1
-                alive = alive & (first <= last)
+                alive &= first <= last
                 low[:, k] = grid[np.minimum(first, len(grid) - 1)]
                 high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
-        alive = alive & ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
-        high = np.maximum(high, low)
-        if alive.any():
-            self._positive_cuts &= result.positive_cuts
-            self._seen_feasible_boxes = True
-        return Boxes(boxes.combination, low, high, bounds, result.scores, boxes.tag).take(alive)
+        alive &= ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
+        np.maximum(high, low, out=high)
+        return alive
+
+    def _splittable(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return widths, 0 where a variable cannot be split any more."""
+        size = np.maximum(np.abs(low), np.abs(high))
+        floor = np.where(self.gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * (self.upper - self.lower)))
+        width = self.propagation.widths(low, high)
+        result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
+        return result
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
-        if not self.n:
-            return boxes.take(np.zeros(0, dtype=np.int64)), boxes
-        width = self._widths(boxes)
-        score = np.where(width > 0, boxes.scores * 1.0, -1.0)
-        # Where no score tells (nothing depends on the box any more, or the slopes are unbounded) the widest is split.
-        flat = ~np.any((score > 1e-9) & (width > 0), axis=1)
-        score[flat] = np.where(width[flat] > 0, width[flat], -1.0)
-        small = ~np.any(width > 0, axis=1)
+        n, count = self.n, len(boxes)
+        can = np.zeros((count, n + len(self.cells.trees)), dtype=bool)
+        width = self._splittable(boxes.low, boxes.high)
+        can[:, :n] = width > 0
+        for f, tree in enumerate(self.cells.trees):
+            can[:, n + f] = ~tree.leaf[boxes.cell[:, f]]
+        score = np.where(can, boxes.scores, -1.0)
+        factors = len(self.cells.trees)
+        # Where no score tells (nothing depends on the box any more) parts are told apart first, then the widest.
+        flat = ~np.any(score > 1e-9, axis=1)
+        if flat.any():
+            parts = np.full((int(flat.sum()), factors), 1e3)
+            score[flat] = np.where(can[flat], np.concatenate([width[flat], parts], axis=1), -1.0)
+        small = ~np.any(can, axis=1)
         rest, whole = boxes.take(small), boxes.take(~small)
-        variable = np.argmax(score[~small], axis=1)
+        choice = np.argmax(score[~small], axis=1)
         rows = np.arange(len(whole))
-        low, high = whole.low[rows, variable], whole.high[rows, variable]
-        left_end, right_start = self._middle(variable, low, high)
-        left, right = whole.high.copy(), whole.low.copy()
-        left[rows, variable], right[rows, variable] = left_end, right_start
-        halves = Boxes.joined([replace(whole, high=left), replace(whole, low=right)])
+        left_cell, right_cell = whole.cell.copy(), whole.cell.copy()
+        left_high, right_low = whole.high.copy(), whole.low.copy()
+        by_variable = choice < n
+        if by_variable.any():
+            own, variable = rows[by_variable], choice[by_variable]
+            left_end, right_start = self._middle(variable, whole.low[own, variable], whole.high[own, variable])
+            left_high[own, variable], right_low[own, variable] = left_end, right_start
+        for f, tree in enumerate(self.cells.trees):
+            own = rows[choice == n + f]
+            if len(own):
+                clusters = whole.cell[own, f]
+                left_cell[own, f], right_cell[own, f] = tree.left[clusters], tree.right[clusters]
+        halves = Boxes.joined([
+            replace(whole, cell=left_cell, high=left_high), replace(whole, cell=right_cell, low=right_low)
+        ])  # fmt: skip
         return halves, rest
-
-    def _widths(self, boxes: Boxes) -> np.ndarray:
-        """Return relative widths, 0 where a variable cannot be split any more."""
-        size = np.maximum(np.abs(boxes.low), np.abs(boxes.high))
-        span = boxes.high - boxes.low
-        floor = np.where(self.gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * (self.upper - self.lower)))
-        with np.errstate(all="ignore"):
-            return np.where(span > floor, span / np.maximum(size, 1e-300), 0.0)
 
     def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         with np.errstate(all="ignore"):
@@ -310,19 +371,6 @@ class Formulation:
         return left, right
 
     # -- objectives ----------------------------------------------------------------------------
-
-    def settle_objectives(self, boxes: Boxes) -> None:
-        """Decide, from the root boxes, which objectives are surely positive and enter by logarithm."""
-        smallest = boxes.bounds.min(axis=0)
-        signs = np.array([goal.sign for goal in self.goals])
-        self.log_goals = (smallest > 0) & (signs > 0)
-        sample = boxes.take(np.linspace(0, len(boxes) - 1, min(len(boxes), 200)).astype(int))
-        result = self.evaluate(0.5 * (sample.low + sample.high), sample.combination)
-        for j, name in enumerate(self.names):
-            sizes = np.abs(result.values[name])
-            sizes = sizes[np.isfinite(sizes) & (sizes > 0)]
-            self.goal_scales[j] = 1.0 if self.log_goals[j] or not len(sizes) else float(np.median(sizes))
-        self._nlp = None
 
     def values_of(self, phi: np.ndarray) -> np.ndarray:
         """Return signed objective values for phi."""
@@ -341,22 +389,31 @@ class Formulation:
         """Evaluate a batch of designs."""
         return self.model.evaluate(variables, self.instance.data(np.asarray(combinations)))
 
-    def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
+    def candidates(self, variables: np.ndarray, combinations: np.ndarray, exact: bool = False) -> list[Candidate]:
         """Return those of the points that are feasible, and keep them in the archive."""
-        rows, phi = self._feasible(variables, combinations)
+        rows, phi = self.feasible_rows(variables, combinations, exact)
         self.archive.add(combinations[rows], variables[rows], phi[rows])
         return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
 
     def feasible_points(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
         """Return those of the points that are feasible."""
-        rows, phi = self._feasible(variables, combinations)
+        rows, phi = self.feasible_rows(variables, combinations)
         return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
 
-    def _feasible(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def feasible_rows(
+        self, variables: np.ndarray, combinations: np.ndarray, exact: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the positions of the feasible points, and phi of all points.
+
+        The search keeps limits more closely than feasibility asks for, so that designs do not live off the tolerance;
+        ``exact`` points could not be chosen otherwise and need not.
+        """
+        if not len(combinations):
+            return np.empty(0, dtype=np.int64), np.empty((0, len(self.goals)))
         result = self.evaluate(variables, combinations)
-        feasible = result.feasible & self._not_refused(combinations)
+        feasible = result.feasible & self.not_refused(combinations)
         for limit, fixed in zip(self.model.limits, self.immovable, strict=False):
-            if not fixed:
+            if not fixed and not exact:
                 r = result.residuals[limit.name]
                 feasible = feasible & (np.isnan(r) | (r <= SEARCH_TOLERANCE))
         feasible = feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
@@ -369,13 +426,13 @@ class Formulation:
         phi = self.phi_of(signed)
         return np.flatnonzero(feasible & np.all(np.isfinite(phi), axis=1)), phi
 
-    def sample(self, boxes: Boxes, count: int, rng: np.random.Generator) -> None:
-        """Evaluate ``count`` random makeable points per box and keep the feasible ones in the archive."""
+    def sample(self, boxes: Boxes, rng: np.random.Generator) -> None:
+        """Evaluate a random makeable point of a random combination of every box; what is feasible is archived."""
         for first in range(0, len(boxes), CHUNK):
-            part = boxes.take(np.arange(first, min(first + CHUNK, len(boxes))))
-            for _ in range(count):
-                share = rng.random((len(part), self.n))
-                self.candidates(self.makeable(self.inside(part, share)), part.combination)
+            part = boxes.take(slice(first, first + CHUNK))
+            share = rng.random((len(part), self.n))
+            combinations = self.cells.combination(self.cells.random_leaves(part.cell, rng))
+            self.candidates(self.makeable(self.inside(part, share)), combinations)
 
     def inside(self, boxes: Boxes, share: np.ndarray | float) -> np.ndarray:
         """Return points inside boxes: share 0 is the lower, 1 the upper end; by ratio where positive."""
@@ -402,7 +459,7 @@ class Formulation:
         share = rng.random((count, self.n))
         share[0] = 0.5
         points = self.inside(many, share)
-        result = self.evaluate(points, many.combination)
+        result = self.evaluate(points, self.combination(many))
         worst = np.zeros(count)
         for limit in self.model.limits:
             r = result.residuals[limit.name]
@@ -415,21 +472,75 @@ class Formulation:
 
     # -- the continuous problem ----------------------------------------------------------------
 
-    def nlp(self) -> ParametricNlp:
-        """Return the NLP of this question; built once per model and set of rows."""
-        if self._nlp is None:
-            # Where no box is left, nothing proves a sign, and logarithms would not exist.
-            positive = self._positive_cuts & self._seen_feasible_boxes
-            log_variables = tuple(bool(x > 0) for x in self.lower)
-            rows = Rows(
+    def _both_positive(self, cut: Cut) -> bool:
+        positive = self.propagation.surely_positive
+        # Where nothing is feasible nothing proves a sign, and logarithms would not exist.
+        right = cut.bound > 0 if cut.limit is None else positive(cut.limit)
+        return not self.propagation.empty and positive(cut.value) and right
+
+    def rows(self) -> Rows:
+        """Return what a solver knows of limits and objectives."""
+        if self._rows is None:
+            self._rows = Rows(
                 cuts=tuple(replace(c, bound=0.0) for c in self.cuts),
                 goals=tuple(self.goals),
-                log_cuts=tuple(bool(p) and c.sense != "equal" for p, c in zip(positive, self.cuts, strict=True)),
+                log_cuts=tuple(c.sense != "equal" and self._both_positive(c) for c in self.cuts),
                 log_goals=tuple(bool(x) for x in self.log_goals),
-                log_variables=log_variables,
+                log_variables=tuple(bool(x > 0) for x in self.lower),
             )
-            self._nlp = self.model.function(rows, lambda: ParametricNlp(self.model.program, self.n, rows))
-        return self._nlp
+        return self._rows
+
+    def nlp(self) -> ParametricNlp:
+        """Return the NLP of this question for one design at a time (IPOPT); built once per model and set of rows."""
+        rows = self.rows()
+        made: ParametricNlp = self.model.function(
+            ("nlp", rows), lambda: ParametricNlp(self.model.program, self.n, rows)
+        )
+        return made
+
+    def batch_nlp(self) -> BatchNlp:
+        """Return the NLP of this question for many designs at once; built once per model and set of rows."""
+        rows = self.rows()
+        # Compiling pays for large questions only. What decides is the question, not what happens to be compiled
+        # already: the same question always goes the same way, to the last digit.
+        native = None if self.instance.combinations >= COMPILED_FROM else False
+        made: BatchNlp = self.model.function(
+            ("batch", rows, native), lambda: BatchNlp(self.model.program, self.n, rows, native)
+        )
+        return made
+
+    def solve_many(
+        self,
+        tasks: Tasks,
+        combinations: np.ndarray,
+        start: np.ndarray,
+        low: np.ndarray | None = None,
+        high: np.ndarray | None = None,
+        skipped: np.ndarray | None = None,
+    ) -> Solutions:
+        """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
+
+        ``skipped`` marks limits that are left out.
+        """
+        count = len(combinations)
+        data = self.instance.data(combinations)
+        self.solved_combinations.update(np.unique(combinations).tolist())
+        self.nlp_solves += count
+        low = np.broadcast_to(self.lower, (count, self.n)) if low is None else low
+        high = np.broadcast_to(self.upper, (count, self.n)) if high is None else high
+        void = self.void(data, count) if skipped is None else self.void(data, count) | skipped
+        found = self.batch_nlp().solve(tasks, data, np.clip(start, low, high), low, high, self.bounds, void)
+        prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
+        self.propagation.learn(prices[found.converged])
+        return found
+
+    def void(self, data: Sequence[Any], count: int) -> np.ndarray:
+        """Return which limits do not count for which designs (designs, limits): a column has no value."""
+        void = np.zeros((count, len(self.cuts)), dtype=bool)
+        for j, limit in enumerate(self.model.limits):
+            for k in self.model.void_inputs[limit.name]:
+                void[:, j] |= np.isnan(np.asarray(data[k], dtype=float))
+        return void
 
     def solve(
         self,
@@ -445,7 +556,5 @@ class Formulation:
         data = [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.array([combination]))]
         self.solved_combinations.add(combination)
         self.nlp_solves += 1
-        void = np.zeros(len(self.cuts), dtype=bool) if skipped is None else skipped.copy()
-        for j, limit in enumerate(self.model.limits):
-            void[j] |= any(np.isnan(data[k]) for k in self.model.void_inputs[limit.name])
+        void = self.void(data, 1)[0] if skipped is None else skipped | self.void(data, 1)[0]
         return self.nlp().solve(task, data, start, low, high, self.bounds, void, gradient)

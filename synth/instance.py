@@ -536,6 +536,14 @@ class Instance:
                 result.append(values[entry.name])
         return result
 
+    def column(self, position: int) -> np.ndarray:
+        """Return data input number ``position`` for every alternative of the slot, count or choice it belongs to."""
+        entry = self.model.data_inputs[position]
+        for slot in self.selection.slots:
+            if slot.slot == entry.name:
+                return slot.columns["|".join(entry.columns)]
+        return (self.selection.counts | self.selection.choices)[entry.name]
+
     def describe(self, combination: int) -> tuple[dict[str, tuple[Table, int]], dict[str, float], dict[str, str]]:
         """Return parts (table and row), counts and choices of one combination."""
         digits = [int(x[0]) for x in self.digits(np.array([combination]))]

@@ -1,11 +1,9 @@
-"""Interval propagation over a traced program: what cannot be feasible, for many boxes at once.
+"""The rules of interval arithmetic for traced programs, for many boxes at once.
 
-Every node of the program gets an interval per box. Limits cut the intervals of their two sides
-(forward), the cuts are carried back to the variables (backward). This is forward-backward bound
-tightening on the expression graph (Schichl and Neumaier 2005, "Interval analysis on directed
-acyclic graphs for global optimization"). On top of it, derivative intervals tell in which
-variables a limit or objective is monotone over a box; its bound is then taken at the best corner,
-with a mean-value correction for the variables whose sign is not proven.
+``FORWARD`` gives the interval of a node from those of its arguments, ``BACKWARD`` what the interval of a
+node says of its arguments. Together they are forward-backward bound tightening on the expression graph
+(Schichl and Neumaier 2005, "Interval analysis on directed acyclic graphs for global optimization"), which
+:mod:`synth.contractor` carries out.
 
 Not-a-number stands for "nothing known" and never excludes a box. Intervals are not rounded
 outward: limits are loosened by ``SLACK``, which is far above rounding and twice the tolerance of
@@ -14,14 +12,14 @@ feasibility.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from synth.program import COMPARISONS, OP_SELECT, OP_SPECIAL, Node, Program
+from synth.program import OP_SELECT
 
 SLACK = 2e-6
 ROUNDING = 1e-8
@@ -68,7 +66,7 @@ def _mul(a: Interval, b: Interval) -> Interval:
 
 
 def _inv(a: Interval) -> Interval:
-    low, high = a
+    low, high = np.asarray(a[0]), np.asarray(a[1])  # a plain zero would raise where an array gives infinity
     if _surely_above(low):
         return 1.0 / high, 1.0 / low
     positive, negative = low >= 0, high <= 0
@@ -126,10 +124,11 @@ def _pow(a: Interval, b: Interval) -> Interval:
                 return p, q
             return np.where((a[0] <= 0) & (a[1] >= 0), 0.0, np.minimum(p, q)), np.maximum(p, q)
         return _inv(_pow(a, (-exponent, -exponent)))
-    return _whole(a, b)
+    return whole(a, b)
 
 
-def _whole(*parts: Interval) -> Interval:
+def whole(*parts: Interval) -> Interval:
+    """Return the interval of all numbers, in the shape of some others."""
     size = sum(p[0] for p in parts) * 0.0
     return size - np.inf, size + np.inf
 
@@ -344,76 +343,7 @@ BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
 }
 
 
-# -- derivative intervals ----------------------------------------------------------------------
-
-
-def _positive_part(a: Interval) -> Interval:
-    return np.maximum(a[0], 0.0), np.maximum(a[1], 0.0)
-
-
-def _hull_zero(a: Interval) -> Interval:
-    return np.fmin(a[0], 0.0), np.fmax(a[1], 0.0)
-
-
-def _local_slopes(op: int, r: Interval, args: Sequence[Interval]) -> tuple[Interval | None, ...]:
-    """Return the interval of d(node)/d(argument) per argument; None where it is not bounded."""
-    one = (1.0, 1.0)
-    if op == ca.OP_ADD:
-        return one, one
-    if op == ca.OP_SUB:
-        return one, (-1.0, -1.0)
-    if op == ca.OP_MUL:
-        return args[1], args[0]
-    if op == ca.OP_DIV:
-        inverse = _inv(args[1])
-        return inverse, _neg(_mul(r, inverse))
-    if op == ca.OP_NEG:
-        return ((-1.0, -1.0),)
-    if op == ca.OP_TWICE:
-        return ((2.0, 2.0),)
-    a = args[0]
-    if op == ca.OP_SQ:
-        return ((2.0 * a[0], 2.0 * a[1]),)
-    if op == ca.OP_INV:
-        return (_neg(_sq(r)),)
-    if op == ca.OP_EXP:
-        return (r,)
-    if op == ca.OP_EXPM1:
-        return ((r[0] + 1.0, r[1] + 1.0),)
-    if op == ca.OP_LOG:
-        return (_inv(_positive_part(a)),)
-    if op == ca.OP_LOG1P:
-        return (_inv(_positive_part((a[0] + 1.0, a[1] + 1.0))),)
-    if op == ca.OP_SQRT:
-        return (_inv((2.0 * r[0], 2.0 * r[1])),)
-    if op in (ca.OP_POW, ca.OP_CONSTPOW) and np.ndim(args[1][0]) == 0 and np.all(args[1][0] == args[1][1]):
-        n = args[1][0]
-        return _mul((n, n), _pow(a, (n - 1.0, n - 1.0))), None
-    if op == ca.OP_SIN:
-        return (FORWARD[ca.OP_COS](a),)
-    if op == ca.OP_COS:
-        return (_neg(FORWARD[ca.OP_SIN](a)),)
-    if op == ca.OP_TAN:
-        s = _sq(r)
-        return ((1.0 + s[0], 1.0 + s[1]),)
-    if op == ca.OP_ATAN:
-        s = _sq(a)
-        return (_inv((1.0 + s[0], 1.0 + s[1])),)
-    if op == ca.OP_TANH:
-        s = _sq(r)
-        return ((1.0 - s[1], 1.0 - s[0]),)
-    if op == ca.OP_FABS:
-        return ((np.where(a[0] >= 0, 1.0, -1.0), np.where(a[1] <= 0, -1.0, 1.0)),)
-    if op == ca.OP_FMAX:
-        first = _le(args[1], args[0])  # 1 where surely the first is the larger, up to 1 where it may be
-        return first, (1.0 - first[1], 1.0 - first[0])
-    if op == ca.OP_FMIN:
-        first = _le(args[0], args[1])
-        return first, (1.0 - first[1], 1.0 - first[0])
-    if op in COMPARISONS:
-        undecided = ~(r[0] == r[1])  # there the value jumps
-        return tuple((np.where(undecided, -np.inf, 0.0), np.where(undecided, np.inf, 0.0)) for _ in args)
-    return tuple(None for _ in args)
+# -- limits and objectives ---------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -434,444 +364,6 @@ class Goal:
 
     node: int
     sign: int = 1
-
-
-@dataclass(frozen=True)
-class Tightened:
-    """Boxes after propagation.
-
-    ``alive`` is False where nothing feasible can be (the other rows are then meaningless);
-    ``bounds`` are lower bounds of the objectives (with their sign), ``scores`` tell how much each
-    variable still blurs limits and objectives: the one to split. ``positive_cuts`` tells, per limit,
-    whether both sides are surely positive in every box that is alive.
-    """
-
-    alive: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    bounds: np.ndarray
-    scores: np.ndarray
-    positive_cuts: np.ndarray
-
-
-class Propagator:
-    """Interval propagation of one program for batches of boxes.
-
-    Parameters
-    ----------
-    program : Program
-        Inputs are the variables first, then the data of the combination.
-    n_variables : int
-        How many of the inputs are variables.
-    cuts : list of Cut
-        Limits that must hold.
-    objectives : list of Goal
-        The objectives.
-    """
-
-    def __init__(self, program: Program, n_variables: int, cuts: Sequence[Cut], objectives: Sequence[Goal]) -> None:
-        self.program = program
-        self.n_variables = n_variables
-        self.cuts = list(cuts)
-        self.objectives = list(objectives)
-        wanted = [c.value for c in cuts] + [c.limit for c in cuts if c.limit is not None]
-        wanted += [goal.node for goal in objectives]
-        self.dependent = program.dependence(range(n_variables))
-        needed = program.needed(wanted)
-        self.order = [k for k in needed if self.dependent[k] and program.nodes[k].op != ca.OP_INPUT]
-        read = {a for k in self.order for a in program.nodes[k].args} | set(wanted)
-        self.fixed = sorted(k for k in read if not self.dependent[k])
-        self._fixed_values = program.compile(self.fixed)
-        self.variables = program.input_nodes[:n_variables]
-        self._cuts_at: dict[int, list[Cut]] = {}
-        for cut in self.cuts:
-            sides = [k for k in (cut.value, cut.limit) if k is not None and self.dependent[k]]
-            self._cuts_at.setdefault(max(sides or [self.fixed[-1]]), []).append(cut)
-        self._goals_at: dict[int, list[int]] = {}
-        for j, goal in enumerate(self.objectives):
-            self._goals_at.setdefault(goal.node, []).append(j)
-        self._uses = {k: self._variable_uses(k) for k in wanted if self.dependent[k]}
-        self._evaluators: dict[int, Callable[[Sequence[Any]], list[Any]]] = {}
-
-    def _variable_uses(self, node: int) -> list[int]:
-        needed = set(self.program.needed([node]))
-        return [i for i, k in enumerate(self.variables) if k in needed]
-
-    def data(self, inputs: Sequence[Any]) -> list[Any]:
-        """Compute all nodes that depend on the combination only, from the data inputs."""
-        return self._fixed_values([None] * self.n_variables + list(inputs))
-
-    def contract(
-        self,
-        low: np.ndarray,
-        high: np.ndarray,
-        inputs: Sequence[Any],
-        caps: Sequence[Any] | None = None,
-        passes: int = 2,
-        combine: np.ndarray | None = None,
-    ) -> Tightened:
-        """Tighten boxes and bound the objectives.
-
-        Parameters
-        ----------
-        low, high : array (boxes, variables)
-            The boxes.
-        inputs : list of arrays (boxes,) or numbers
-            Data of the combination of each box.
-        caps : list, optional
-            Upper bounds of the objectives (with their sign), one number or array each.
-        passes : int
-            Forward-backward sweeps.
-        combine : array (vectors, limits + objectives), optional
-            Multipliers, each row a sum of limits and objective caps that must hold together.
-        """
-        n = len(low)
-        alive = np.ones(n, dtype=bool)
-        low, high = low.copy(), high.copy()
-        bounds = np.full((n, len(self.objectives)), -np.inf)
-        scores = np.zeros((n, self.n_variables))
-        with np.errstate(all="ignore"):
-            fixed = self.data(inputs)
-            box: _Box | None = None
-            for sweep in range(passes):
-                box = self._forward(low, high, fixed, caps, alive, box)
-                if sweep == passes - 1:
-                    free = self._free(box, fixed)
-                    slopes = self._slopes(free)
-                    self._corner_cuts(box, slopes, inputs, alive)
-                    self._score(box, slopes, scores)
-                    if combine is not None and caps is not None and len(combine):
-                        self._combined_cuts(box, slopes, inputs, caps, combine, alive)
-                for j, goal in enumerate(self.objectives):
-                    least = box.low[goal.node] if goal.sign > 0 else -box.high[goal.node]
-                    bounds[:, j] = np.fmax(bounds[:, j], least)
-                self._backward(box, alive)
-                for i, k in enumerate(self.variables):
-                    low[:, i] = np.fmax(low[:, i], box.low[k])
-                    high[:, i] = np.fmin(high[:, i], box.high[k])
-            positive = np.ones(len(self.cuts), dtype=bool)
-            for j, cut in enumerate(self.cuts):
-                positive[j] = box is not None and self._surely_positive(cut, box, alive)
-        return Tightened(alive, low, np.maximum(high, low), bounds, scores, positive)
-
-    @staticmethod
-    def _surely_positive(cut: Cut, box: _Box, alive: np.ndarray) -> bool:
-        sides = [box.low[cut.value], cut.bound if cut.limit is None else box.low[cut.limit]]
-        # Void sides (not-a-number) do not count.
-        return all(bool(np.all((np.asarray(side) > 0) | np.isnan(side) | ~alive)) for side in sides)
-
-    def _forward(
-        self,
-        low: np.ndarray,
-        high: np.ndarray,
-        fixed: list[Any],
-        caps: Sequence[Any] | None,
-        alive: np.ndarray,
-        before: _Box | None,
-    ) -> _Box:
-        """Compute all intervals from the boxes; what an earlier sweep knew of a node stays known."""
-        box = _Box(len(self.program.nodes))
-        for k, value in zip(self.fixed, fixed, strict=True):
-            box.low[k] = box.high[k] = np.asarray(value, dtype=float)
-        for i, k in enumerate(self.variables):
-            box.low[k], box.high[k] = low[:, i], high[:, i]
-        for k in [*self.fixed, *self.variables]:
-            self._cut_node(box, k, caps, alive)
-        for k in self.order:
-            self._compute(box, k)
-            if before is not None:
-                box.cut(k, (before.low[k], before.high[k]), alive)
-            self._cut_node(box, k, caps, alive)
-        return box
-
-    def _free(self, cut: _Box, fixed: list[Any]) -> _Box:
-        """Compute the intervals over the boxes without any limit.
-
-        A slope is used along a line from one point of the box to another, and the points between
-        need not keep the limits: so its interval must not know of them.
-        """
-        box = _Box(len(self.program.nodes))
-        for k, value in zip(self.fixed, fixed, strict=True):
-            box.low[k] = box.high[k] = np.asarray(value, dtype=float)
-        for k in self.variables:
-            box.low[k], box.high[k] = cut.low[k], np.maximum(cut.high[k], cut.low[k])
-        for k in self.order:
-            self._compute(box, k)
-        return box
-
-    def _compute(self, box: _Box, k: int) -> None:
-        """Set the interval of a node from those of its arguments."""
-        node = self.program.nodes[k]
-        args = [(box.low[a], box.high[a]) for a in node.args]
-        if node.op == OP_SPECIAL:
-            box.low[k], box.high[k] = self._special(node, args)
-        else:
-            forward = FORWARD.get(node.op)
-            box.low[k], box.high[k] = forward(*args) if forward else _whole(*args)
-
-    def _special(self, node: Node, args: Sequence[Interval]) -> Interval:
-        """Return the range of a special function: it is monotone in every argument."""
-        function = self.program.specials[int(node.constant)]
-        rising = [low >= 0 for low, _ in function.elasticity]
-        least = function.formula(*[a[0] if up else a[1] for a, up in zip(args, rising, strict=True)])
-        most = function.formula(*[a[1] if up else a[0] for a, up in zip(args, rising, strict=True)])
-        inside = np.logical_and.reduce(np.broadcast_arrays(*[a[0] >= 0 for a in args]))
-        return np.where(inside, least, -np.inf), np.where(inside, most, np.inf)
-
-    def _special_slopes(self, node: Node, r: Interval, args: Sequence[Interval]) -> tuple[Interval | None, ...]:
-        elasticity = self.program.specials[int(node.constant)].elasticity
-        return tuple(_mul(e, _div(r, _positive_part(a))) for e, a in zip(elasticity, args, strict=True))
-
-    def _cut_node(self, box: _Box, k: int, caps: Sequence[Any] | None, alive: np.ndarray) -> None:
-        if caps is not None:
-            for j in self._goals_at.get(k, ()):
-                if self.objectives[j].sign > 0:
-                    box.cut_high(k, caps[j], alive)
-                else:
-                    box.cut_low(k, -np.asarray(caps[j]), alive)
-        for cut in self._cuts_at.get(k, ()):
-            v, b = cut.value, cut.limit
-            low, high = (cut.bound, cut.bound) if b is None else (box.low[b], box.high[b])
-            if cut.sense in ("at_most", "equal"):
-                box.cut_high(v, loosened(high, cut.scale, +1), alive)
-                if b is not None and self.dependent[b]:
-                    box.cut_low(b, loosened(box.low[v], cut.scale, -1), alive)
-            if cut.sense in ("at_least", "equal"):
-                box.cut_low(v, loosened(low, cut.scale, -1), alive)
-                if b is not None and self.dependent[b]:
-                    box.cut_high(b, loosened(box.high[v], cut.scale, +1), alive)
-
-    def _backward(self, box: _Box, alive: np.ndarray) -> None:
-        for k in reversed(self.order):
-            node = self.program.nodes[k]
-            backward = BACKWARD.get(node.op)
-            if backward is None or not box.tightened[k]:
-                continue
-            args = [(box.low[a], box.high[a]) for a in node.args]
-            for a, bounds in zip(node.args, backward((box.low[k], box.high[k]), *args), strict=True):
-                if bounds is not None and self.dependent[a]:
-                    box.cut(a, bounds, alive)
-
-    def _slopes(self, box: _Box) -> list[list[Interval | None]]:
-        """Return, per node, the interval of its derivative to each variable (None: identically zero)."""
-        n = self.n_variables
-        slopes: list[list[Interval | None]] = [[None] * n for _ in self.program.nodes]
-        # A variable that no box leaves open needs no slope: it cannot move.
-        moving = [i for i, k in enumerate(self.variables) if np.any(box.high[k] > box.low[k])]
-        for i in moving:
-            slopes[self.variables[i]][i] = (1.0, 1.0)
-        for k in self.order:
-            node = self.program.nodes[k]
-            args = [(box.low[a], box.high[a]) for a in node.args]
-            if node.op in (ca.OP_IF_ELSE_ZERO, OP_SELECT):
-                self._slopes_of_where(slopes, k, node.args, args)
-                continue
-            own = (box.low[k], box.high[k])
-            local = (
-                self._special_slopes(node, own, args) if node.op == OP_SPECIAL else _local_slopes(node.op, own, args)
-            )
-            for i in moving:
-                total: Interval | None = None
-                for a, slope in zip(node.args, local, strict=True):
-                    inner = slopes[a][i]
-                    if inner is None or not self.dependent[a]:
-                        continue
-                    term = _whole(inner) if slope is None else _mul(slope, inner)
-                    total = term if total is None else _add(total, term)
-                slopes[k][i] = total
-        return slopes
-
-    def _slopes_of_where(
-        self, slopes: list[list[Interval | None]], k: int, nodes: Sequence[int], args: Sequence[Interval]
-    ) -> None:
-        # Where the condition is undecided over the box the value may jump, so nothing is known there.
-        sure, never = args[0][0] > 0.5, args[0][1] < 0.5
-        zero = (0.0, 0.0)
-        for i in range(self.n_variables):
-            pieces = [slopes[a][i] for a in nodes]
-            if all(piece is None for piece in pieces):
-                continue
-            yes = pieces[1] or zero
-            no = (pieces[2] or zero) if len(pieces) == 3 else zero
-            if not self.dependent[nodes[0]]:
-                never = ~sure
-            slopes[k][i] = (
-                np.where(sure, yes[0], np.where(never, no[0], -np.inf)),
-                np.where(sure, yes[1], np.where(never, no[1], np.inf)),
-            )
-
-    def _corner_cuts(
-        self, box: _Box, slopes: list[list[Interval | None]], inputs: Sequence[Any], alive: np.ndarray
-    ) -> None:
-        for cut in self.cuts:
-            both_move = cut.limit is not None and self.dependent[cut.limit]
-            if both_move or not self.dependent[cut.value]:
-                continue  # two moving sides are left to the propagation
-            if cut.sense in ("at_most", "equal"):
-                box.cut_low(cut.value, self._corner(cut.value, -1, box, slopes, inputs), alive)
-            if cut.sense in ("at_least", "equal"):
-                box.cut_high(cut.value, self._corner(cut.value, +1, box, slopes, inputs), alive)
-        for goal in self.objectives:
-            if not self.dependent[goal.node]:
-                continue
-            extreme = self._corner(goal.node, -goal.sign, box, slopes, inputs)
-            if goal.sign > 0:
-                box.cut_low(goal.node, extreme, alive)
-            else:
-                box.cut_high(goal.node, extreme, alive)
-
-    def _combined_cuts(
-        self,
-        box: _Box,
-        slopes: list[list[Interval | None]],
-        inputs: Sequence[Any],
-        caps: Sequence[Any],
-        combine: np.ndarray,
-        alive: np.ndarray,
-    ) -> None:
-        """Drop boxes where a weighted sum of limits and caps cannot hold.
-
-        Each row g <= 0 lies, by the mean-value theorem, above g(centre) + slope (u - centre) with the slope in
-        its interval over the box; so does any sum with multipliers. With the multipliers of an optimum the
-        slopes of the sum nearly cancel, and the bound is good to second order in the width of the box. Any
-        multipliers are valid; bad ones only drop nothing.
-        """
-        wanted = np.flatnonzero(np.any(combine != 0, axis=0))
-        centre = [0.5 * (box.low[k] + box.high[k]) for k in self.variables]
-        half = [0.5 * (box.high[k] - box.low[k]) for k in self.variables]
-        rows = [self._row(int(j), caps) for j in wanted]
-        nodes = sorted({node for row in rows for node in row.nodes})
-        key = -1 - hash(tuple(nodes))
-        if key not in self._evaluators:
-            self._evaluators[key] = self.program.compile(nodes)
-        at_centre = dict(zip(nodes, self._evaluators[key]([*centre, *inputs]), strict=True))
-        for multipliers in combine[:, wanted]:
-            total: Any = 0.0
-            slope_low: list[Any] = [0.0] * self.n_variables
-            slope_high: list[Any] = [0.0] * self.n_variables
-            for weight, row in zip(multipliers, rows, strict=True):
-                if weight == 0.0:
-                    continue
-                size = np.maximum(np.abs(row.size(box)), row.scale)
-                factor = weight / size
-                value = sum(sign * at_centre[node] for node, sign in zip(row.nodes, row.signs, strict=True))
-                total = total + np.where(np.isfinite(size), factor * (value + row.constant), np.nan)
-                for node, sign in zip(row.nodes, row.signs, strict=True):
-                    for i in range(self.n_variables):
-                        slope = slopes[node][i]
-                        if slope is not None:
-                            a, b = factor * sign * slope[0], factor * sign * slope[1]
-                            slope_low[i] = slope_low[i] + np.minimum(a, b)
-                            slope_high[i] = slope_high[i] + np.maximum(a, b)
-            for i in range(self.n_variables):
-                steepest = np.maximum(np.abs(slope_low[i]), np.abs(slope_high[i]))
-                total = total - np.where(half[i] > 0, steepest * half[i], 0.0)
-            alive &= ~(total > 2 * SLACK * np.abs(multipliers).sum())
-
-    def _row(self, j: int, caps: Sequence[Any]) -> _Row:
-        """Return limit or objective cap number j as a sum of nodes and a constant that must not be positive."""
-        if j >= len(self.cuts):
-            goal = self.objectives[j - len(self.cuts)]
-            cap = caps[j - len(self.cuts)]
-            return _Row((goal.node,), (float(goal.sign),), -np.asarray(cap), None, np.asarray(cap), 1e-300)
-        cut = self.cuts[j]
-        sign = -1.0 if cut.sense == "at_least" else 1.0
-        if cut.limit is None:
-            return _Row((cut.value,), (sign,), -sign * cut.bound, None, np.asarray(cut.bound), cut.scale)
-        return _Row((cut.value, cut.limit), (sign, -sign), 0.0, cut.limit, None, cut.scale)
-
-    def _score(self, box: _Box, slopes: list[list[Interval | None]], scores: np.ndarray) -> None:
-        """Add up, per variable, how far limits that are undecided and objectives spread over the box."""
-
-        def spread(node: int, size: Any, counts: Any) -> None:
-            for i in self._uses.get(node, ()):
-                slope, k = slopes[node][i], self.variables[i]
-                if slope is None:
-                    continue
-                steepest = np.fmax(np.abs(slope[0]), np.abs(slope[1]))
-                width = np.minimum(steepest * (box.high[k] - box.low[k]) / size, 1e3)
-                scores[:, i] = np.fmax(scores[:, i], np.where(counts, width, 0.0))
-
-        for cut in self.cuts:
-            low, high = box.low[cut.value], box.high[cut.value]
-            least, most = (cut.bound, cut.bound) if cut.limit is None else (box.low[cut.limit], box.high[cut.limit])
-            open_above = (high > least) if cut.sense in ("at_most", "equal") else False
-            open_below = (low < most) if cut.sense in ("at_least", "equal") else False
-            size = np.maximum(np.maximum(np.abs(least), np.abs(most)), cut.scale)
-            for node in (cut.value, cut.limit):
-                if node is not None:
-                    spread(node, size, open_above | open_below)
-        for goal in self.objectives:
-            size = np.maximum(np.maximum(np.abs(box.low[goal.node]), np.abs(box.high[goal.node])), 1e-300)
-            spread(goal.node, size, True)
-
-    def _corner(self, k: int, side: int, box: _Box, slopes: list[list[Interval | None]], inputs: Sequence[Any]) -> Any:
-        """Return the bound of node k over the box: least value for side -1, largest for +1."""
-        point: list[Any] = [None] * self.n_variables
-        correction: Any = 0.0
-        for i in self._uses[k]:
-            low, high = box.low[self.variables[i]], box.high[self.variables[i]]
-            slope = slopes[k][i]
-            if slope is None:
-                point[i] = low
-                continue
-            rising, falling = slope[0] >= 0, slope[1] <= 0
-            # A variable of unproven sign is put in the middle; the mean-value term pays for the rest.
-            at_low = rising if side < 0 else falling
-            at_high = falling if side < 0 else rising
-            point[i] = np.where(at_low, low, np.where(at_high, high, 0.5 * (low + high)))
-            steepest = np.fmax(np.abs(slope[0]), np.abs(slope[1]))
-            paid = np.where(high > low, steepest * 0.5 * (high - low), 0.0)
-            correction = correction + np.where(at_low | at_high, 0.0, paid)
-        if k not in self._evaluators:
-            self._evaluators[k] = self.program.compile([k])
-        value = self._evaluators[k](point + list(inputs))[0]
-        return value + side * correction
-
-
-@dataclass(frozen=True)
-class _Row:
-    """sum(sign * node) + constant <= 0, to be divided by the size of its right side."""
-
-    nodes: tuple[int, ...]
-    signs: tuple[float, ...]
-    constant: Any
-    size_node: int | None
-    fixed_size: Any
-    scale: float
-
-    def size(self, box: _Box) -> Any:
-        if self.size_node is None:
-            return self.fixed_size
-        return np.maximum(np.abs(box.low[self.size_node]), np.abs(box.high[self.size_node]))
-
-
-class _Box:
-    """Intervals of all nodes for a batch of boxes."""
-
-    def __init__(self, n: int) -> None:
-        self.low: list[Any] = [None] * n
-        self.high: list[Any] = [None] * n
-        self.tightened = [False] * n  # whether more is known of a node than follows from its arguments
-
-    def cut(self, k: int, bounds: Interval, alive: np.ndarray) -> None:
-        """Intersect an interval; a box whose ends pass each other by more than rounding is dead."""
-        old_low, old_high = self.low[k], self.high[k]
-        low, high = np.fmax(old_low, bounds[0]), np.fmin(old_high, bounds[1])
-        if not (np.any(low != old_low) or np.any(high != old_high)):
-            return
-        self.tightened[k] = True
-        alive &= ~(low > high + ROUNDING * np.abs(high))
-        # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.
-        self.low[k], self.high[k] = np.fmin(low, high), high
-
-    def cut_low(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        """Raise the lower end."""
-        self.cut(k, (bound, np.inf), alive)
-
-    def cut_high(self, k: int, bound: Any, alive: np.ndarray) -> None:
-        """Lower the upper end."""
-        self.cut(k, (-np.inf, bound), alive)
 
 
 def loosened(limit: Any, scale: float, side: int) -> Any:

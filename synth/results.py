@@ -23,6 +23,8 @@ from synth.units import format_quantity, from_si, header
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.verify import Verification
+
 FORMAT = 1
 RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
 
@@ -174,7 +176,11 @@ class Certificate:
 
 @dataclass(frozen=True)
 class ParetoFront:
-    """The ranked non-dominated designs for one requirement."""
+    """The ranked non-dominated designs for one requirement.
+
+    ``question`` is the instance it answers, ``record`` and ``folder`` what it was read from: of these three a front
+    that was just computed has the first, one that was loaded the others.
+    """
 
     frame: Frame
     designs: list[Design]
@@ -185,6 +191,9 @@ class ParetoFront:
     explanation: Mapping[str, Any] | None
     settings: Mapping[str, Any]
     interrupted: str = ""
+    question: Any = field(default=None, repr=False, compare=False)
+    record: Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
+    folder: Path | None = field(default=None, repr=False, compare=False)
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per design, with units in the headers."""
@@ -204,19 +213,50 @@ class ParetoFront:
             raise InputError("output", str(folder), "a folder; this is a file")
         try:
             target.mkdir(parents=True, exist_ok=True)
-            write_atomically(target / "designs.csv", self._csv())
-            write_atomically(target / "front.json", self._json())
-            width = max(2, len(str(len(self.designs))))
-            wanted = {f"design_{d.rank:0{width}d}.yaml": d for d in self.designs}
+            wanted = self.files()
             for stale in target.glob("design_*.yaml"):
                 if stale.name not in wanted:
                     stale.unlink()
-            for name, design in wanted.items():
-                text = yaml.safe_dump(design.to_spec(), sort_keys=False, allow_unicode=True, width=120)
+            for name, text in wanted.items():
                 write_atomically(target / name, text)
         except OSError as error:
             raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
         return target
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        width = max(2, len(str(len(self.designs))))
+        found = {"designs.csv": self._csv(), "front.json": self._json()}
+        for design in self.designs:
+            text = yaml.safe_dump(design.to_spec(), sort_keys=False, allow_unicode=True, width=120)
+            found[f"design_{design.rank:0{width}d}.yaml"] = text
+        return found
+
+    def verify(self, problem: Any = None, catalogs: Any = None, time_limit: float = 120.0) -> Verification:
+        """Check the front without help of the search: the record, every design, and the claim of the certificate.
+
+        Parameters
+        ----------
+        problem : family name, DesignProblem subclass or instance, optional
+            For a loaded front of a problem of your own.
+        catalogs : folder or mapping, optional
+            Own tables that were in memory; those that were files are read again.
+        time_limit : float
+            Seconds for the proof.
+
+        Returns
+        -------
+        Verification
+            ``holds``, ``findings``, ``proven_gap`` and a ``sentence()``.
+
+        Raises
+        ------
+        InputError
+            When the problem or its tables cannot be had.
+        """
+        from synth.verify import verify  # most runs do not need it
+
+        return verify(self, problem, catalogs, time_limit)
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         frame = self.frame
@@ -282,7 +322,14 @@ class ParetoFront:
             "parts": rows,
             "designs": [d._as_json() for d in self.designs],
         }
+        content["digest"] = self.digest_of(content)
         return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+    @staticmethod
+    def digest_of(content: Mapping[str, Any]) -> str:
+        """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
+        return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def load_front(folder: str | Path) -> ParetoFront:
@@ -308,6 +355,13 @@ def load_front(folder: str | Path) -> ParetoFront:
         raise InputError(
             f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
         )
+    try:
+        return _front_from_json(content, path.parent)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"front {path}", str(error), "a front.json that is complete") from error
+
+
+def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
     frame = Frame(
         family=content["family"],
         title=content["title"],
@@ -334,6 +388,8 @@ def load_front(folder: str | Path) -> ParetoFront:
         explanation=content["explanation"],
         settings=content["settings"],
         interrupted=content["interrupted"],
+        record=content,
+        folder=folder,
     )
 
 

@@ -11,24 +11,28 @@ import numpy as np
 
 from synth.analysis import chosen_objectives, make_design, make_frame, part_row
 from synth.conflicts import explain_infeasible
+from synth.cover import Clock, Cover, Covered, Staircase, Stopped, best, cover, proven_slack
 from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
-from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
 from synth.instance import Instance, as_mapping, catalogs_for
-from synth.nlp import Task
-from synth.pareto import Zone, Zones, non_dominated, rank, spread_subset
+from synth.outer import search_parts, study_file
+from synth.pareto import rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.results import Certificate, Design, Frame, ParetoFront
-from synth.tree import Clock, Outcome, Question, Stopped, Target, minimise, relative_slack
+from synth.settle import polish_extremes, same_designs, settle_variables, solve_everywhere
 
-ROOT_CHUNK = 16384
-EXHAUST_EFFORT = 400
-TOGETHER = 8
-ZONE_BOXES = 12_000
-ZONE_SPLITS = 3
-MULTI_STARTS = 6
+EFFORT = 6_000_000
+FILL_EFFORT = 20_000
+TIE_EFFORT = 40_000
+COARSE = 0.1
+COARSE_EFFORT = 20_000
+ROUNDS = 4
+POLISHINGS = 3
+ROUNDED = 2e-9
 EXHAUSTIVE_LIMIT = 3000
+OUTER_TRIALS = 576
 
 
 def synthesize(
@@ -74,7 +78,8 @@ def synthesize(
     grid : bool
         True: only makeable values of gridded variables. False: all variables continuous.
     workers : int
-        Processes that may be used; the result is the same for any number.
+        Threads that may tighten boxes at the same time, where a C compiler is there; the result is the same for any
+        number.
     seed : int
         Of all random choices.
     progress : callable, optional
@@ -106,8 +111,27 @@ def synthesize(
         "limits": {k: v if isinstance(v, str) else list(v) for k, v in (limits or {}).items()},
         "fix": {k: v if isinstance(v, (str, int, float, bool)) else str(v) for k, v in (fix or {}).items()},
     }
-    search = _FrontSearch(instance, chosen, points, gap, seed, progress, time_limit)
+    search = _FrontSearch(instance, chosen, points, gap, seed, progress, time_limit, int(workers))
     return search.run(weight_list, settings)
+
+
+def distinct(candidates: Sequence[Candidate], m: int) -> list[Candidate]:
+    """Return the designs that no other one equals or beats in the first objectives, but for rounding."""
+    phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
+    room = ROUNDED * np.maximum(np.abs(phi), 1.0)
+    beats = np.all(phi[:, None, :] <= phi[None, :, :] + room[None, :, :], axis=2)
+    # Of those that beat each other by rounding alone the first stays.
+    earlier = np.arange(len(phi))[:, None] < np.arange(len(phi))[None, :]
+    return [c for c, gone in zip(candidates, np.any(beats & (~beats.T | earlier), axis=0), strict=True) if not gone]
+
+
+def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return combinations, variables and phi of some designs as arrays."""
+    return (
+        np.array([c.combination for c in candidates], dtype=np.int64),
+        np.array([c.variables for c in candidates]),
+        np.array([c.phi for c in candidates]),
+    )
 
 
 def _check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
@@ -147,7 +171,7 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
 
 
 class _FrontSearch:
-    """One run: root boxes, extremes, the zones between them, ties, and the report."""
+    """One run: the front, its extremes, ties, and the report."""
 
     def __init__(
         self,
@@ -158,25 +182,33 @@ class _FrontSearch:
         seed: int,
         progress: Callable[[Mapping[str, Any]], None] | None,
         time_limit: float | None,
+        workers: int,
     ) -> None:
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
-        self.form = Formulation(instance, self._chain(), len(chosen))
-        self.m = len(chosen)
         self.started = time.monotonic()
+        self.form = Formulation(instance, self._chain(), len(chosen))
+        self.form.workers = workers
+        self.m = len(chosen)
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.stage, self.done = "", 0.0
-        self.rng = np.random.default_rng(seed)
+        self.seed, self.rng = seed, np.random.default_rng(seed)
+        self.outer_trials = 0
         self.progress = progress
         self.stage_seconds: dict[str, float] = {}
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
-        self.pool: Boxes = self.form.root(np.empty(0, dtype=np.int64))  # all boxes that may hold a feasible design
+        self.proven: float | None = None
+        self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.complete = False
         self.scalar_problems = 0
-        self.rooted = 0
-        self.ranges: np.ndarray | None = None
+        self.open_combinations = float(instance.combinations)
+        self.purpose = self._purpose(None)
+        self.covering: Cover | None = None  # the finest cover that is finished
+        self.current: Cover | None = None  # the one that is under way
+        self.proven_designs = set[bytes]()
+        self.looked = 0
 
     def _chain(self) -> dict[str, str]:
         """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
@@ -190,6 +222,21 @@ class _FrontSearch:
             chain.setdefault(variable.name, "min")
         return chain
 
+    def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> Cover:
+        """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
+        form = self.form
+        slack = np.maximum(self._slack(ranges)[: self.m], least)
+        return Cover(range(self.m), slack, np.full(len(form.goals), np.inf), form.archive)
+
+    def _slack(self, sizes: np.ndarray | None) -> np.ndarray:
+        """Return the gap as a distance in phi, per objective.
+
+        Positive objectives: a factor 1 - gap. Others: a share of their range on the front, or of their size.
+        """
+        form = self.form
+        sizes = np.ones(len(form.goals)) if sizes is None else sizes
+        return np.where(form.log_goals, -np.log1p(-self.gap), self.gap * np.maximum(sizes, 1e-9))
+
     # -- the run -------------------------------------------------------------------------------
 
     def run(self, weights: Sequence[float], settings: Mapping[str, Any]) -> ParetoFront:
@@ -200,9 +247,13 @@ class _FrontSearch:
         try:
             self._timed("bounds", self._root)
             if len(self.pool):
-                self._timed("extremes", self._extremes)
-            if self.front:
-                self._timed("front", self._fill)
+                if self.m == 1 or not self.form.log_goals[: self.m].all():
+                    self._timed("extremes", self._extremes)
+                if self.m > 1:
+                    self._timed("front", self._cover)
+            if len(self.form.archive):
+                if self.m > 1:
+                    self._timed("front", self._choose)
                 designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
             else:
                 searched = set(self.form.solved_combinations)
@@ -214,10 +265,25 @@ class _FrontSearch:
         except KeyboardInterrupt:
             interrupted = "interrupted"
         if interrupted:
-            self.closed = self.exhausted = self.complete = False
-            self._take_from_archive()
+            self._stop_early()
             designs = self._designs(frame, weights, settle=False) if self.front else []
         return self._result(frame, designs, settings, explanation, interrupted)
+
+    def _stop_early(self) -> None:
+        """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""
+        multiples = [] if self.covering is None else [self._multiple(self.covering)]
+        if self.current is not None and self.clock.open:
+            open_slack = proven_slack(self.form, self.purpose, Boxes.joined(self.clock.open))
+            multiples.append(max(self._multiple(self.current), open_slack))
+        if multiples and self.closed:
+            self.proven = self._gap_of(min(multiples))
+        self.closed = self.exhausted = self.complete = False
+        archive = self.form.archive
+        self.front = self._spread(list(archive), self.points)
+
+    def _gap_of(self, multiple: float) -> float:
+        """Return the gap that a multiple of the slack of this run stands for."""
+        return float(-np.expm1(max(multiple, 1.0) * np.log1p(-self.gap)))
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
         begin = time.monotonic()
@@ -240,220 +306,185 @@ class _FrontSearch:
                 "stage": stage,
                 "done": float(min(max(done, 0.0), 1.0)),
                 "combinations": self.instance.combinations,
-                "incumbents": len(self.front),
+                "incumbents": len(self.form.archive),
                 "message": message,
             })  # fmt: skip
 
     def _root(self) -> None:
-        total = self.instance.combinations
-        kept = []
-        for first in range(0, total, ROOT_CHUNK):
-            self.clock.check()
-            numbers = np.arange(first, min(first + ROOT_CHUNK, total), dtype=np.int64)
-            kept.append(self.form.root(numbers))
-            self.rooted += len(numbers)
-            self._say("bounds", self.rooted / total)
-        self.pool = Boxes.joined(kept)
-        if len(self.pool):
-            self.form.settle_objectives(self.pool)
-            self.form.sample(self.pool, 3, self.rng)
+        self.clock.check()
+        self.pool = self.form.root()
+        if not len(self.pool):
+            self.open_combinations = 0.0
 
-    def _target(self, k: int, caps: np.ndarray) -> Target:
-        """Return the problem: least phi_k, the other objectives capped."""
-        slope = np.zeros(len(self.form.goals))
-        slope[k] = 1.0
-        return Target(np.where(slope > 0, 0.0, caps), slope)
+    # -- one best design -----------------------------------------------------------------------
 
-    def _solve(self, questions: Sequence[Question]) -> list[Outcome]:
-        self.scalar_problems += len(questions)
-        outcomes = minimise(self.form, questions, self.gap, self.clock, self.ranges)
-        return [o if o.closed else self._exhaust(o, q) for o, q in zip(outcomes, questions, strict=True)]
-
-    def _exhaust(self, outcome: Outcome, question: Question) -> Outcome:
-        """Solve every combination that bounds could not exclude, from several starts."""
-        self.closed = False
-        self.unresolved += outcome.unresolved
-        if len(outcome.open_combinations) > EXHAUSTIVE_LIMIT:
-            self.exhausted = False
-        target, best, t = question.target, outcome.best, outcome.t
-        boxes = self.pool.take(np.isin(self.pool.combination, outcome.open_combinations[:EXHAUSTIVE_LIMIT]))
-        for k in range(len(boxes)):
-            self.clock.check()
-            box = boxes.take(np.array([k]))
-            found = minimise(
-                self.form, [Question(target, box, best, t)], self.gap, self.clock, self.ranges, EXHAUST_EFFORT
-            )
-            for candidate in [found[0].best, *self._multi_start(box, target)]:
-                if candidate is not None and float(target.t_of(candidate.phi)) < t:
-                    best, t = candidate, float(target.t_of(candidate.phi))
-        return Outcome(best, t, False, outcome.open_combinations, outcome.unresolved)
-
-    def _multi_start(self, box: Boxes, target: Target) -> list[Candidate]:
-        if self.form.gridded.any():
-            return []  # the small tree over the grid was searched instead
-        low, high = box.low[0], box.high[0]
-        moving = target.slope > 0
-        task = Task(
-            weights=np.where(moving, 1e-6, 0.0),
-            slopes=target.slope,
-            caps=np.where(np.isfinite(target.base), target.base, np.inf),
-            goal_scales=self.form.goal_scales,
-        )
-        found = []
-        for _ in range(MULTI_STARTS):
-            start = low + (high - low) * self.rng.random(len(low))
-            solution = self.form.solve(task, int(box.combination[0]), start, low, high)
-            if solution is not None:
-                found += self.form.candidates(solution.variables[None, :], box.combination)
+    def _best(
+        self, k: int, plain: np.ndarray, start: Candidate | None = None, effort: int = EFFORT
+    ) -> Candidate | None:
+        """Return the design that is best in one objective, the others capped."""
+        self.scalar_problems += 1
+        form = self.form
+        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), 1e-6)
+        slack = float(self._slack(sizes)[k])
+        before = len(form.archive)
+        found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
+        if not outcome.closed and effort == EFFORT:
+            purpose = Cover([k], np.array([slack]), plain, Archive([k], form.n, len(form.goals)))
+            if found is not None:
+                purpose.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
+            self._exhaust(outcome.open, purpose)
+            found = purpose.known[0] if len(purpose.known) else None
+        elif before == 0 and found is None:
+            self.open_combinations = 0.0
         return found
 
-    def _extremes(self) -> None:
-        """Find, for every objective, the design that is best in it, the others settled in order."""
-        open_caps = np.full(len(self.form.goals), np.inf)
-        found: list[Candidate] = []
-        for k in range(self.m):
-            outcome = self._solve([Question(self._target(k, open_caps), self.pool, self._best_known(found, k))])[0]
-            if outcome.best is None:
-                return
-            found.append(self._improve(outcome.best, [j for j in range(self.m) if j != k]))
-            self._say("extremes", (k + 1) / self.m)
-        self.front = self._distinct(found)
-
-    @staticmethod
-    def _best_known(found: Sequence[Candidate], k: int) -> Candidate | None:
-        return min(found, key=lambda c: float(c.phi[k]), default=None)
-
-    def _improve(self, candidate: Candidate, order: Sequence[int]) -> Candidate:
-        """Return a design at least as good in every objective, improved in each in turn."""
-        caps = np.full(len(self.form.goals), np.inf)
-        caps[: self.m] = candidate.phi[: self.m]
-        for k in order:
-            outcome = self._solve([Question(self._target(k, caps), self.pool, candidate)])[0]
-            if outcome.best is not None:
-                candidate = outcome.best
-                caps[: self.m] = np.minimum(caps[: self.m], candidate.phi[: self.m])
-        return candidate
-
-    def _distinct(self, candidates: Sequence[Candidate]) -> list[Candidate]:
-        result: list[Candidate] = []
-        for c in candidates:
-            if not any(np.all(np.abs(c.phi[: self.m] - d.phi[: self.m]) <= TIE) for d in result):
-                result.append(c)
-        phi = np.array([c.phi[: self.m] for c in result])
-        keep = non_dominated(phi)
-        return [c for c, good in zip(result, keep, strict=True) if good]
-
-    def _fill(self) -> None:
-        """Place points in the largest holes of the front until there are enough or nothing is left."""
-        if self.m == 1 or len(self.front) == 1:
-            self.complete = self.closed
+    def _exhaust(self, left: Boxes, purpose: Cover) -> None:
+        """Solve what bounds could not exclude: every combination from several starts, or those that Optuna draws."""
+        self.closed = False
+        self.unresolved += len(left)
+        combinations = self.form.cells.all_members(left.cell, EXHAUSTIVE_LIMIT + 1)
+        if len(combinations) <= EXHAUSTIVE_LIMIT:
+            solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
             return
-        phi = np.array([c.phi[: self.m] for c in self.front])
-        zones = Zones(phi.min(axis=0), phi.max(axis=0), self.pool)
-        self.ranges = np.concatenate([zones.range, np.ones(len(self.form.goals) - self.m)])
-        for point in phi:
-            zones.add(point)
-        while zones.zones and len(self.front) < self.points:
-            largest = sorted(zones.zones, key=zones.size, reverse=True)
-            self._fill_zones(zones, largest[: min(TOGETHER, self.points - len(self.front))])
-            self._say("front", len(self.front) / self.points)
-        self.complete = self.closed and not zones.zones
-        self.front = self._distinct(self.front)
-        self._keep_points()
+        self.exhausted = False
+        journal = study_file(self.instance, self.chosen, self.seed)
+        self._say("parts", 0.0)
+        self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, OUTER_TRIALS)
 
-    def _keep_points(self) -> None:
-        """Keep at most as many designs as were asked for."""
-        if len(self.front) > self.points:
-            phi = np.array([c.phi[: self.m] for c in self.front])
-            self.front = [self.front[k] for k in spread_subset(phi, self.points)]
-            self.complete = False
+    def _extremes(self) -> None:
+        """Find the design that is best in each objective, before the front: its ranges are needed, or it is all."""
+        found = [self._best(k, np.full(len(self.form.goals), np.inf)) for k in range(self.m)]
+        known = [c for c in found if c is not None]
+        if self.m == 1:
+            self.front, self.complete = known, self.closed
+        elif known:
+            phi = np.array([c.phi for c in known])
+            self.purpose = self._purpose(
+                np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
+            )
 
-    def _fill_zones(self, zones: Zones, chosen: Sequence[Zone]) -> None:
-        """Seek the middle of several zones at once; a zone that holds nothing is closed."""
-        questions = []
-        for zone in chosen:
-            zone.cover = self._narrowed(zone)
-            lower = zones.lower(zone)
-            base = np.full(len(self.form.goals), np.inf)
-            slope = np.zeros(len(self.form.goals))
-            closed = np.flatnonzero(np.isfinite(zone.upper))
-            base[closed], slope[closed] = lower[closed], (zone.upper - lower)[closed]
-            questions.append(Question(Target(base, slope), zone.cover, self._inside(zone.upper), 1.0))
-        outcomes = self._solve(questions)
-        found = []
-        for zone, question, outcome in zip(chosen, questions, outcomes, strict=True):
-            if outcome.best is None or outcome.t >= 1.0 - TIE:
-                zones.close(zone)
+    # -- the front -----------------------------------------------------------------------------
+
+    def _cover(self) -> None:
+        """Cover everything: coarsely first, then as finely as the points asked for need, at most as the gap."""
+        form, m = self.form, self.m
+        coarse = self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0))
+        outcome = self._covered(coarse, COARSE_EFFORT)
+        if outcome.closed and not len(form.archive):
+            self.open_combinations = 0.0
+            return
+        span = np.ptp(form.archive.phi[:, :m], axis=0) if len(form.archive) else np.zeros(m)
+        fine = self._with_slack(np.maximum(span / self.points, self.purpose.slack))
+        outcome = self._covered(fine, EFFORT)
+        left = outcome.open
+        if len(left):
+            self._exhaust(left, fine)
+            left = left.take(fine.room(form.phi_of(left.bounds)) > 0)
+            self.closed = not len(left)
+            if not self.closed:
+                self.proven = self._gap_of(max(self._multiple(fine), proven_slack(form, self.purpose, left)))
+        self.open_combinations = float(form.cells.size(left.cell).sum())
+
+    def _with_slack(self, slack: np.ndarray) -> Cover:
+        return Cover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
+
+    def _covered(self, purpose: Cover, effort: float, enough: int | None = None) -> Covered:
+        """Cover everything with one slack; what is covered with it stays known if the time runs out later."""
+        self.current = purpose
+        outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
+        self.looked += outcome.looked
+        if outcome.closed:
+            self.covering = purpose
+        self.current = None
+        return outcome
+
+    def _multiple(self, purpose: Cover) -> float:
+        """Return the slack of a cover in units of the slack that the gap stands for."""
+        return float(np.max(purpose.slack / self.purpose.slack))
+
+    def _choose(self) -> None:
+        """Choose the designs to return and prove them; where too few are known, look for more until nothing is left."""
+        for _ in range(ROUNDS):
+            # Some more than asked for: designs that turn out to be beaten by the same better one become one.
+            self.front = self._polished(self.points + self.points // 3 + 5)
+            self._rescale()
+            if self.closed and not self.complete and len(self.front) < self.points and self._look_for_more():
                 continue
-            corner = question.target.base[: self.m] + question.target.slope[: self.m] * outcome.t
-            found.append((zone, outcome.best, corner))
-        for zone, point in self._tightened(found):
-            if any(np.all(c.phi[: self.m] <= point.phi[: self.m] + TIE) for c in self.front):
-                zones.close(zone)
-                continue
-            self.front.append(point)
-            zones.add(point.phi[: self.m])
-
-    def _narrowed(self, zone: Zone) -> Boxes:
-        """Return the boxes that reach into a zone, tightened to it and split a little; its parts start from them."""
-        caps = np.full(len(self.form.goals), np.inf)
-        caps[: self.m] = zone.upper
-        boxes: Boxes = zone.cover
-        for _ in range(ZONE_SPLITS):
-            self.clock.check()
-            boxes = boxes.take(np.all(self.form.phi_of(boxes.bounds) <= caps, axis=1))
-            known = self.form.archive.caps(self.form.phi_of(boxes.bounds))
-            boxes = self.form.contract(boxes, np.minimum(known, caps))
-            if len(boxes) > ZONE_BOXES:
+            if not self.closed or self.complete or self._proven_at_gap() or self._prove():
                 break
-            boxes = Boxes.joined(self.form.split(boxes))
-        return boxes
+        if self.closed and not self.complete and len(self.front) < self.points:
+            self.complete = self._covered(self.purpose, EFFORT).closed and self._stand_for_all()
+        self.front = self._spread(self.front, self.points)
 
-    def _tightened(self, found: Sequence[tuple[Zone, Candidate, np.ndarray]]) -> list[tuple[Zone, Candidate]]:
-        """Improve designs from the middle of zones in the objectives that did not decide them.
+    def _spread(self, designs: Sequence[Candidate], most: int) -> list[Candidate]:
+        """Return those designs, at most so many, that spread best; the best in each objective among them."""
+        phi = np.array([c.phi[: self.m] for c in designs]).reshape(len(designs), self.m)
+        return [designs[int(k)] for k in spread_subset(phi, most)]
 
-        An objective that reaches the corner is proven already: less of it would have meant a smaller t.
-        """
-        points = [candidate for _, candidate, _ in found]
-        for k in range(self.m):
-            asked, questions = [], []
-            for position, (zone, first, corner) in enumerate(found):
-                slack = relative_slack(self.form, self.gap, first.phi, self.ranges)[k]
-                if first.phi[k] < corner[k] - slack:
-                    caps = np.full(len(self.form.goals), np.inf)
-                    caps[: self.m] = points[position].phi[: self.m]
-                    asked.append(position)
-                    questions.append(Question(self._target(k, caps), zone.cover, points[position]))
-            for position, outcome in zip(asked, self._solve(questions) if questions else [], strict=True):
-                if outcome.best is not None:
-                    points[position] = outcome.best
-        return [(zone, point) for (zone, _, _), point in zip(found, points, strict=True)]
+    def _stand_for_all(self) -> bool:
+        """Tell whether the designs of the front cover all that are known."""
+        listed = np.array([c.phi[: self.m] for c in self.front])
+        known = self.form.archive.phi[:, : self.m]
+        covered = np.all(listed[None, :, :] - self.purpose.slack <= known[:, None, :], axis=2).any(axis=1)
+        return bool(covered.all())
 
-    def _inside(self, upper: np.ndarray) -> Candidate | None:
-        """Return a known design that lies in a zone, if there is one."""
-        inside = [c for c in self.form.archive if np.all(c.phi[: self.m] < upper - 1e-6)]
-        return min(inside, key=lambda c: float(np.max(c.phi[: self.m] - upper)), default=None)
+    def _rescale(self) -> None:
+        """Measure the gap of objectives that can be zero against their range on this front."""
+        phi = np.array([c.phi for c in self.front])
+        sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
+        slack = np.minimum(self.purpose.slack, self._slack(sizes)[: self.m])
+        if np.any(slack < self.purpose.slack):
+            self.purpose.slack = slack
+            self.proven_designs.clear()
 
-    def _take_from_archive(self) -> None:
-        pool = [*self.front, *self.form.archive]
-        if pool:
-            distinct = self._distinct(pool)
-            phi = np.array([c.phi[: self.m] for c in distinct])
-            self.front = [distinct[k] for k in spread_subset(phi, self.points)]
+    def _proven_at_gap(self) -> bool:
+        return self.covering is not None and self._multiple(self.covering) <= 1.0
+
+    def _polished(self, most: int) -> list[Candidate]:
+        """Return designs that spread over the front, at most so many, each made as good as its parts allow."""
+        form, archive, done = self.form, self.form.archive, set[bytes]()
+        polish_extremes(form, self.m, float(self.purpose.slack.max()))
+        for _ in range(POLISHINGS):
+            rough = [c for c in self._spread(list(archive), most) if c.phi[: self.m].tobytes() not in done]
+            if not rough:
+                break
+            better = settle_variables(form, rough, self.m, range(self.m))
+            done.update(c.phi[: self.m].tobytes() for c in better)
+            archive.add(*_rows(better))
+        return self._spread(distinct(list(archive), self.m), most)
+
+    def _look_for_more(self) -> bool:
+        """Without slack everything non-dominated is found, or more than enough; tell whether anything was."""
+        known, effort = self.form.archive.phi, FILL_EFFORT + self.looked
+        outcome = self._covered(self._with_slack(np.full(self.m, TIE)), effort, self.points)
+        self.complete = outcome.closed and len(self.form.archive) <= self.points
+        return not np.array_equal(self.form.archive.phi, known)
+
+    def _prove(self) -> bool:
+        """Prove the designs chosen; tell whether they stand or better ones were found for some."""
+        form = self.form
+        proven = self.proven_designs
+        stairs = Staircase(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
+        outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
+        self.looked += outcome.looked
+        replaced = any(a is not b for a, b in zip(stairs.designs, self.front, strict=True))
+        if not outcome.closed:
+            self._exhaust(outcome.open, self.purpose)
+            return True
+        finished = stairs.finished()
+        proven.update(c.phi.tobytes() for c in finished)
+        self.front = distinct(finished, self.m)
+        return not replaced or len(self.front) >= self.points
 
     # -- the report ----------------------------------------------------------------------------
 
     def _designs(self, frame: Frame, weights: Sequence[float], settle: bool) -> list[Design]:
-        settled, alternatives = list[Candidate](), list[tuple[str, ...]]()
-        for k, candidate in enumerate(self.front):
-            if not settle:
-                settled.append(candidate)
-                alternatives.append(())
-                continue
-            final, others = self._settle(candidate)
-            settled.append(final)
-            alternatives.append(others)
-            self._say("report", (k + 1) / len(self.front))
+        settled = list(self.front)
+        alternatives: list[tuple[str, ...]] = [()] * len(settled)
+        if settle:
+            settled, alternatives = self._settled()
+            self._say("report", 0.5)
+        costs = elasticities(self.form, settled if settle else [], self.m) or [{}] * len(settled)
         results = [self.form.evaluate(c.variables[None, :], np.array([c.combination])) for c in settled]
         values = np.array([[float(r.values[name][0]) for name in self.chosen] for r in results])
         ranking = rank(self.chosen, values, weights)
@@ -476,62 +507,30 @@ class _FrontSearch:
                     score=float(ranking.scores[k]),
                     note=ranking.notes[k],
                     alternatives=alternatives[k],
-                    elasticity={} if not settle else elasticities(self.form, c, self.m),
+                    elasticity=costs[k],
                 )
             )
         return designs
 
-    def _settle(self, candidate: Candidate) -> tuple[Candidate, tuple[str, ...]]:
+    def _settled(self) -> tuple[list[Candidate], list[tuple[str, ...]]]:
         """Settle what the chosen objectives do not see, and name other combinations that tie."""
-        form, current = self.form, candidate
-        caps = np.full(len(form.goals), np.inf)
-        caps[: self.m] = candidate.phi[: self.m] + TIE
+        form, chosen = self.form, list(self.front)
         if self.m == 1 and len(form.goals) > 1:
             # One objective leaves whole families of parts open; the next objective is settled over all of them.
-            outcome = self._solve([Question(self._target(self.m, caps), self.pool, current)])[0]
-            current = current if outcome.best is None else outcome.best
-        ties = self._ties(current)
-        current = min(ties, key=lambda c: tuple(np.round(c.phi[self.m :], 9)), default=current)
-        current = self._settle_variables(current, caps)
-        others = [c.combination for c in ties if c.combination != current.combination]
-        return current, tuple(self._difference(current.combination, other) for other in others)
-
-    def _ties(self, candidate: Candidate) -> list[Candidate]:
-        """Return the designs of all combinations that reach the same chosen objectives with the same dimensions."""
-        found = []
-        phi = candidate.phi[: self.m]
-        for first in range(0, self.instance.combinations, ROOT_CHUNK):
-            numbers = np.arange(first, min(first + ROOT_CHUNK, self.instance.combinations), dtype=np.int64)
-            variables = np.broadcast_to(candidate.variables, (len(numbers), self.form.n))
-            points = self.form.feasible_points(variables, numbers)
-            found += [c for c in points if np.all(np.abs(c.phi[: self.m] - phi) <= TIE)]
-        return found
-
-    def _settle_variables(self, candidate: Candidate, caps: np.ndarray) -> Candidate:
-        """Make all objectives, the chosen ones first, then the variables, as small as possible in their order.
-
-        For the chosen ones this only takes what the gap of the search left; parts, counts and makeable
-        values stay.
-        """
-        form, current, caps = self.form, candidate, caps.copy()
-        low = np.where(form.gridded, candidate.variables, form.lower)
-        high = np.where(form.gridded, candidate.variables, form.upper)
-        for j in range(len(form.goals)):
-            task = Task(
-                weights=np.eye(len(form.goals))[j],
-                slopes=np.zeros(len(form.goals)),
-                caps=caps,
-                goal_scales=form.goal_scales,
-                t_weight=0.0,
-            )
-            solution = form.solve(task, current.combination, current.variables, low, high)
-            if solution is not None:
-                numbers = np.array([current.combination])
-                for better in form.feasible_points(solution.variables[None, :], numbers):
-                    if np.all(better.phi <= caps + TIE) and better.phi[j] < current.phi[j] - TIE:
-                        current = better
-            caps[j] = current.phi[j] + TIE
-        return current
+            caps = np.full(len(form.goals), np.inf)
+            caps[0] = chosen[0].phi[0] + TIE
+            better = self._best(1, caps, chosen[0], TIE_EFFORT)
+            chosen[0] = chosen[0] if better is None else better
+        chosen = settle_variables(form, chosen, self.m)
+        kept, alternatives = [], []
+        for candidate, ties in zip(chosen, same_designs(form, self.pool, chosen, self.m), strict=True):
+            current = min(ties, key=lambda c: tuple(np.round(c.phi[self.m :], 9)), default=candidate)
+            others = [c.combination for c in ties if c.combination != current.combination]
+            kept.append(current)
+            alternatives.append(tuple(self._difference(current.combination, other) for other in others))
+        stay = {id(c) for c in distinct(kept, self.m)}
+        pairs = [(c, a) for c, a in zip(kept, alternatives, strict=True) if id(c) in stay]
+        return [c for c, _ in pairs], [a for _, a in pairs]
 
     def _difference(self, combination: int, other: int) -> str:
         own, its = self.instance.describe(combination), self.instance.describe(other)
@@ -553,20 +552,20 @@ class _FrontSearch:
         interrupted: str,
     ) -> ParetoFront:
         total, selection = self.instance.combinations, self.instance.selection
-        solved = len(self.form.solved_combinations)
         kind = "global" if self.closed else "exhaustive" if self.exhausted and not interrupted else "heuristic"
-        gap = self.gap if kind == "global" and designs else None
-        uncovered = total - self.rooted
-        certificate = Certificate(kind, gap, total, total - solved - uncovered, solved, self.unresolved)
+        gap = (self.gap if designs else None) if kind == "global" else self.proven
+        solved = len(self.form.solved_combinations)
+        excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
+        certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved)
         statistics = {
             "combinations": total,
-            "excluded_by_bound": total - solved - uncovered,
+            "excluded_by_bound": excluded,
             "solved": solved,
-            "not_reached": uncovered,
-            "alive_after_first_bound": len(self.pool),
             "boxes": self.form.contracted,
             "scalar_problems": self.scalar_problems,
+            "designs_known": len(self.form.archive),
             "nlp_solves": self.form.nlp_solves,
+            "outer_trials": self.outer_trials,
             "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
             "rows_used": {s.slot: len(s.rows) for s in selection.slots},
             "counts": {n: len(v) for n, v in selection.counts.items()},

@@ -132,7 +132,7 @@ def damped_guide_number(guide_number: Quantity) -> Quantity:
     return guide_number / (1 + guide_number)
 
 
-@special((0.0, 1.0), (-1.0, 0.0))
+@special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     """Sum factor of the geometric series, E = (1 - (1+S)**-z)/S; z for S = 0.
 
@@ -163,7 +163,7 @@ def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     return -np.expm1(-surfaces * np.log1p(guarded)) / guarded
 
 
-@special((0.0, 1.0), (-1.0, 0.0))
+@special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def sum_lipka(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     """Sum factor with ln(1+S) replaced by S, E = (1 - exp(-z S))/S; z for S = 0.
 

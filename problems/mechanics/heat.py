@@ -262,7 +262,7 @@ def peak_temperature_rise(
     return friction_work * peak_rise_per_work(switching_rate, heat_capacity, heat_transfer, cooled_area)
 
 
-@special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0))
+@special((0.0, 1.0), (-1.0, 0.0), (-1.0, 0.0), (-1.0, 0.0), curvature="log-convex")
 def peak_rise_per_work(
     switching_rate: Quantity, heat_capacity: Quantity, heat_transfer: Quantity, cooled_area: Quantity
 ) -> Quantity:

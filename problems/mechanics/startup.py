@@ -26,6 +26,7 @@ import numpy as np
 
 from problems.mechanics import Quantity
 from synth.errors import InputError
+from synth.special import special
 
 LOAD_KINDS = ("reactive", "active")
 
@@ -225,15 +226,55 @@ def slip_time(
     >>> float(slip_time(1080, 600, 5, 26.6, 2)), float(slip_time(1080, 600, 30, 26.6, 2, "active"))
     (1.81296, 3.91250)
     """
+    if not _is_active(load_kind):
+        return reactive_slip_time(torque, load_torque, driven_inertia, driver_speed, ramp_time)
     excess = torque - load_torque
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     momentum = driven_inertia * driver_speed
-    if _is_active(load_kind):
-        after = momentum / excess + ramp_time / 2 * (1 + load_torque / excess)
-        inside = _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
-    else:
-        after = momentum / excess + ramp_time / 2 * (1 + load_torque / torque)
-        inside = load_torque * ramp_time / torque + np.sqrt(2 * momentum * ramp_time / torque)
+    after = momentum / excess + ramp_time / 2 * (1 + load_torque / excess)
+    inside = _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+    return np.where(after_ramp, after, inside)
+
+
+@special((-np.inf, -0.5), (0.0, np.inf), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), curvature="log-convex", above=(0, 1))
+def reactive_slip_time(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, driver_speed: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Time from the first touch to lock-up under a reactive load, see :func:`slip_time`.
+
+    It falls with the torque and rises with all else; its logarithm is convex in those of all arguments together.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s]; 0 for a step.
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_D [s].
+
+    References
+    ----------
+    S1 (lecture), start-up, phases 1 to 3.
+
+    Examples
+    --------
+    S1:
+
+    >>> float(reactive_slip_time(1080, 600, 30, 26.6, 2))
+    3.21806
+    """
+    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time)
+    momentum = driven_inertia * driver_speed
+    after = momentum / (torque - load_torque) + ramp_time / 2 * (1 + load_torque / torque)
+    inside = load_torque * ramp_time / torque + np.sqrt(2 * momentum * ramp_time / torque)
     return np.where(after_ramp, after, inside)
 
 
@@ -293,21 +334,63 @@ def friction_work(
     >>> float(friction_work(1080, 600, 5, 26.6, 2)), float(friction_work(1080, 600, 30, 26.6, 2, "active"))
     (18103.2, 69690.2)
     """
-    excess = torque - load_torque
+    if not _is_active(load_kind):
+        return reactive_friction_work(torque, load_torque, driven_inertia, driver_speed, ramp_time)
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     momentum = driven_inertia * driver_speed
     energy = momentum * driver_speed / 2
     ramp_work = load_torque * driver_speed * ramp_time / 2
-    if _is_active(load_kind):
-        bend = load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
-        after = (1 + load_torque / excess) * (energy + ramp_work + bend)
-        impulse = load_torque * _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
-        inside = (momentum + impulse) * (driver_speed / 2 + impulse / (6 * driven_inertia))
-    else:
-        bend = load_torque * excess * (1 - load_torque / torque) ** 2 * ramp_time**2 / (24 * driven_inertia)
-        after = energy * (1 + load_torque / excess) + ramp_work - bend
-        length = np.sqrt(2 * momentum * ramp_time / torque)
-        inside = energy + ramp_work * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
+    bend = load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
+    after = (1 + load_torque / (torque - load_torque)) * (energy + ramp_work + bend)
+    impulse = load_torque * _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+    inside = (momentum + impulse) * (driver_speed / 2 + impulse / (6 * driven_inertia))
+    return np.where(after_ramp, after, inside)
+
+
+@special((-np.inf, 0.0), (0.0, np.inf), (0.0, 1.0), (1.0, 2.0), (0.0, 1.0), curvature="log-convex", above=(0, 1))
+def reactive_friction_work(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, driver_speed: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Friction work of one engagement under a reactive load, see :func:`friction_work`.
+
+    It falls with the torque and rises with all else; its logarithm is convex in those of all arguments together.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s]; 0 for a step.
+
+    Returns
+    -------
+    scalar, array or symbol
+        W [J].
+
+    References
+    ----------
+    S1 (lecture), work of friction.
+
+    Examples
+    --------
+    S1:
+
+    >>> float(reactive_friction_work(1080, 600, 30, 26.6, 2))
+    39524.1
+    """
+    excess = torque - load_torque
+    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time)
+    momentum = driven_inertia * driver_speed
+    energy = momentum * driver_speed / 2
+    ramp_work = load_torque * driver_speed * ramp_time / 2
+    bend = load_torque * excess * (1 - load_torque / torque) ** 2 * ramp_time**2 / (24 * driven_inertia)
+    after = energy * (1 + load_torque / excess) + ramp_work - bend
+    length = np.sqrt(2 * momentum * ramp_time / torque)
+    inside = energy + ramp_work * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
     return np.where(after_ramp, after, inside)
 
 
@@ -399,8 +482,55 @@ def peak_slip_power(
     >>> float(peak_slip_power(1080, 600, 30, 26.6, 2))
     21703.7
     """
+    if not _is_active(load_kind):
+        return reactive_peak_slip_power(torque, load_torque, driven_inertia, driver_speed, ramp_time)
+    slip_speed = driver_speed - lowest_driven_speed(torque, load_torque, driven_inertia, ramp_time)
+    return _peak_slip_power(torque, load_torque, driven_inertia, slip_speed, ramp_time)
+
+
+@special((0.0, 1.0), (0.0, 1.0), (0.0, 0.5), (1.0, 1.5), (-0.5, 0.0), above=(0, 1))
+def reactive_peak_slip_power(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, driver_speed: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Greatest friction power under a reactive load, see :func:`peak_slip_power`.
+
+    It falls with the ramp time and rises with all else.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0.
+
+    Returns
+    -------
+    scalar, array or symbol
+        P [W].
+
+    References
+    ----------
+    S1 (lecture), equations of motion; the maximum is derived.
+
+    Examples
+    --------
+    Computed here with S1's data:
+
+    >>> float(reactive_peak_slip_power(1080, 600, 30, 26.6, 2))
+    21703.7
+    """
+    return _peak_slip_power(torque, load_torque, driven_inertia, driver_speed, ramp_time)
+
+
+def _peak_slip_power(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, slip_speed: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Greatest friction power, from the slip speed at the time when the clutch torque reaches the load torque."""
     excess = torque - load_torque
-    slip_speed = driver_speed - _speed_at_load_start(torque, load_torque, driven_inertia, ramp_time, load_kind)
     interior = 2 * driven_inertia * slip_speed < ramp_time * excess * (3 - load_torque / torque)
     # With x* = 2 J omega/(L + root), which does not cancel when the load is large, (L + s x*)**2 x*/J is
     # 2 omega/9 (2 L + root)**2/(L + root); the division is carried out.
@@ -420,7 +550,8 @@ def lock_torque(
 ) -> Quantity:
     """Clutch torque just before lock-up: T after the ramp, M_k(t_D) inside it.
 
-    Inside the ramp it is L + sqrt(2 J omega1 T/t_r) (reactive) or L + sqrt(L**2 + 2 J omega1 T/t_r) (active).
+    Inside the ramp it is L + sqrt(2 J omega1 T/t_r) (reactive) or L + sqrt(L**2 + 2 J omega1 T/t_r) (active), which is
+    below T there, and above T where lock-up comes after the ramp.
 
     Parameters
     ----------
@@ -456,11 +587,10 @@ def lock_torque(
     >>> float(lock_torque(1080, 600, 30, 26.6, 2)), float(lock_torque(1080, 600, 5, 26.6, 2))
     (1080.0, 979.0)
     """
-    after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     square = 2 * driven_inertia * driver_speed * torque / ramp_time
     if _is_active(load_kind):
         square = square + load_torque**2
-    return np.where(after_ramp, torque, load_torque + np.sqrt(square))
+    return np.minimum(torque, load_torque + np.sqrt(square))
 
 
 def torque_rate_per_inertia(torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity) -> Quantity:

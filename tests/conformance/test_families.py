@@ -272,12 +272,11 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
         synth.load(family, **case.options), case.requirements, as_catalogs(None), **settings, grid=False
     )
     form = Formulation(instance, {objective.name: objective.sense}, 1)
-    form.settle_objectives(form.root(np.arange(instance.combinations)))
     task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), form.goal_scales, t_weight=0.0)
     rng = np.random.default_rng(4)
     reached = []
     for combination in rng.permutation(instance.combinations)[:12]:
-        box = form.root(np.array([combination]))
+        box = form.contract(form.whole(int(combination)), None)
         for _ in range(2 * len(box)):
             start = box.low[0] * (box.high[0] / box.low[0]) ** rng.random(form.n)
             solution = form.solve(task, int(combination), start, box.low[0], box.high[0])

@@ -98,6 +98,13 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
     for heading in ("Options", "Requirements", "Variables", "Counts", "Parts", "Derived", "Limits", "Objectives"):
         assert f"\n{heading}" in done.stdout
     assert quantity(done.stdout, "load_torque").startswith("load_torque (M_load) N*m needed 0.1 .. 1e+06")
+    limits, objectives = done.stdout.split("\nLimits\n")[1].split("\nObjectives\n")
+    for name, section, kind in (
+        ("ring_ratio_min", limits, "log-convex"),
+        ("sliding_speed", limits, "log-affine"),
+        ("outer_diameter", objectives, "log-convex"),
+    ):
+        assert section.split(f"\n{name} ")[1].split("class: ")[1].startswith(f"{kind} ")
 
 
 def test_describe_as_csv() -> None:
@@ -106,6 +113,7 @@ def test_describe_as_csv() -> None:
     assert rows["requirement", "safety_factor"]["default"] == "1.5"
     assert rows["column", "friction_pair.mu_dynamic"]["unit"] == "-"
     assert rows["objective", "mass"]["sense"] == "min"
+    assert rows["derived", "friction_area"]["classification"] == "log-concave"
 
 
 # ---- check ----------------------------------------------------------------------------------------------------------

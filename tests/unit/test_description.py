@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 import synth
-from synth.description import COLUMNS, describe
+from synth.description import COLUMNS, declared_ranges, describe
+from synth.instance import as_catalogs
 
 
 class Sample(synth.DesignProblem):
@@ -33,6 +34,7 @@ class Sample(synth.DesignProblem):
         d.derive("area", "mm2", area, symbol="A", source="geometry")
         d.derive("weight_index", "-", side * plate.thickness * end.select({"hook": 2.0, "eye": 1.0}))
         d.at_most("stress", factor * peak / area, 100e6, "N/mm2", source="statics")
+        d.at_most("peak", peak + force, 500e3, "kN")
         if room is not None:
             d.at_most("room", side, room, "mm")
         d.objective("weight_index")
@@ -95,6 +97,51 @@ def test_parts_columns_objectives_and_remarks(rows: dict[tuple[str, str], dict[s
     assert rows["advice", "thick"]["source"] == "habit"
 
 
+def test_derived_quantities_limits_and_objectives_are_classified(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    found = {key: row["classification"] for key, row in rows.items() if row["classification"]}
+    assert found == {
+        ("derived", "area"): "log-affine",
+        ("derived", "weight_index"): "log-affine",
+        ("limit", "stress"): "not surely positive",  # nothing says that the factor and the peak are
+        ("limit", "peak"): "not surely positive",
+        ("limit", "room"): "log-affine",  # a side fits in no room of 0
+        ("objective", "weight_index"): "log-affine",
+        ("objective", "area"): "log-affine",
+    }
+
+
+def test_what_an_optional_requirement_replaces_is_classified_without_it() -> None:
+    class Either(synth.DesignProblem):
+        name, title = "either", "Either"
+
+        def declare(self, d: Any) -> None:
+            side = d.variable("side", "mm", 5, 100)
+            given = d.requirement("given", "mm", lower=1, optional=True)
+            height = 1e-3 + side if given is None else given
+            d.derive("area", "mm2", side * height)
+            if given is not None:
+                d.at_most("limit", height, 0.1, "mm")
+
+    table = describe(Either()).set_index(["kind", "name"])["classification"]
+    assert table["derived", "area"] == "log-convex"
+    assert table["limit", "limit"] == "log-affine"
+
+
+def test_ranges_are_those_declared_and_offered() -> None:
+    catalogs = as_catalogs(None)
+    model = Sample().model(frozenset(), catalogs)
+    names = [v.name for v in model.variables] + [e.label for e in model.data_inputs]
+    low, high = (dict(zip(names, ends, strict=True)) for ends in declared_ranges(model, catalogs))
+    assert (low["side"], high["side"]) == pytest.approx((0.005, 0.1))
+    assert (low["force"], high["force"]) == (1e3, 1e5)
+    assert (low["factor"], high["factor"]) == (-math.inf, math.inf)
+    assert (low["rods"], high["rods"]) == (1, 4)
+    assert (low["end"], high["end"]) == (0, 1)
+    thickness = catalogs.table("core_plates").number("thickness")
+    assert (low["plate.thickness"], high["plate.thickness"]) == (1e-3, thickness.max())
+    assert thickness.min() < 1e-3
+
+
 def test_an_unknown_option_is_refused() -> None:
     with pytest.raises(synth.InputError, match="shape"):
         describe(Sample(shape="oval"))
@@ -107,4 +154,6 @@ def test_every_family_can_be_described(family: str) -> None:
     named = table[table["kind"].isin(["option", "requirement", "variable", "count", "choice", "slot", "derived"])]
     assert not named["symbol"].duplicated().any()
     assert (named["text"] != "").all()
-    assert (table["classification"] == "").all()
+    judged = table["kind"].isin(["derived", "limit", "objective"])
+    assert ((table["classification"] != "") == judged).all()
+    assert table["classification"].str.len().max() <= 100

@@ -1,0 +1,301 @@
+"""Many small continuous problems at once: one set of rows, a combination of parts and a task each.
+
+The problem is that of :class:`synth.nlp.ParametricNlp`,
+
+    minimise  weights . phi + t_weight t
+    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k,
+
+solved for whole arrays of data by an interior-point method of our own. ``min``, ``max`` and ``where`` are
+differentiated piecewise as they stand; the general solver with its explicit branches remains the referee.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from synth.derivatives import RowFunctions
+from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Problems
+from synth.lanes import InteriorPoint
+from synth.native import Native
+from synth.native import native as compiled_solver
+from synth.nlp import GUARD_MARGIN, Rows
+from synth.program import Program
+
+# Rows broken by more than this count as missed, and the problem is tried again from another start.
+MISSED = 1e-7
+OTHER_STARTS = (0.75, 0.25)
+CHUNK = 6000
+
+
+@dataclass(frozen=True)
+class Tasks:
+    """Scalar problems, one per row of each array.
+
+    Parameters
+    ----------
+    weights, slopes, caps : array (problems, objectives)
+        A cap of infinity is none.
+    goal_scales : array (objectives,)
+        Size of objectives that do not enter by logarithm.
+    t_weight : float
+        0: t is held at 0.
+    elastic : float
+        How much one unit of t loosens every limit but the guards.
+    """
+
+    weights: np.ndarray
+    slopes: np.ndarray
+    caps: np.ndarray
+    goal_scales: np.ndarray
+    t_weight: float = 1.0
+    elastic: float = 0.0
+
+
+@dataclass(frozen=True)
+class Solutions:
+    """Where the solver ended, one row per problem; nothing in it is trusted before it is re-evaluated.
+
+    Parameters
+    ----------
+    variables : array (problems, variables)
+        SI, within their bounds.
+    phi : array (problems, objectives)
+    t : array (problems,)
+    violation : array (problems,)
+        Largest violation of a row at the point; 0 where all hold, infinite where one does not exist.
+    cut_multipliers : array (problems, cuts)
+    goal_multipliers : array (problems, objectives)
+    converged : array of bool (problems,)
+        Whether the point met the tolerances of an optimum.
+    """
+
+    variables: np.ndarray
+    phi: np.ndarray
+    t: np.ndarray
+    violation: np.ndarray
+    cut_multipliers: np.ndarray
+    goal_multipliers: np.ndarray
+    converged: np.ndarray
+
+
+class BatchNlp:
+    """The solver of one program and set of rows; derivatives and code are made once.
+
+    Parameters
+    ----------
+    program : Program
+    n_variables : int
+    rows : Rows
+    native : bool, optional
+        Whether to use compiled code; by default where a compiler is at hand.
+    """
+
+    def __init__(self, program: Program, n_variables: int, rows: Rows, native: bool | None = None) -> None:
+        self.rows = rows
+        self.functions = RowFunctions(program, n_variables, rows)
+        self.log_variables = np.array(rows.log_variables, dtype=bool)
+        self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
+        self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)
+        compiled = None if native is False else compiled_solver(self.functions)
+        self.native = compiled is not None
+        self.solver: InteriorPoint | Native = compiled or InteriorPoint(self.functions)
+        self._stored = self.functions.compile_stored()
+        self._sides = self._compile_sides(program)
+
+    def _compile_sides(self, program: Program) -> Any:
+        """Return a function of both sides of the rows that enter by a scaled difference."""
+        plain = [c for c, log in zip(self.rows.cuts, self.rows.log_cuts, strict=True) if not log]
+        wanted = [k for c in plain for k in (c.value, c.limit) if k is not None]
+        return program.compile(wanted) if wanted else None
+
+    def solve(
+        self,
+        tasks: Tasks,
+        data: Sequence[Any],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+    ) -> Solutions:
+        """Solve all problems, each from its start, and again from other starts where that fails.
+
+        Parameters
+        ----------
+        tasks : Tasks
+        data : list of numbers or arrays (problems,)
+            Data inputs of the program; NaN where a column has no value.
+        start, low, high : array (problems, variables)
+            SI; equal bounds pin a variable.
+        bounds : list of float
+            Constant right sides, in the order of the cuts.
+        void : array of bool (problems, cuts)
+            Limits that do not count.
+
+        Returns
+        -------
+        Solutions
+        """
+        count = len(tasks.weights)
+        columns = [np.asarray(x, dtype=float) for x in data]
+        parts = []
+        for first in range(0, max(count, 1), CHUNK):
+            rows = slice(first, min(first + CHUNK, count))
+            parts.append(
+                self._solve_part(
+                    Tasks(
+                        tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
+                        tasks.t_weight, tasks.elastic,
+                    ),
+                    [x if x.ndim == 0 else x[rows] for x in columns],
+                    start[rows], low[rows], high[rows], bounds, void[rows],
+                )
+            )  # fmt: skip
+        return Solutions(
+            **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Solutions)}
+        )
+
+    # -- one chunk -----------------------------------------------------------------------------
+
+    def _solve_part(
+        self,
+        tasks: Tasks,
+        data: Sequence[np.ndarray],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+    ) -> Solutions:
+        with np.errstate(all="ignore"):
+            clean = [np.where(np.isnan(x), 1.0, x) for x in data]
+            scales = self._scales(low, high)
+            first = np.clip(start, low, high)
+            sizes = self._inverse_sizes(tasks, [*first.T, *clean], bounds)
+            worth = _worth(tasks)
+            problems = Problems(
+                stored=self._stored(self._fixed_inputs(clean, bounds, sizes, scales)),
+                start=self._to_search(first, scales),
+                low=self._to_search(low, scales),
+                high=self._to_search(high, scales),
+                counts=np.concatenate([~void, np.isfinite(tasks.caps)], axis=1).T,
+                slopes=self._slopes(tasks),
+                rights=self._rights(tasks),
+                weights=(tasks.weights * worth[:, None]).T,
+                t_weight=tasks.t_weight * worth,
+            )
+            ends = self.solver.solve(problems)
+            result = self._finished(problems, ends, scales, low, high, worth)
+            status = ends.status
+            for share in OTHER_STARTS:
+                # Where the rows cannot be met near where a solver ended, another start has hardly ever met them.
+                again = np.flatnonzero((status != CONVERGED) & (status != INFEASIBLE) & ~(result.violation <= MISSED))
+                if not len(again):
+                    break
+                some = problems.moved(again, share)
+                ends = self.solver.solve(some)
+                status[again] = ends.status
+                other = self._finished(some, ends, scales[:, again], low[again], high[again], worth[again])
+                _keep_better(result, other, again)
+        return result
+
+    def _scales(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the unit of each variable (variables, problems); 1 where the logarithm is the variable."""
+        size = np.maximum(np.abs(low), np.abs(high)).T
+        plain = ~self.log_variables[:, None] & (size > 0) & np.isfinite(size)
+        return np.where(plain, size, 1.0)
+
+    def _to_search(self, values: np.ndarray, scales: np.ndarray) -> np.ndarray:
+        logs = self.log_variables[:, None]
+        return np.where(logs, np.log(np.where(logs, values.T, 1.0)), values.T / scales)
+
+    def _inverse_sizes(self, tasks: Tasks, inputs: Sequence[Any], bounds: Sequence[float]) -> list[Any]:
+        """Return one over what one unit of a scaled difference is, per row."""
+        result: list[Any] = []
+        sides = iter([] if self._sides is None else self._sides(inputs))
+        for j, cut in enumerate(self.rows.cuts):
+            if self.rows.log_cuts[j]:
+                result.append(1.0)
+                continue
+            value = next(sides)
+            limit = bounds[j] if cut.limit is None else next(sides)
+            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
+            result.append(1.0 / np.where(np.isfinite(size), size, 1.0))
+        return [*result, *(1.0 / tasks.goal_scales)]
+
+    def _fixed_inputs(
+        self, data: Sequence[Any], bounds: Sequence[float], sizes: Sequence[Any], scales: np.ndarray
+    ) -> list[Any]:
+        nothing = [0.0] * self.functions.n
+        return [
+            *nothing,
+            *data,
+            *bounds,
+            *sizes,
+            *(1.0 if log else s for log, s in zip(self.log_variables, scales, strict=True)),
+        ]
+
+    def _slopes(self, tasks: Tasks) -> np.ndarray:
+        give = np.where(self.guard, 0.0, tasks.elastic)
+        return np.concatenate([np.broadcast_to(give, (len(tasks.caps), len(give))), tasks.slopes], axis=1).T
+
+    def _rights(self, tasks: Tasks) -> np.ndarray:
+        margin = np.where(self.guard, -GUARD_MARGIN, 0.0)
+        caps = np.where(np.isfinite(tasks.caps), tasks.caps, 0.0)
+        return np.concatenate([np.broadcast_to(margin, (len(caps), len(margin))), caps], axis=1).T
+
+    def _finished(
+        self,
+        problems: Problems,
+        ends: Ends,
+        scales: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        worth: np.ndarray,
+    ) -> Solutions:
+        cuts = self.functions.n_cuts
+        logs = self.log_variables[:, None]
+        variables = np.where(logs, np.exp(np.where(logs, ends.y, 0.0)), ends.y * scales)
+        t = self._least_t(problems, ends)
+        left = ends.rows - problems.slopes * t - problems.rights
+        left[:cuts] = np.where(self.equal[:, None], np.abs(left[:cuts]), left[:cuts])
+        left = np.where(problems.counts, np.where(np.isnan(left), np.inf, left), 0.0)
+        return Solutions(
+            variables=np.clip(variables.T, low, high),
+            phi=ends.rows[cuts:].T,
+            t=t,
+            violation=left.max(axis=0, initial=0.0),
+            cut_multipliers=(ends.multipliers[:cuts] / worth).T,
+            goal_multipliers=(ends.multipliers[cuts:] / worth).T,
+            converged=ends.status == CONVERGED,
+        )
+
+    def _least_t(self, problems: Problems, ends: Ends) -> np.ndarray:
+        """Return the least t that all rows allow at the point, where only upper limits speak of it."""
+        speaks = problems.counts & (problems.slopes != 0)
+        soft = speaks & (problems.slopes > 0)
+        soft[: len(self.equal)] &= ~self.equal[:, None]
+        needed = np.where(soft, (ends.rows - problems.rights) / np.where(soft, problems.slopes, 1.0), -np.inf)
+        least = needed.max(axis=0, initial=-np.inf)
+        exact = (problems.t_weight > 0) & np.isfinite(least) & np.all(soft == speaks, axis=0)
+        return np.where(exact, least, ends.t)
+
+
+def _worth(tasks: Tasks) -> np.ndarray:
+    """Return factors for the objective that make multipliers a matter of ones, one per problem."""
+    slopes = np.where(np.isfinite(tasks.caps), tasks.slopes, 0.0)
+    slope = np.maximum(np.max(slopes, axis=1, initial=0.0), tasks.elastic)
+    by_t = np.where(slope > 0, tasks.t_weight / np.where(slope > 0, slope, 1.0), 0.0)
+    size = np.maximum(np.max(np.abs(tasks.weights), axis=1, initial=0.0), by_t)
+    return np.where(size > 0, 1.0 / np.where(size > 0, size, 1.0), 1.0)
+
+
+def _keep_better(result: Solutions, other: Solutions, places: np.ndarray) -> None:
+    """Put those of other solutions into their places that break their rows less."""
+    better = other.violation < result.violation[places]
+    for field in fields(Solutions):
+        getattr(result, field.name)[places[better]] = getattr(other, field.name)[better]

@@ -1,0 +1,592 @@
+"""The contraction of boxes compiled, where there is a C compiler: the same statements, over registers of boxes.
+
+One call tightens boxes, snaps them to the grid, scores what is left of them and packs what is alive. Requirement
+values, tables and ends are arguments, so that the code is compiled once per family and pattern of signs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth import native_rules as rules
+from synth.contractor import CONSTANT, Assign, Check, Code, Contractor, Enclose, Hold, Kill, Narrow, Root, Statement
+from synth.native import FLAGS, library, switched_on
+from synth.native_source import EXPRESSIONS, VECTORS
+from synth.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
+from synth.special import SpecialFunction
+
+# No contraction of products and sums: the ends of an interval must round as they do in NumPy.
+BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
+# Compiling takes a second or two, a hundred thousand boxes in NumPy; what is compiled is kept for other questions.
+COMPILE_AFTER = 20_000
+# Threads take the next so many boxes when they are free: a core that is busy with something else holds nobody up.
+PART = 512
+SCORE_WIDTH = 16
+
+NUMBERS = {
+    "count": "long long", "passes": "long long", "factors": "long long", "goals": "long long",
+    "caps_step": "long long", "score_width": "long long", "snap": "double", "pinned": "double",
+}  # fmt: skip
+GIVEN = {
+    "cell": "int", "low": "double", "high": "double", "bounds": "double", "tag": "int", "caps": "double",
+    "constants": "double", "rights": "double", "root_low": "double", "root_high": "double", "lower": "double",
+    "upper": "double", "spans": "double", "weights": "double", "steep": "double", "rows": "double *const",
+    "spreads": "float *const", "grids": "double *const", "grid_sizes": "long long",
+}  # fmt: skip
+TAKEN = {
+    "out_cell": "int", "out_low": "double", "out_high": "double", "out_bounds": "double", "out_tag": "int",
+    "out_scores": "float", "alive": "unsigned char", "open": "unsigned char",
+}  # fmt: skip
+CTYPES: dict[str, type[ctypes.c_longlong | ctypes.c_double]] = {
+    "long long": ctypes.c_longlong,
+    "double": ctypes.c_double,
+}
+
+
+class _Batch(ctypes.Structure):
+    """The structure of the same name in the C source."""
+
+    _fields_ = (
+        *((name, CTYPES[kind]) for name, kind in NUMBERS.items()),
+        *((name, ctypes.c_void_p) for name in (*GIVEN, *TAKEN)),
+    )
+
+
+@dataclass(frozen=True)
+class Question:
+    """What the contraction of boxes reads of one question.
+
+    Parameters
+    ----------
+    tables : list of (factor, low, high)
+        Ends of every tabulated node per cluster.
+    constants, rights : array
+        Values of constant nodes, and constant right sides.
+    root : Root
+        What holds over the whole question.
+    lower, upper : array (variables,)
+    spans : array (variables,)
+        Unit of the width of each variable; 0 where widths are logarithms of ratios.
+    steep : array (limits + objectives, variables)
+    spreads : list of array (clusters, limits + objectives)
+        Per factor.
+    grids : list of arrays
+        Makeable values per variable; empty where it is continuous.
+    margins : (float, float)
+        By how much a value may miss the grid, relative and absolute.
+    """
+
+    tables: Sequence[tuple[int, np.ndarray, np.ndarray]]
+    constants: np.ndarray
+    rights: np.ndarray
+    root: Root
+    lower: np.ndarray
+    upper: np.ndarray
+    spans: np.ndarray
+    steep: np.ndarray
+    spreads: Sequence[np.ndarray]
+    grids: Sequence[np.ndarray]
+    margins: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Packed:
+    """What is alive after a contraction, packed; ``alive`` and ``open`` speak of all boxes."""
+
+    alive: np.ndarray
+    cell: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    bounds: np.ndarray
+    scores: np.ndarray
+    tag: np.ndarray
+    open: np.ndarray
+
+
+class Prepared:
+    """The arrays of one question as the compiled code reads them.
+
+    Parameters
+    ----------
+    contractor : Contractor
+    question : Question
+    """
+
+    def __init__(self, contractor: Contractor, question: Question) -> None:
+        self.n, self.factors = len(question.lower), len(question.spreads)
+        self.goals = question.steep.shape[0] - len(contractor.cuts)
+        width = -(-question.steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
+        self.kept: dict[str, Any] = {
+            name: np.ascontiguousarray(getattr(question, name), dtype=float)
+            for name in ("constants", "rights", "lower", "upper", "spans", "steep")
+        }
+        for name, end in (("root_low", question.root.low), ("root_high", question.root.high)):
+            self.kept[name] = np.where(question.root.narrowed, end, np.nan)
+        per_factor: list[list[np.ndarray]] = [[] for _ in range(self.factors)]
+        for f, low, high in question.tables:
+            per_factor[f] += [low, high]
+        rows = [np.stack(own, axis=1) if own else np.zeros((1, 1)) for own in per_factor]
+        spreads = [np.zeros((len(s), width), dtype=np.float32) for s in question.spreads]
+        for padded, spread in zip(spreads, question.spreads, strict=True):
+            padded[:, : spread.shape[1]] = spread
+        grids = [np.ascontiguousarray(g, dtype=float) for g in question.grids]
+        self.kept["grid_sizes"] = np.array([len(g) for g in grids] or [0], dtype=np.int64)
+        self._lists = {"rows": rows, "spreads": spreads, "grids": grids}
+        for name, arrays in self._lists.items():
+            self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
+        self.numbers = {
+            "factors": self.factors, "goals": self.goals, "score_width": width,
+            "snap": question.margins[0], "pinned": question.margins[1],
+        }  # fmt: skip
+
+
+class BoxCode:
+    """Compiled contraction of boxes.
+
+    Parameters
+    ----------
+    loaded : CDLL
+    limits : int
+    """
+
+    def __init__(self, loaded: ctypes.CDLL, limits: int) -> None:
+        self.limits = limits
+        self._contract = loaded.contract
+        self._contract.argtypes = [ctypes.POINTER(_Batch)]
+        self._contract.restype = ctypes.c_longlong
+
+    def contract(
+        self,
+        prepared: Prepared,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: np.ndarray,
+        tag: np.ndarray,
+        caps: np.ndarray | None,
+        weights: np.ndarray,
+        passes: int,
+        workers: int = 1,
+    ) -> Packed:
+        """Tighten, snap and score boxes.
+
+        Parameters
+        ----------
+        prepared : Prepared
+        cell : array (boxes, factors)
+        low, high : array (boxes, variables)
+        bounds : array (boxes, objectives)
+        tag : array (boxes,)
+        caps : array (objectives,) or (boxes, objectives), optional
+            Upper bounds of the objectives, with their sign.
+        weights : array (limits + objectives,)
+        passes : int
+        workers : int
+            Threads; the boxes are split between them and the result is the same for any number.
+        """
+        count, n, factors = len(cell), prepared.n, prepared.factors
+        given: dict[str, np.ndarray] = {
+            "cell": np.ascontiguousarray(cell, dtype=np.int32),
+            "low": np.ascontiguousarray(low, dtype=float),
+            "high": np.ascontiguousarray(high, dtype=float),
+            "bounds": np.ascontiguousarray(bounds, dtype=float),
+            "tag": np.ascontiguousarray(tag, dtype=np.int32),
+            "caps": np.ascontiguousarray(np.zeros(prepared.goals) if caps is None else caps, dtype=float),
+        }
+        step = given["caps"].shape[1] if given["caps"].ndim == 2 else 0
+        taken: dict[str, np.ndarray] = {
+            "out_cell": np.empty((count, factors), dtype=np.int32),
+            "out_low": np.empty((count, n)),
+            "out_high": np.empty((count, n)),
+            "out_bounds": np.empty((count, prepared.goals)),
+            "out_tag": np.empty(count, dtype=np.int32),
+            "out_scores": np.empty((count, n + factors), dtype=np.float32),
+            "alive": np.empty(count, dtype=bool),
+            "open": np.empty((count, self.limits), dtype=bool),
+        }
+        fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)}
+        moving = {name: (a.ctypes.data, a.strides[0]) for name, a in (given | taken).items() if name != "caps" or step}
+        still = {name: a.ctypes.data for name, a in (fixed | given).items() if name not in moving}
+
+        def part(first: int, last: int) -> _Batch:
+            # Every array has a row per box, so that a part begins so many rows further on.
+            places = {name: place + first * stride for name, (place, stride) in moving.items()}
+            return _Batch(count=last - first, passes=passes, caps_step=step, **prepared.numbers, **still, **places)
+
+        parts = max(1, count // PART) if workers > 1 else 1
+        ends = [count * k // parts for k in range(parts + 1)]
+        kept = self._run([part(first, last) for first, last in pairwise(ends)], workers)
+        rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
+
+        def packed(name: str) -> np.ndarray:
+            array = taken[name]
+            return array[rows[0]] if parts == 1 else np.concatenate([array[own] for own in rows])
+
+        return Packed(
+            taken["alive"], packed("out_cell"), packed("out_low"), packed("out_high"), packed("out_bounds"),
+            packed("out_scores"), packed("out_tag"), taken["open"],
+        )  # fmt: skip
+
+    def _run(self, batches: Sequence[_Batch], workers: int) -> list[int]:
+        kept = [0] * len(batches)
+        waiting = iter(range(len(batches)))
+
+        def run() -> None:
+            for k in waiting:
+                kept[k] = self._contract(ctypes.byref(batches[k]))
+
+        threads = [threading.Thread(target=run) for _ in range(min(workers, len(batches)) - 1)]
+        for thread in threads:
+            thread.start()
+        run()
+        for thread in threads:
+            thread.join()
+        return kept
+
+
+def compiled(code: Code, boxes: int) -> BoxCode | None:
+    """Return the compiled form of generated code that is to contract so many boxes more, if there is one.
+
+    It is looked for at once, and made when the code has contracted many boxes.
+    """
+    if not switched_on():
+        return None
+    code.contracted += boxes
+    make = code.contracted > COMPILE_AFTER
+    if code.compiled is None and not code.hopeless and (make or not code.looked):
+        code.looked = True
+        text = source(code)
+        loaded = None if text is None else library("boxes", text, BOX_FLAGS, make)
+        if loaded is not None:
+            code.compiled = BoxCode(loaded, code.sweeps.limits)
+        code.hopeless = loaded is None and (make or text is None)
+    found: BoxCode | None = code.compiled
+    return found
+
+
+# -- the source --------------------------------------------------------------------------------
+
+
+def source(code: Code) -> str | None:
+    """Return the translation unit of generated code; None where something in it has no form in C."""
+    sweeps, owner = code.sweeps, code.contractor
+    statements = [*sweeps.first, *sweeps.later]
+    try:
+        parts = [
+            VECTORS, rules.COMMON, _sizes(code),
+            *_specials(statements, owner.program),
+            *_rules(statements, owner),
+            _loading(code), _tighten(code), DRIVER,
+        ]  # fmt: skip
+    except (UnsupportedOperation, KeyError):
+        return None
+    return "\n".join(parts)
+
+
+def _struct() -> str:
+    lines = [f"    {kind} {name};" for name, kind in NUMBERS.items()]
+    lines += [f"    const {kind} *{name};" for name, kind in GIVEN.items()]
+    lines += [f"    {kind} *{name};" for name, kind in TAKEN.items()]
+    return "\n".join(["typedef struct {", *lines, "} Batch;"])
+
+
+def _sizes(code: Code) -> str:
+    owner = code.contractor
+    sizes = {
+        "N": owner.layout.n_variables, "LIMITS": len(owner.cuts), "GOALS": len(owner.goals),
+        "TABLES": len(owner.tables), "NODES": len(owner.program.nodes), "SCORE_WIDTH": SCORE_WIDTH,
+    }  # fmt: skip
+    lines = [f"#define {name} {value}" for name, value in sizes.items()]
+    return "\n".join([*lines, "#define ANY(n) ((n) + 1)", _struct()])
+
+
+def _specials(statements: Sequence[Statement], program: Program) -> list[str]:
+    """Return the special functions that are used, and their ranges where signs are not known."""
+    texts = [s.value if isinstance(s, Assign) else s.function if isinstance(s, Enclose) else "" for s in statements]
+    used = sorted({int(number) for text in texts for number in re.findall(r"special_(\d+)", text)})
+    ranges = {s.function for s in statements if isinstance(s, Enclose)}
+    result = []
+    for k in used:
+        result.append(formula_source(f"special_{k}", program.specials[k]))
+        if f"range_of_special_{k}" in ranges:
+            result.append(_range_source(k, program.specials[k]))
+    return result
+
+
+def formula_source(name: str, function: SpecialFunction) -> str:
+    """Return the C function of a special function, traced with symbols."""
+    symbols = [ca.SX.sym(f"a{k}") for k in range(len(function.elasticity))]
+    program = Program(symbols, [function.formula(*symbols)])
+    lines = [f"static __attribute__((noinline)) vd {name}({', '.join(f'vd a{k}' for k in range(len(symbols)))}) {{"]
+    names: dict[int, str] = {}
+    for k in program.needed(program.outputs):
+        node = program.nodes[k]
+        args = [names[a] for a in node.args]
+        truths = [f"({x} != 0.0)" for x in args]
+        if node.op == ca.OP_INPUT:
+            names[k] = f"a{int(node.constant)}"
+            continue
+        if node.op == ca.OP_CONST:
+            value = f"all({_literal(node.constant)})"
+        elif node.op == ca.OP_NOT:
+            value = f"TRUTH(~{truths[0]})"
+        elif node.op in (ca.OP_AND, ca.OP_OR):
+            value = f"TRUTH({truths[0]} {'&' if node.op == ca.OP_AND else '|'} {truths[1]})"
+        elif node.op in COMPARISONS:
+            value = f"TRUTH({EXPRESSIONS[node.op].format(*args)})"
+        elif node.op == OP_SELECT:
+            value = f"choose({truths[0]}, {args[1]}, {args[2]})"
+        elif node.op == ca.OP_IF_ELSE_ZERO:
+            value = f"keep({truths[0]}, {args[1]})"
+        else:
+            value = EXPRESSIONS[node.op].format(*args)
+        names[k] = f"x{k}"
+        lines.append(f"    const vd x{k} = {value};")
+    result = names[program.outputs[0]]
+    if function.above is not None:
+        first, second = function.above
+        result = f"choose(a{first} >= a{second}, {result}, all(NAN))"
+    return "\n".join([*lines, f"    return {result};", "}"])
+
+
+def _range_source(k: int, function: SpecialFunction) -> str:
+    numbers = range(len(function.elasticity))
+    rising = [low >= 0 for low, _ in function.elasticity]
+    least = ", ".join(f"a{i}.{'low' if up else 'high'}" for i, up in zip(numbers, rising, strict=True))
+    most = ", ".join(f"a{i}.{'high' if up else 'low'}" for i, up in zip(numbers, rising, strict=True))
+    inside = " & ".join(f"(a{i}.low >= 0.0)" for i in numbers)
+    arguments = ", ".join(f"Interval a{i}" for i in numbers)
+    return (
+        f"RULE range_of_special_{k}({arguments}) {{\n"
+        f"    return where({inside}, both(special_{k}({least}), special_{k}({most})), unknown());\n}}"
+    )
+
+
+def _literal(value: float) -> str:
+    if np.isnan(value):
+        return "NAN"
+    if np.isinf(value):
+        return "INFINITY" if value > 0 else "-INFINITY"
+    return repr(float(value))
+
+
+def _rules(statements: Sequence[Statement], owner: Contractor) -> list[str]:
+    """Return the rules that are used, one function per operation and argument."""
+    made = dict[str, str]()
+    for s in statements:
+        if isinstance(s, Enclose) and not s.function.startswith("range_of"):
+            name, body = _forward_rule(s, owner)
+            letters = ", ".join(f"Interval {letter}" for letter in "abc"[: len(s.args)])
+            made[name] = f"RULE {name}({letters}) {{ return {body}; }}"
+        elif isinstance(s, Narrow):
+            letters = ", ".join(f"Interval {letter}" for letter in "rabc"[: len(s.args) + 1])
+            for i in s.positions:
+                body = rules.POWER_BACKWARD if s.op in rules.POWERS else rules.BACKWARD[s.op][i]
+                made[f"backward_{s.op + 100}_{i}"] = f"RULE backward_{s.op + 100}_{i}({letters}) {{ return {body}; }}"
+    return list(made.values())
+
+
+def _forward_rule(s: Enclose, owner: Contractor) -> tuple[str, str]:
+    if s.function == "whole":
+        return f"whole_{len(s.args)}", f"whole_of({' + '.join(f'{x}.low' for x in 'abc'[: len(s.args)])})"
+    op = int(s.function.removeprefix("forward_")) - 100
+    if op in rules.POWERS:
+        same = owner.kind[s.args[1]] == CONSTANT
+        return f"{s.function}_{'constant' if same else 'any'}", rules.POWER_FORWARD[same]
+    return s.function, rules.FORWARD[op]
+
+
+def _loading(code: Code) -> str:
+    """Return the function that reads the tables of one box."""
+    owner = code.contractor
+    lines = ["INLINE void load_tables(const Batch *b, const int *cell, vd T[][2], int l) {"]
+    for f in sorted({owner.factor[k] for k in owner.tables}):
+        own = [i for i, k in enumerate(owner.tables) if owner.factor[k] == f]
+        lines.append(f"    const double *r{f} = b->rows[{f}] + {2 * len(own)} * (long long)cell[{f}];")
+        for place, i in enumerate(own):
+            lines.append(f"    T[{i}][0][l] = r{f}[{2 * place}]; T[{i}][1][l] = r{f}[{2 * place + 1}];")
+    return "\n".join([*lines, "}"])
+
+
+def _tighten(code: Code) -> str:
+    """Return the function that tightens a register of boxes."""
+    sweeps, owner = code.sweeps, code.contractor
+    lines = [
+        "static vi tighten(const Batch *b, const vd *RL, const vd *RH, const vd *B, const vd *C,",
+        "                  vd V[][2], vd T[][2], vd *goals, vi *open) {",
+    ]
+    lines += [f"    const vd l{k} = all(b->constants[{i}]), h{k} = l{k};" for i, k in enumerate(sweeps.constants)]
+    lines += [f"    vd l{k} = T[{i}][0], h{k} = T[{i}][1];" for i, k in enumerate(sweeps.tables)]
+    lines += [f"    vd l{k} = V[{i}][0], h{k} = V[{i}][1];" for k, i in sweeps.variables]
+    lines += [f"    vd l{k}, h{k};" for k in owner.inner]
+    lines += [f"    vi o{j};" for j in range(sweeps.limits)]
+    lines += ["    vd s, t, m;", "    vi p, q, dead = all_i(0);"]
+    lines += [f"    {line}" for statement in sweeps.first for line in _in_c(statement, owner)]
+    lines.append("    for (long long sweep = 1; sweep < b->passes; sweep++) {")
+    lines += [f"        {line}" for statement in sweeps.later for line in _in_c(statement, owner)]
+    lines.append("    }")
+    lines += [f"    V[{i}][0] = l{k}; V[{i}][1] = h{k};" for k, i in sweeps.variables]
+    lines += [f"    goals[{j}] = {end};" for j, end in enumerate(sweeps.goals)]
+    lines += [f"    open[{j}] = o{j};" for j in range(sweeps.limits)]
+    return "\n".join([*lines, "    return dead;", "}"])
+
+
+def _in_c(statement: Statement, owner: Contractor) -> list[str]:
+    if isinstance(statement, Assign):
+        return [f"{statement.target} = {statement.value};"]
+    if isinstance(statement, Kill):
+        return [f"dead |= {statement.condition};"]
+    if isinstance(statement, Hold):
+        # Which nodes are narrowed is a matter of requirement values: for the others the root is not a number.
+        k = statement.node
+        return [f"l{k} = v_fmax(l{k}, RL[{k}]); h{k} = v_fmin(h{k}, RH[{k}]);"]
+    if isinstance(statement, Check):
+        return ["if (!any(~dead)) return dead;"]
+    ends = [f"both(l{k}, h{k})" for k in statement.args]
+    if isinstance(statement, Enclose):
+        name = statement.function if statement.function.startswith("range_of") else _forward_rule(statement, owner)[0]
+        return [f"{{ const Interval f = {name}({', '.join(ends)}); s = f.low; t = f.high; }}"]
+    if statement.op in rules.POWERS and owner.kind[statement.args[1]] != CONSTANT:
+        return []
+    known = ", ".join([f"both(l{statement.node}, h{statement.node})", *ends])
+    found = [f"f{i} = backward_{statement.op + 100}_{i}({known})" for i in statement.positions]
+    lines = [f"{{ const Interval {', '.join(found)};"] if found else []
+    for i in statement.positions:
+        k = statement.args[i]
+        lines.append(f"  l{k} = v_fmax(l{k}, f{i}.low); h{k} = v_fmin(h{k}, f{i}.high);")
+    return [*lines, "}"] if found else []
+
+
+DRIVER = r"""
+typedef float vf __attribute__((vector_size(8 * LANES)));
+
+/* The first place whose value is not below x, and the first whose value is above x. */
+static long long not_below(const double *grid, long long count, double x) {
+    long long first = 0;
+    while (count > 0) {
+        const long long half = count / 2;
+        const int right = grid[first + half] < x;
+        first = right ? first + half + 1 : first;
+        count = right ? count - half - 1 : half;
+    }
+    return first;
+}
+static long long above(const double *grid, long long count, double x) {
+    long long first = 0;
+    while (count > 0) {
+        const long long half = count / 2;
+        const int right = grid[first + half] <= x;
+        first = right ? first + half + 1 : first;
+        count = right ? count - half - 1 : half;
+    }
+    return first;
+}
+
+static vi snap(const Batch *b, vd V[][2]) {
+    vi dead = all_i(0);
+    for (int i = 0; i < N; i++) {
+        vd low = v_max(V[i][0], all(b->lower[i])), high = v_min(V[i][1], all(b->upper[i]));
+        const long long size = b->grid_sizes[i];
+        if (size) {
+            const double *grid = b->grids[i];
+            for (int l = 0; l < LANES; l++) {
+                const long long first = not_below(grid, size, low[l] * (1.0 - b->snap) - b->pinned);
+                const long long last = above(grid, size, high[l] * (1.0 + b->snap) + b->pinned) - 1;
+                if (first > last) dead[l] = -1;
+                low[l] = grid[first < size ? first : size - 1];
+                high[l] = grid[last > 0 ? last : 0];
+            }
+            high = v_max(high, low);
+        }
+        dead |= low > high * (1.0 + b->snap) + b->pinned;
+        V[i][0] = low;
+        V[i][1] = v_max(high, low);
+    }
+    return dead;
+}
+
+/* Sum of products of two rows whose length is a multiple of SCORE_WIDTH. */
+static float dot(const float *a, const float *b, long long width) {
+    vf sum = {0};
+    float parts[2 * LANES];
+    for (long long k = 0; k < width; k += 2 * LANES) {
+        vf x, y;
+        memcpy(&x, a + k, sizeof x);
+        memcpy(&y, b + k, sizeof y);
+        sum += x * y;
+    }
+    memcpy(parts, &sum, sizeof sum);
+    for (int half = LANES; half; half /= 2)
+        for (int k = 0; k < half; k++) parts[k] += parts[k + half];
+    return parts[0];
+}
+
+long long contract(const Batch *b) {
+    vd RL[NODES], RH[NODES], B[ANY(LIMITS)], C[ANY(GOALS)], V[ANY(N)][2], T[ANY(TABLES)][2];
+    vd goals[ANY(GOALS)], scores[ANY(N)];
+    vi open[ANY(LIMITS)];
+    float counted[LANES][b->score_width];
+    const long long columns = N + b->factors;
+    long long kept = 0;
+    for (int k = 0; k < NODES; k++) { RL[k] = all(b->root_low[k]); RH[k] = all(b->root_high[k]); }
+    for (int j = 0; j < LIMITS; j++) { B[j] = all(b->rights[j]); open[j] = all_i(0); }
+    memset(counted, 0, sizeof counted);
+    for (long long first = 0; first < b->count; first += LANES) {
+        const long long left = b->count - first;
+        for (int l = 0; l < LANES; l++) {
+            const long long box = first + (l < left ? l : left - 1);
+            for (int i = 0; i < N; i++) { V[i][0][l] = b->low[box * N + i]; V[i][1][l] = b->high[box * N + i]; }
+            for (int j = 0; j < GOALS; j++) C[j][l] = b->caps[box * b->caps_step + j];
+            load_tables(b, b->cell + box * b->factors, T, l);
+        }
+        vi dead = tighten(b, RL, RH, B, C, V, T, goals, open);
+        dead |= snap(b, V);
+        for (int l = 0; l < LANES && l < left; l++) {
+            b->alive[first + l] = !dead[l];
+            for (int j = 0; j < LIMITS; j++) b->open[(first + l) * LIMITS + j] = open[j][l] != 0;
+        }
+        if (!any(~dead)) continue;
+        for (int i = 0; i < N; i++) scores[i] = all(0.0);
+        for (int j = 0; j < LIMITS + GOALS; j++) {
+            const vd weight = j < LIMITS ? keep(open[j], all(b->weights[j])) : all(b->weights[j]);
+            for (int i = 0; i < N; i++) scores[i] += weight * b->steep[j * N + i];
+            for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
+        }
+        for (int i = 0; i < N; i++) {
+            const vd width = V[i][1] - V[i][0];
+            scores[i] *= b->spans[i] == 0.0 ? v_log(V[i][1] / V[i][0]) : width / b->spans[i];
+        }
+        for (int l = 0; l < LANES && l < left; l++) {
+            if (dead[l]) continue;
+            const long long box = first + l;
+            const int *cell = b->cell + box * b->factors;
+            for (int i = 0; i < N; i++) {
+                b->out_low[kept * N + i] = V[i][0][l];
+                b->out_high[kept * N + i] = V[i][1][l];
+                b->out_scores[kept * columns + i] = (float)scores[i][l];
+            }
+            for (long long j = 0; j < b->goals; j++) {
+                const double bound = b->bounds[box * b->goals + j];
+                const double least = j < GOALS ? goals[j][l] : NAN;
+                b->out_bounds[kept * b->goals + j] = bound >= least || least != least ? bound : least;
+            }
+            for (long long f = 0; f < b->factors; f++) {
+                const float *spread = b->spreads[f] + cell[f] * b->score_width;
+                b->out_cell[kept * b->factors + f] = cell[f];
+                b->out_scores[kept * columns + N + f] = dot(counted[l], spread, b->score_width);
+            }
+            b->out_tag[kept++] = b->tag[box];
+        }
+    }
+    return kept;
+}
+"""

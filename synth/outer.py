@@ -1,0 +1,163 @@
+"""Optuna chooses the parts where neither bounds nor plain enumeration reach; the dimensions are solved exactly.
+
+Only discrete unknowns are drawn: flat samplers over continuous dimensions as well end several per cent off.
+A trial is one combination (and a direction, where objectives are traded off), its value the optimum of the
+continuous problem. The study is kept in a journal file, so that a search that was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from synth.batch_nlp import Tasks
+from synth.cover import Clock, Purpose, roundings
+from synth.formulation import Boxes, Formulation
+from synth.instance import Instance
+
+BATCH = 48
+DIRECTIONS = 5
+WORST = 1e3  # phi of a trial without a feasible design: worse than any, and finite as samplers want it
+
+
+def search_parts(
+    form: Formulation, left: Boxes, purpose: Purpose, clock: Clock, journal: Path | None, seed: int, trials: int
+) -> int:
+    """Look for designs among the combinations of some boxes.
+
+    Parameters
+    ----------
+    form : Formulation
+        Its archive is filled.
+    left : Boxes
+        What bounds left open.
+    purpose : Purpose
+        Takes the designs as well.
+    clock : Clock
+    journal : Path, optional
+        Where the study is kept until it is finished; None keeps it in memory.
+    seed : int
+    trials : int
+        Combinations to try, those of an earlier run that was stopped included.
+
+    Returns
+    -------
+    int
+        Trials of this run.
+    """
+    import optuna  # costly to import; few questions need it
+    from optuna.storages import JournalStorage
+    from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
+
+    optuna.logging.set_verbosity(logging.ERROR)
+    rows = _offered(form, left)
+    columns = purpose.columns
+    storage = None
+    if journal is not None:
+        storage = JournalStorage(JournalFileBackend(str(journal), lock_obj=JournalFileOpenLock(str(journal))))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # samplers warn of what is experimental in themselves
+        sampler = optuna.samplers.TPESampler(seed=seed, multivariate=True, constant_liar=True)
+        study = optuna.create_study(
+            storage=storage,
+            sampler=sampler,
+            study_name="parts",
+            directions=["minimize"] * len(columns),
+            load_if_exists=True,
+        )
+        before = len(study.get_trials(deepcopy=False))
+        done = before
+        while done < trials:
+            clock.check([left])
+            asked = [study.ask() for _ in range(min(BATCH, trials - done))]
+            places = [[t.suggest_int(f"factor_{f}", 0, len(r) - 1) for f, r in enumerate(rows)] for t in asked]
+            towards = [t.suggest_int("direction", 0, DIRECTIONS - 1) if len(columns) > 1 else 0 for t in asked]
+            digits = [rows[f][np.array([p[f] for p in places])] for f in range(len(rows))]
+            combinations = form.cells.number(digits, len(asked))
+            values, missed = _inner(form, purpose, combinations, np.array(towards))
+            for trial, phi, violation in zip(asked, values, missed, strict=True):
+                trial.set_constraint("limits", float(violation))
+                study.tell(trial, [float(x) for x in phi])
+            done += len(asked)
+    if journal is not None:
+        journal.unlink(missing_ok=True)
+    return done - before
+
+
+def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> Path | None:
+    """Return where the study of a question is kept, or None where no folder can be written."""
+    selection = instance.selection
+    question = {
+        "family": instance.problem.name,
+        "options": dict(instance.problem.options),
+        "requirements": instance.requirements,
+        "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
+        "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
+        "ranges": [instance.lower.tolist(), instance.upper.tolist(), bool(instance.grid)],
+        "limits": [repr(x) for x in instance.extra],
+        "objectives": dict(objectives),
+        "seed": seed,
+    }
+    digest = hashlib.sha256(json.dumps(question, sort_keys=True).encode()).hexdigest()[:24]
+    folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "clutchsynth" / "studies"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return folder / f"{digest}.journal" if os.access(folder, os.W_OK) else None
+
+
+def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:
+    """Return, per factor, the rows that some open box holds, neighbours in the cluster tree side by side."""
+    result = []
+    for f, tree in enumerate(form.cells.trees):
+        held = np.zeros(len(tree.order), dtype=bool)
+        for cluster in np.unique(left.cell[:, f]):
+            held[tree.start[cluster] : tree.stop[cluster]] = True
+        result.append(tree.order[held])
+    return result
+
+
+def _inner(
+    form: Formulation, purpose: Purpose, combinations: np.ndarray, towards: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solve the continuous problem of each combination; return phi, and by how much limits are missed."""
+    columns, goals, count = purpose.columns, len(form.goals), len(combinations)
+    share = towards / max(DIRECTIONS - 1, 1)
+    weights = np.zeros((count, goals))
+    for position, k in enumerate(columns):
+        even = (share + position / len(columns)) % 1.0
+        weights[:, k] = 1.0 if len(columns) == 1 else 0.02 + even
+    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(purpose.plain, (count, 1)), form.goal_scales, 0.0)
+    start = np.tile(form.inside(form.leaves(combinations[:1]), 0.5), (count, 1))
+    answer = form.solve_many(tasks, combinations, start)
+    points, owner = _makeable(form, combinations, answer.variables)
+    rows, phi = form.feasible_rows(points, combinations[owner])
+    values = np.full((count, len(columns)), WORST)
+    missed = np.maximum(np.nan_to_num(answer.violation, nan=1.0), 1e-6)
+    for k in rows:
+        own = phi[k, columns]
+        if np.dot(own, weights[owner[k], columns]) < np.dot(values[owner[k]], weights[owner[k], columns]):
+            values[owner[k]], missed[owner[k]] = own, 0.0
+    purpose.take(combinations[owner][rows], points[rows], phi[rows])
+    form.archive.add(combinations[owner][rows], points[rows], phi[rows])
+    return values, missed
+
+
+def _makeable(form: Formulation, combinations: np.ndarray, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return points to evaluate for continuous optima, and the combination (by position) of each."""
+    if not form.gridded.any():
+        return variables, np.arange(len(variables))
+    low, high, owner = roundings(form, variables)
+    around = form.leaves(combinations[owner], low, high)
+    boxes = form.contract(replace(around, tag=owner), None)
+    points = np.concatenate([form.makeable(form.inside(boxes, share)) for share in (0.02, 0.5)])
+    return points, np.tile(boxes.tag, 2)

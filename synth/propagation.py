@@ -1,0 +1,374 @@
+"""Propagation for one question: constants, tables per cluster, what holds over everything, and scores for splitting."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.clusters import Cells, ClusterTree, Factor
+from synth.contractor import Code, Contractor, Layout, Root
+from synth.instance import Instance
+from synth.intervals import Cut, Goal
+from synth.native_boxes import Packed, Prepared, Question, compiled
+from synth.special import expanded
+
+SAMPLES = 256
+STEP = 1e-4
+LARGEST_INFLUENCE = 50.0
+LEAST_INFLUENCE = 0.01
+LEAST_WEIGHT = 0.005
+# Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
+PARTS_FIRST = 3.0
+
+
+@dataclass(frozen=True)
+class Propagated:
+    """Boxes after propagation: what is alive, ends, lower bounds of the objectives, limits not decided yet."""
+
+    alive: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    goals: list[Any]
+    open: list[Any]
+
+
+class Propagation:
+    """Interval propagation for one question.
+
+    Parameters
+    ----------
+    instance : Instance
+    cuts : list of Cut
+        Limits, with the constant right sides of this question.
+    goals : list of Goal
+        Objectives: those to trade off first.
+    traded : int
+    """
+
+    def __init__(self, instance: Instance, cuts: Sequence[Cut], goals: Sequence[Goal], traded: int) -> None:
+        self.instance, self.model = instance, instance.model
+        self.cuts, self.goals = list(cuts), list(goals)
+        self.n = len(self.model.variables)
+        self.bounds = [cut.bound for cut in cuts]
+        model = self.model
+        names = [s.slot for s in instance.selection.slots]
+        names += [*instance.selection.counts, *instance.selection.choices]
+        owner = tuple(names.index(e.name) if e.name in names else -1 for e in model.data_inputs)
+        layout = Layout(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
+        plain = tuple(replace(c, bound=0.0) for c in cuts)
+
+        def contractor(wanted: Sequence[Goal]) -> Contractor:
+            key = ("contractor", plain, tuple(wanted))
+            made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted))
+            return made
+
+        # Objectives that only settle ties would cost time while others are traded off.
+        self._contractors = {False: contractor(goals[:traded]), True: contractor(goals)}
+        self.factors = self._factors(names, owner)
+        self._constants, self._roots = dict[bool, list[float]](), dict[bool, Root]()
+        self._least = dict[int, float]()
+        per_row = {}
+        for every, c in self._contractors.items():
+            values = c.constant_values(self._inputs(owner))
+            self._constants[every] = [float(np.asarray(v).ravel()[0]) for v in values]
+            per_row[every] = self._values_of_tables(c)
+            hull = (np.array([np.min(v) for v in per_row[every]]), np.array([np.max(v) for v in per_row[every]]))
+            self._roots[every] = c.root(instance.lower, instance.upper, hull, self._constants[every], self.bounds)
+            for node, v in zip(c.tables, per_row[every], strict=True):
+                known = v[~np.isnan(v)]
+                self._least[node] = float(known.min()) if len(known) else np.nan
+        self.empty = any(root.empty for root in self._roots.values())
+        ends = [self._ends_of_variable(i) for i in range(self.n)]
+        self.low, self.high = np.array([a for a, _ in ends]), np.array([b for _, b in ends])
+        self.positive = self.low > 0
+        self._influence = self._influences()
+        weights = self._influence.sum(axis=0)
+        trees = [ClusterTree(f, weights[[self.n + i for i in f.inputs]]) for f in self.factors]
+        self.cells = Cells(trees, instance.radix)
+        self._tables = {
+            every: self._tables_of(c, self._roots[every], per_row[every]) for every, c in self._contractors.items()
+        }
+        self._spreads = [self._spread(tree) for tree in trees]
+        self.weights = np.ones(len(self.cuts) + len(self.goals), dtype=np.float32)
+        self._learned, self._lessons = np.zeros(len(self.weights)), 0
+        # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
+        self._steep = np.maximum(self._influence[:, : self.n], LEAST_INFLUENCE).astype(np.float32)
+        self._range = np.maximum(self.high - self.low, 1e-300)
+        self._codes: dict[tuple[bool, bool], Code] = {}
+        self._prepared: dict[bool, Prepared] = {}
+
+    def _inputs(self, owner: Sequence[int]) -> list[Any]:
+        """Return what the program reads where only requirements are known."""
+        data = self._one_data()
+        return [None] * self.n + [np.nan if owner[k] >= 0 else v for k, v in enumerate(data)]
+
+    def _one_data(self) -> list[float]:
+        return [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.zeros(1, dtype=np.int64))]
+
+    def _ends_of_variable(self, position: int) -> tuple[float, float]:
+        low, high = float(self.instance.lower[position]), float(self.instance.upper[position])
+        node, root = self.model.program.input_nodes[position], self._roots[True]
+        if node in self._contractors[True].order and not self.empty:
+            low, high = max(low, float(root.low[node])), min(high, float(root.high[node]))
+        return min(low, high), high
+
+    def _factors(self, names: Sequence[str], owner: Sequence[int]) -> list[Factor]:
+        instance, model = self.instance, self.model
+        wanted = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
+        needed = set(model.program.needed(wanted)) if wanted else set()
+        read = {k for k, node in enumerate(model.program.input_nodes[self.n :]) if node in needed}
+        for refusal in instance.joint_refusals:
+            symbols = {str(s) for s in ca.symvar(expanded(refusal.when, model.calls))}
+            read |= {k for k, e in enumerate(model.data_inputs) if str(e.sx) in symbols}
+        result = []
+        for f, name in enumerate(names):
+            inputs = tuple(k for k in range(len(owner)) if owner[k] == f and k in read)
+            columns = np.empty((instance.radix[f], len(inputs)))
+            for position, k in enumerate(inputs):
+                columns[:, position] = instance.column(k)
+            result.append(Factor(name, inputs, columns))
+        return result
+
+    def _values_of_tables(self, contractor: Contractor) -> list[np.ndarray]:
+        """Return every tabulated node per row of its factor."""
+        result = []
+        data = self._one_data()
+        by_factor = {}
+        for f, factor in enumerate(self.factors):
+            inputs: list[Any] = [None] * self.n + list(data)
+            for position, k in enumerate(factor.inputs):
+                inputs[self.n + k] = factor.columns[:, position]
+            with np.errstate(all="ignore"):
+                by_factor[f] = contractor.tabulate(inputs)
+        for position, node in enumerate(contractor.tables):
+            f = contractor.factor[node]
+            rows = self.instance.radix[f]
+            result.append(np.broadcast_to(np.asarray(by_factor[f][position], dtype=float), (rows,)))
+        return result
+
+    def _tables_of(
+        self, contractor: Contractor, root: Root, per_row: Sequence[np.ndarray]
+    ) -> list[tuple[int, np.ndarray, np.ndarray]]:
+        """Return, per tabulated node, its factor and its ends per cluster."""
+        result: list[tuple[int, np.ndarray, np.ndarray]] = [(-1, np.empty(0), np.empty(0))] * len(contractor.tables)
+        for f, tree in enumerate(self.cells.trees):
+            own = [p for p, node in enumerate(contractor.tables) if contractor.factor[node] == f]
+            if not own:
+                continue
+            low, high = tree.hull(np.stack([per_row[p] for p in own], axis=1))
+            for column, p in enumerate(own):
+                node = contractor.tables[p]
+                # What the whole question excludes is cut off, so that signs settled there hold for every cluster.
+                ends = np.fmax(low[:, column], root.low[node]), np.fmin(high[:, column], root.high[node])
+                result[p] = (f, np.ascontiguousarray(ends[0]), np.ascontiguousarray(ends[1]))
+        return result
+
+    def _spread(self, tree: ClusterTree) -> np.ndarray:
+        """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""
+        low, high = tree.hull(tree.factor.columns) if tree.factor.inputs else (np.zeros((len(tree), 0)),) * 2
+        with np.errstate(all="ignore"):
+            width = np.where(low > 0, np.log(high / low), high - low)
+        width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], width)
+        own = self._influence[:, [self.n + i for i in tree.factor.inputs]]
+        result: np.ndarray = (PARTS_FIRST * width @ own.T).astype(np.float32)
+        # Rows that differ only in what has no influence are still different rows.
+        result += np.where(tree.leaf, 0.0, LEAST_INFLUENCE)[:, None].astype(np.float32)
+        return result
+
+    def _influences(self) -> np.ndarray:
+        """Return how steep each limit and objective is in each input, (limits + objectives, inputs), as logarithms.
+
+        A median over random points; it only decides where boxes are split, never what is excluded.
+        """
+        program, n = self.model.program, self.n
+        rng = np.random.default_rng(0)
+        nodes = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
+        share = rng.random((SAMPLES, n))
+        with np.errstate(all="ignore"):
+            ratio = self.low * (self.high / self.low) ** share
+        points = np.where(self.positive, ratio, self.low + share * (self.high - self.low))
+        numbers = [rng.integers(size, size=SAMPLES) for size in self.instance.radix]
+        data = [np.full(SAMPLES, v) for v in self._one_data()]
+        for digits, factor in zip(numbers, self.factors, strict=True):
+            for position, k in enumerate(factor.inputs):
+                data[k] = factor.columns[digits, position]
+        inputs = [points[:, i] for i in range(n)] + data
+        moving = list(range(n)) + [n + k for f in self.factors for k in f.inputs]
+        evaluate = self.model.function(("influence", tuple(nodes)), lambda: program.compile(nodes))
+        result = np.zeros((len(self.cuts) + len(self.goals), len(inputs)))
+        with np.errstate(all="ignore"):
+            before = self._sizes(evaluate(inputs))
+            goals = [np.abs(np.asarray(v, dtype=float)) for v in evaluate(inputs)[len(nodes) - len(self.goals) :]]
+            sizes = [np.median(v[np.isfinite(v) & (v > 0)]) if np.any(np.isfinite(v) & (v > 0)) else 1.0 for v in goals]
+            self.goal_sizes = np.array(sizes)
+            for i in moving:
+                step = inputs[i] * STEP if np.all(inputs[i] > 0) else STEP * np.ptp(inputs[i])
+                # Variables are measured as widths() does, columns as clusters do.
+                scale = STEP if np.all(inputs[i] > 0) or i < n else step
+                if np.all(step == 0):
+                    continue
+                after = self._sizes(evaluate([*inputs[:i], inputs[i] + step, *inputs[i + 1 :]]))
+                for j, (a, b) in enumerate(zip(before, after, strict=True)):
+                    steep = np.abs(b - a) / scale
+                    steep = steep[np.isfinite(steep)]
+                    result[j, i] = min(float(np.median(steep)), LARGEST_INFLUENCE) if len(steep) else 0.0
+        return result
+
+    def _sizes(self, values: Sequence[Any]) -> list[np.ndarray]:
+        """Return limits as log(value/limit) and objectives as logarithms, or as scaled differences."""
+        sides = iter([np.broadcast_to(np.asarray(v, dtype=float), (SAMPLES,)) for v in values])
+        result = []
+        for cut in self.cuts:
+            value = next(sides)
+            limit = np.full(SAMPLES, cut.bound) if cut.limit is None else next(sides)
+            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
+            result.append(np.where((value > 0) & (limit > 0), np.log(value / limit), (value - limit) / size))
+        for _ in self.goals:
+            value = next(sides)
+            size = np.nanmedian(np.abs(value)) if np.isfinite(value).any() else 1.0
+            result.append(np.where(value > 0, np.log(value), value / (size or 1.0)))
+        return result
+
+    def surely_positive(self, node: int) -> bool:
+        """Tell whether a node is positive wherever a design is feasible (rows without a value do not count)."""
+        root = self._roots[True]
+        return bool(root.low[node] > 0 or self._least.get(node, 0.0) > 0)
+
+    def range_of(self, node: int) -> tuple[float, float]:
+        """Return what is known of a node over the whole question."""
+        root = self._roots[True]
+        return float(root.low[node]), float(root.high[node])
+
+    def run(
+        self,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        caps: Sequence[np.ndarray] | None,
+        passes: int,
+        every: bool,
+    ) -> Propagated:
+        """Tighten boxes.
+
+        Parameters
+        ----------
+        cell : array (boxes, factors)
+            A cluster per factor.
+        low, high : array (boxes, variables)
+        caps : list of arrays (boxes,) or numbers, optional
+            Upper bounds of the objectives, with their sign.
+        passes : int
+            Forward-backward sweeps.
+        every : bool
+            Whether objectives that only settle ties count.
+        """
+        count = len(cell)
+        function = self._code(every, caps is not None).function
+        variables = [(low[:, i], high[:, i]) for i in range(self.n)]
+        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
+        root = self._roots[every]
+        with np.errstate(all="ignore"):
+            dead, goals, opens = function(
+                variables, tables, self._constants[every], self.bounds, caps, root.low, root.high, passes, count
+            )
+        a, b = np.empty((count, self.n)), np.empty((count, self.n))
+        for i, (x, y) in enumerate(variables):
+            a[:, i], b[:, i] = x, y
+        return Propagated(~dead, a, b, goals, opens)
+
+    def _code(self, every: bool, capped: bool) -> Code:
+        key = (every, capped)
+        if key not in self._codes:
+            self._codes[key] = self._contractors[every].code(self._roots[every], capped)
+        return self._codes[key]
+
+    def packed(
+        self,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: np.ndarray,
+        tag: np.ndarray,
+        caps: np.ndarray | None,
+        passes: int,
+        every: bool,
+        margins: tuple[float, float],
+        workers: int = 1,
+    ) -> Packed | None:
+        """Tighten, snap and score boxes by compiled code, and pack what is alive; None where there is none.
+
+        Parameters
+        ----------
+        cell, low, high, bounds, tag : array (boxes, ...)
+        caps : array (objectives,) or (boxes, objectives), optional
+        passes : int
+        every : bool
+        margins : (float, float)
+            By how much a value may miss the grid, relative and absolute.
+        workers : int
+            Threads.
+        """
+        code = compiled(self._code(every, caps is not None), len(cell))
+        if code is None:
+            return None
+        if every not in self._prepared:
+            self._prepared[every] = Prepared(self._contractors[every], self._question(every, margins))
+        return code.contract(self._prepared[every], cell, low, high, bounds, tag, caps, self.weights, passes, workers)
+
+    def _question(self, every: bool, margins: tuple[float, float]) -> Question:
+        instance = self.instance
+        return Question(
+            tables=self._tables[every],
+            constants=np.array(self._constants[every]),
+            rights=np.array(self.bounds),
+            root=self._roots[every],
+            lower=instance.lower,
+            upper=instance.upper,
+            spans=np.where(self.positive, 0.0, self._range),
+            steep=self._steep,
+            spreads=self._spreads,
+            grids=instance.grids(),
+            margins=margins,
+        )
+
+    def scores(
+        self, cell: np.ndarray, low: np.ndarray, high: np.ndarray, opens: Sequence[Any], goals: int
+    ) -> np.ndarray:
+        """Return, per variable and factor, how far limits that are undecided and objectives spread over it."""
+        count, limits = len(cell), len(self.cuts)
+        counted = np.zeros((count, limits + len(self.goals)), dtype=np.float32)
+        for j, flag in enumerate(opens):
+            counted[:, j] = flag
+        counted[:, limits : limits + goals] = 1.0
+        counted *= self.weights
+        result = np.zeros((count, self.n + len(self.factors)), dtype=np.float32)
+        if self.n:
+            result[:, : self.n] = (counted @ self._steep) * self.widths(low, high)
+        for f, spread in enumerate(self._spreads):
+            result[:, self.n + f] = np.einsum("bj,bj->b", counted, spread.take(cell[:, f], axis=0))
+        return result
+
+    def learn(self, multipliers: np.ndarray) -> None:
+        """Take multipliers of solved problems (problems, limits + objectives): where they are large, boxes are split.
+
+        What blurs a bound is, to first order, the spread of every limit times its multiplier. It steers the
+        search and proves nothing.
+        """
+        sizes = np.abs(multipliers)
+        total = sizes.sum(axis=1)
+        good = np.isfinite(total) & (total > 0)
+        if not good.any():
+            return
+        self._learned += (sizes[good] / total[good, None]).sum(axis=0)
+        self._lessons += int(good.sum())
+        self.weights = (self._learned / self._lessons + LEAST_WEIGHT).astype(np.float32)
+
+    def widths(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return widths of boxes on the scale of the influences."""
+        with np.errstate(all="ignore"):
+            result: np.ndarray = np.where(self.positive, np.log(high / low), (high - low) / self._range)
+        return result

@@ -1,0 +1,118 @@
+"""What comes after the proof: ties settled, equal designs named, open combinations solved one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from synth.batch_nlp import Tasks
+from synth.cover import Clock, Purpose
+from synth.formulation import TIE, Boxes, Candidate, Formulation
+
+STARTS = 6
+DIRECTIONS = 5
+BATCH = 2048
+MOST_TIES = 50
+
+
+def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
+    """Make the design that is best in each objective exact: solve in all combinations that come near to it."""
+    archive = form.archive
+    for k in range(traded if form.n else 0):
+        near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * slack)
+        _, first = np.unique(archive.combination[near], return_index=True)
+        chosen = [archive[int(near[i])] for i in np.sort(first)[:MOST_TIES]]
+        order = [k, *(j for j in range(traded) if j != k)]
+        for c in settle_variables(form, chosen, 0, order):
+            archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
+
+
+def settle_variables(
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int] | None = None
+) -> list[Candidate]:
+    """Make objectives as small as possible in their order, while the first ``traded`` stay as good as they are.
+
+    ``order``: all objectives and then the variables, by default. For the traded ones this only takes what the gap
+    of the search left; parts, counts and makeable values stay.
+    """
+    if not form.n or not candidates:
+        return list(candidates)
+    combinations = np.array([c.combination for c in candidates])
+    variables = np.array([c.variables for c in candidates])
+    phi = np.array([c.phi for c in candidates])
+    low = np.where(form.gridded, variables, form.lower)
+    high = np.where(form.gridded, variables, form.upper)
+    goals = len(form.goals)
+    caps = np.full(phi.shape, np.inf)
+    caps[:, :traded] = phi[:, :traded] + TIE
+    for j in range(goals) if order is None else order:
+        moving = np.flatnonzero(np.any(high > low, axis=1))
+        if not len(moving):
+            break
+        tasks = Tasks(
+            weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
+            slopes=np.zeros((len(moving), goals)),
+            caps=caps[moving],
+            goal_scales=form.goal_scales,
+            t_weight=0.0,
+        )
+        answer = form.solve_many(tasks, combinations[moving], variables[moving], low[moving], high[moving])
+        rows, found = form.feasible_rows(answer.variables, combinations[moving])
+        for k in rows:
+            own = moving[k]
+            if np.all(found[k] <= caps[own] + TIE) and found[k, j] < phi[own, j] - TIE:
+                variables[own], phi[own] = answer.variables[k], found[k]
+        caps[:, j] = phi[:, j] + TIE
+    return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
+
+
+def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate], traded: int) -> list[list[Candidate]]:
+    """Return, per design, those of all combinations that reach the same traded objectives with the same dimensions."""
+    found: list[list[Candidate]] = [[] for _ in candidates]
+    if not len(pool) or not candidates:
+        return found
+    phi = np.array([c.phi for c in candidates])
+    points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    caps = np.full(phi.shape, np.inf)
+    caps[:, :traded] = phi[:, :traded] + TIE
+    start = pool.take(np.zeros(len(candidates), dtype=np.int64))
+    boxes = replace(start, cell=np.zeros_like(start.cell), low=points, high=points, tag=np.arange(len(candidates)))
+    while len(boxes):
+        boxes = form.contract(boxes, caps[boxes.tag], passes=1)
+        single = form.cells.single(boxes.cell)
+        numbers = [form.cells.members(cell, MOST_TIES) for cell in boxes.cell[single]]
+        tags = np.repeat(boxes.tag[single], [len(n) for n in numbers])
+        combinations = np.concatenate(numbers) if numbers else np.empty(0, dtype=np.int64)
+        rows, values = form.feasible_rows(points[tags], combinations)
+        for k in rows:
+            same = np.all(np.abs(values[k, :traded] - phi[tags[k], :traded]) <= TIE)
+            if same and len(found[tags[k]]) < MOST_TIES:
+                found[tags[k]].append(Candidate(int(combinations[k]), points[tags[k]], values[k]))
+        boxes, _ = form.split(boxes.take(~single))
+    return found
+
+
+def solve_everywhere(
+    form: Formulation, combinations: np.ndarray, purpose: Purpose, clock: Clock, rng: np.random.Generator
+) -> None:
+    """Solve the continuous problem of every combination from several starts and in several directions."""
+    columns, goals = purpose.columns, len(form.goals)
+    directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
+    for number in range(0, len(combinations), BATCH):
+        own = combinations[number : number + BATCH]
+        for _ in range(STARTS):
+            share = rng.random((len(own), form.n))
+            start = form.lower + share * (form.upper - form.lower)
+            for direction in directions if len(columns) > 1 else [np.ones(1)]:
+                clock.check()
+                weights = np.zeros((len(own), goals))
+                weights[:, columns] = np.maximum(direction, 1e-3)
+                tasks = Tasks(
+                    weights, np.zeros((len(own), goals)), np.tile(purpose.plain, (len(own), 1)), form.goal_scales, 0.0
+                )
+                points = form.makeable(form.solve_many(tasks, own, start).variables if form.n else start)
+                rows, phi = form.feasible_rows(points, own)
+                form.archive.add(own[rows], points[rows], phi[rows])
+                purpose.take(own[rows], points[rows], phi[rows])

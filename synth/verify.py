@@ -1,0 +1,617 @@
+"""Independent check of a front, saved or just computed: the record, every design, and the claim itself.
+
+Nothing here is shared with the search. The designs are evaluated by CasADi on the written-out formulas, not by the
+generated evaluator of the model; the claim is proven again by a tree of its own (``synth.prooftree``). Elasticities,
+statistics and explanations are only covered by the checksum of the file.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from synth.errors import InputError
+from synth.feasibility import Status, holds, residual, utilisation
+from synth.instance import Instance, catalogs_for
+from synth.problem import DesignProblem, load
+from synth.prooftree import Outcome, Point, ProofTree
+from synth.special import expanded
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    from synth.model import DataInput
+    from synth.results import Design, ParetoFront
+
+SAME = 1e-9  # relative; numbers that agree so far are the same
+NOISE = 1e-15  # absolute; below it nothing is compared
+NO_SCALE = 1e-9  # of limits that the user added
+WIDEST_GAP = 0.5
+NARROWINGS = 3
+# What a record that has been written over by hand leads to.
+UNREADABLE = (KeyError, TypeError, ValueError, AttributeError, IndexError)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What checking a front again has shown.
+
+    ``findings`` say in a sentence each what is not as claimed. ``proven_gap`` is the smallest gap that could be proven
+    (None: none was claimed, or none could be), ``nodes`` counts the boxes of that proof.
+    """
+
+    holds: bool
+    findings: tuple[str, ...]
+    certificate: str
+    designs: int
+    claimed_gap: float | None
+    proven_gap: float | None
+    nodes: int
+    seconds: float
+
+    def sentence(self) -> str:
+        """Return the outcome in words."""
+        effort = f"({self.nodes} boxes, {self.seconds:.2g} s)"
+        listed = "1 design is" if self.designs == 1 else f"{self.designs} designs are"
+        if not self.holds:
+            proven = (
+                "" if self.proven_gap is None else f"; what could be proven is a gap of {_percent(self.proven_gap)}"
+            )
+            return f"does not hold: {len(self.findings)} finding{'s' * (len(self.findings) > 1)}{proven} {effort}"
+        if self.certificate != "global":
+            return f"holds: {listed} as saved; the certificate is {self.certificate}, so no proof is claimed or checked"
+        if not self.designs:
+            return f"holds: proven again that no design is feasible {effort}"
+        return (
+            f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
+            f"{_percent(self.claimed_gap or 0.0)} in every objective {effort}"
+        )
+
+
+def verify(
+    front: ParetoFront,
+    problem: str | type[DesignProblem] | DesignProblem | None = None,
+    catalogs: Any = None,
+    time_limit: float = 120.0,
+) -> Verification:
+    """Check a front without help of the search that made it.
+
+    Parameters
+    ----------
+    front : ParetoFront
+        From ``synthesize`` or ``load_front``.
+    problem : family name, DesignProblem subclass or instance, optional
+        For a front of a problem of your own that was loaded from a file.
+    catalogs : folder or mapping, optional
+        Own tables that were in memory; those that were files are read again.
+    time_limit : float
+        Seconds for the proof.
+
+    Returns
+    -------
+    Verification
+
+    Raises
+    ------
+    InputError
+        When the problem or its tables cannot be had.
+    """
+    started = time.monotonic()
+    check = _Check(front, started + time_limit)
+    check.record()
+    if front.question is not None and problem is None and catalogs is None:
+        check.question(front.question)
+    else:
+        own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
+        tables = catalogs_for(own, front.frame.restated.get("catalogs") if catalogs is None else catalogs)
+        try:
+            settings = front.settings
+            instance = Instance(
+                own, front.frame.requirements, tables, settings["parts"], settings["limits"], settings["fix"],
+                bool(settings["grid"]),
+            )  # fmt: skip
+        except (InputError, *UNREADABLE) as error:
+            check.find(f"the question of the record cannot be asked: {error}")
+        else:
+            try:
+                check.question(instance)
+            except UNREADABLE as error:
+                check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+    return Verification(
+        holds=not check.findings,
+        findings=tuple(check.findings),
+        certificate=front.certificate.kind,
+        designs=len(front.designs),
+        claimed_gap=front.certificate.gap,
+        proven_gap=check.proven,
+        nodes=check.nodes,
+        seconds=time.monotonic() - started,
+    )
+
+
+class _Check:
+    """One verification in progress."""
+
+    def __init__(self, front: ParetoFront, deadline: float) -> None:
+        self.front, self.deadline = front, deadline
+        self.findings: list[str] = []
+        self.proven: float | None = None
+        self.nodes = 0
+
+    def find(self, sentence: str) -> None:
+        """Note what is not as claimed."""
+        self.findings.append(sentence)
+
+    # -- the record ----------------------------------------------------------------------------
+
+    def record(self) -> None:
+        """Compare what was read with its checksum, and the other files of the folder with front.json."""
+        record, folder = self.front.record, self.front.folder
+        if record is None:
+            return
+        content = {k: v for k, v in record.items() if k != "digest"}
+        if "digest" not in record:
+            self.find("front.json has no checksum; it was not written by this version")
+        elif record["digest"] != self.front.digest_of(content):
+            self.find("front.json was changed after it was saved: its checksum does not fit")
+        if folder is None:
+            return
+        try:
+            files = self.front.files()
+        except UNREADABLE as error:
+            self.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+            return
+        for name, text in files.items():
+            path = folder / name
+            try:
+                same = name == "front.json" or path.read_text(encoding="utf-8") == text
+            except OSError:
+                self.find(f"{name} is missing")
+            except UnicodeDecodeError:
+                self.find(f"{name} is not the text that was saved")
+            else:
+                if not same:
+                    self.find(f"{name} says something else than front.json")
+
+    # -- the designs ---------------------------------------------------------------------------
+
+    def question(self, instance: Instance) -> None:
+        """Check everything that needs the question itself."""
+        front, frame = self.front, self.front.frame
+        self.instance, self.model = instance, instance.model
+        self._evaluate = _evaluator(instance)
+        self._frame()
+        for design in front.designs:
+            self._design(design)
+        if any(name not in self.model.quantity_sx for name in frame.objectives) or not frame.objectives:
+            self.find(f"objectives: {', '.join(frame.objectives) or 'none'} is not what the problem can give")
+            return
+        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in frame.objectives.values()])
+        values = [[d.objectives.get(name, math.nan) for name in frame.objectives] for d in front.designs]
+        self.signed = np.array(values, dtype=float).reshape(-1, len(self.senses)) * self.senses
+        if len(front.designs):
+            if not np.isfinite(self.signed).all():
+                self.find("an objective of a design has no value")
+                return
+            self._ranking()
+            self._dominance()
+        self._numbers()
+        if front.certificate.kind == "global":
+            self._claim()
+
+    def _frame(self) -> None:
+        frame, model = self.front.frame, self.model
+        for name, value in self.instance.requirements.items():
+            if not _same(frame.requirement_values.get(name, math.nan), value):
+                self.find(f"requirement_values_si: {name} is not what the requirements say")
+        extra = self.instance.extra
+        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in extra}
+        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in extra}
+        kinds = {name: kind for name, _, kind in model.declaration.quantities()}
+        told = {
+            "limit_senses": (frame.limit_senses, limits),
+            "limit_units": (frame.limit_units, units),
+            "units": (frame.units, model.units),
+            "kinds": (frame.kinds, kinds),
+        }
+        for name, (own, right) in told.items():
+            if dict(own) != right:
+                self.find(f"{name}: they are not those of the problem")
+        if list(frame.not_asked) != list(self.instance.not_asked):
+            self.find("not_asked: other requirements were left out")
+
+    def _design(self, design: Design) -> None:
+        label = f"design {design.rank}"
+        point = self._point(design, label)
+        if point is None:
+            return
+        values, limits, remarks = self._evaluate(point)
+        for name, value in values.items():
+            if name not in design.values or not _same(design.values[name], value):
+                self.find(f"{label}: {name} is {design.values.get(name)}, evaluated it is {value}")
+        for name in self.front.frame.objectives:
+            if name in values and not _same(design.objectives.get(name, math.nan), values[name]):
+                self.find(f"{label}: objective {name} is {design.objectives.get(name)}, evaluated {values[name]}")
+        if {text.split(":")[0] for text in design.advice} - {"unusual_part"} != remarks:
+            self.find(f"{label}: the remarks are {sorted(design.advice)}, evaluated they are {sorted(remarks)}")
+        self._limits(design, label, point, limits, values)
+        self._bounds(design, label, point)
+        self._claims_of_design(design, label)
+
+    def _point(self, design: Design, label: str) -> Point | None:
+        """Return the inputs of a design, or None where they do not exist."""
+        rows: dict[str, int] = {}
+        for slot in self.instance.selection.slots:
+            part = design.parts.get(slot.slot)
+            offered = [slot.table.designations[r] for r in slot.rows]
+            if part is None or str(part) not in offered:
+                self.find(f"{label}: {slot.slot} {part} is not a row that this question may use")
+                return None
+            index = slot.table.row_index(str(part))
+            current = slot.table.row(index)
+            told = {k: v for k, v in part.items() if k not in ("table", "hash")}
+            if part["table"] != slot.table.name or part["hash"] != slot.table.hashes[index] or told != current:
+                self.find(f"{label}: {slot.slot} {part} is not the row of table {slot.table.name} in force")
+            rows[slot.slot] = offered.index(str(part))
+        selection = self.instance.selection
+        for name, allowed in selection.counts.items():
+            if not np.any(np.abs(allowed - design.values.get(name, math.nan)) < SAME):
+                self.find(f"{label}: {name} {design.values.get(name)} is not a value that this question may use")
+                return None
+        for name, indices in selection.choices.items():
+            labels = [self.model.declaration.choices[name].labels[int(k)] for k in indices]
+            if design.choices.get(name) not in labels:
+                self.find(f"{label}: {name} {design.choices.get(name)} is not a label that this question may use")
+                return None
+        variables = np.array([design.values.get(v.name, math.nan) for v in self.model.variables], dtype=float)
+        data = [self._datum(entry, design, rows) for entry in self.model.data_inputs]
+        return Point(variables, data, rows)
+
+    def _datum(self, entry: DataInput, design: Design, rows: Mapping[str, int]) -> float:
+        instance = self.instance
+        if entry.kind == "requirement":
+            return float(instance.requirements[entry.name])
+        if entry.kind == "row":
+            return float(instance.row_values[str(entry.sx)])
+        if entry.kind == "count":
+            return float(design.values[entry.name])
+        if entry.kind == "choice":
+            return float(self.model.declaration.choices[entry.name].labels.index(design.choices[entry.name]))
+        slot = next(s for s in instance.selection.slots if s.slot == entry.name)
+        return float(slot.columns["|".join(entry.columns)][rows[entry.name]])
+
+    def _limits(
+        self,
+        design: Design,
+        label: str,
+        point: Point,
+        limits: Mapping[str, tuple[float, float]],
+        values: Mapping[str, float],
+    ) -> None:
+        rules = {x.name: (x.sense, x.scale, x.guard) for x in self.model.limits}
+        rules |= {x.name: (x.sense, NO_SCALE, False) for x in self.instance.extra}
+        sides = {**limits, **{x.name: (values[x.quantity], x.limit) for x in self.instance.extra}}
+        for name, (value, bound) in sides.items():
+            sense, scale, guard = rules[name]
+            void = any(math.isnan(point.data[k]) for k in self.model.void_inputs.get(name, []))
+            r = math.nan if void else float(residual(value, bound, sense, scale))
+            used = None if void else float(utilisation(value, bound, sense))
+            if not void and not holds(r, guard):
+                self.find(f"{label}: limit {name} does not hold")
+            saved = design.limits.get(name, (math.nan, math.nan))
+            told = design.utilisation.get(name)
+            if not (_same(saved[0], value) and _same(saved[1], bound)):
+                self.find(f"{label}: limit {name} has sides {saved}, evaluated they are {(value, bound)}")
+            if (told is None) != (used is None) or (told is not None and used is not None and not _same(told, used)):
+                self.find(f"{label}: utilisation of {name} is {told}, evaluated it is {used}")
+            if not _close(design.residuals.get(name, math.nan), r):
+                self.find(f"{label}: residual of {name} is {design.residuals.get(name)}, evaluated it is {r}")
+            if void != any(text.startswith(f"not checked: {name},") for text in design.not_checked):
+                self.find(f"{label}: limit {name} is {'void' if void else 'not void'}, which not_checked does not say")
+        if design.violated:
+            self.find(f"{label}: {', '.join(design.violated)} are said to be violated")
+
+    def _bounds(self, design: Design, label: str, point: Point) -> None:
+        instance = self.instance
+        for k, (v, grid) in enumerate(zip(self.model.variables, instance.grids(), strict=True)):
+            x = float(point.variables[k])
+            reach = SAME * max(abs(instance.lower[k]), abs(instance.upper[k]))
+            if not instance.lower[k] - reach <= x <= instance.upper[k] + reach:
+                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
+            elif len(grid) and not np.any(np.abs(grid - x) <= SAME * np.abs(grid)):
+                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
+        symbols = [str(s) for s in self.model.inputs]
+        given = dict(zip(symbols, [*point.variables, *point.data], strict=True))
+        for refusal in instance.joint_refusals:
+            when = expanded(refusal.when, self.model.calls)
+            used = ca.symvar(when)
+            if float(ca.Function("refused", used, [when]).call([given[str(s)] for s in used])[0]) > 0.5:
+                self.find(f"{label}: refused, {refusal.code}")
+
+    def _claims_of_design(self, design: Design, label: str) -> None:
+        certificate = self.front.certificate
+        if design.status not in (Status.OPTIMAL, Status.FEASIBLE):
+            self.find(f"{label}: status {design.status.value} on a front of feasible designs")
+        proven = certificate.kind == "global" and certificate.gap is not None
+        if design.status is Status.OPTIMAL and not proven:
+            self.find(f"{label}: status optimal, but the certificate proves no gap")
+        if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + SAME)):
+            self.find(f"{label}: gap {_percent(design.gap)} is above what the certificate claims")
+
+    # -- the front -----------------------------------------------------------------------------
+
+    def _ranking(self) -> None:
+        """Rank again: weighted distance to the ideal in normalised objectives."""
+        designs, frame = self.front.designs, self.front.frame
+        if [d.rank for d in designs] != list(range(1, len(designs) + 1)):
+            self.find("ranks are not 1, 2, 3, ... in the order of the designs")
+        weights = self.front.settings.get("weights", {})
+        shares = np.array([float(weights.get(name, 1.0)) for name in frame.objectives])
+        low, high = self.signed.min(axis=0), self.signed.max(axis=0)
+        unit = (self.signed - low) / np.where(high > low, high - low, 1.0)
+        scores = np.sqrt((unit**2 * shares).sum(axis=1) / shares.sum())
+        for design, score in zip(designs, scores, strict=True):
+            if design.score is None or abs(design.score - score) > SAME:
+                self.find(f"design {design.rank}: score {design.score}, ranked again it is {score}")
+        if np.any(np.diff(scores) < -SAME):
+            self.find("the designs are not in the order of their scores")
+        self._notes(unit, low, high)
+
+    def _notes(self, unit: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
+        """Every remark stands at one design, and that one deserves it."""
+        designs, frame = self.front.designs, self.front.frame
+        deserving: dict[str, np.ndarray] = {}
+        reach = SAME * np.maximum(np.abs(low), np.abs(high))
+        if len(designs) > 1:
+            for k, (name, sense) in enumerate(frame.objectives.items()):
+                word = "smallest" if sense == "min" else "largest"
+                deserving[f"{word} {name}"] = self.signed[:, k] <= low[k] + reach[k]
+            if len(designs) > 2 and len(frame.objectives) > 1:
+                total = unit.sum(axis=1)
+                deserving["knee"] = total <= total.min() + SAME
+        else:
+            deserving["optimum" if len(frame.objectives) == 1 else "only non-dominated design"] = np.ones(1, dtype=bool)
+        told = [[note for note in d.note.split("; ") if note] for d in designs]
+        for word, right in deserving.items():
+            at = [k for k, notes in enumerate(told) if word in notes]
+            if len(at) != 1 or not right[at[0]]:
+                self.find(f"the note {word!r} is not at the design that deserves it")
+        for design, notes in zip(designs, told, strict=True):
+            if strange := [note for note in notes if note not in deserving]:
+                self.find(f"design {design.rank}: note {strange[0]!r} means nothing here")
+
+    def _dominance(self) -> None:
+        reach = SAME * np.abs(self.signed)
+        for k, own in enumerate(self.signed):
+            better = np.all(self.signed <= own + reach[k], axis=1)
+            better[k] = False
+            for j in np.flatnonzero(better)[:1]:
+                other = self.front.designs[int(j)]
+                equal = np.all(np.abs(self.signed[j] - own) <= reach[k])
+                word = "equals" if equal else "dominates"
+                if not equal or j < k:
+                    self.find(f"design {other.rank} {word} design {self.front.designs[k].rank}")
+
+    def _numbers(self) -> None:
+        front = self.front
+        points = front.settings.get("points")
+        proven = front.certificate.kind == "global"
+        if not isinstance(points, int) or len(front.designs) > points:
+            self.find(f"{len(front.designs)} designs where at most {points} were asked for")
+        elif front.designs and proven and len(front.designs) < points and not front.complete:
+            few = f"{len(front.designs)} designs where {points} were asked for"
+            self.find(f"{few}, and not said to be complete: some are missing")
+        if front.complete and not proven:
+            self.find("complete is claimed without a proof")
+        if front.interrupted and proven:
+            self.find("the search was stopped, so that it cannot have proven anything")
+        if front.certificate.combinations != self.instance.combinations:
+            self.find(
+                f"the certificate speaks of {front.certificate.combinations} combinations, "
+                f"the question has {self.instance.combinations}"
+            )
+        if not front.designs and front.status not in (Status.INFEASIBLE, Status.NOT_SOLVED):
+            self.find(f"status {front.status.value} without a design")
+        if front.designs and front.status not in (Status.OPTIMAL, Status.FEASIBLE):
+            self.find(f"status {front.status.value} with designs")
+        if front.status is Status.OPTIMAL and not proven:
+            self.find("status optimal, but the certificate is no proof")
+
+    # -- the claim -----------------------------------------------------------------------------
+
+    def _claim(self) -> None:
+        """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
+        front = self.front
+        self.tree = ProofTree(self.instance, front.frame.objectives)
+        if not front.designs:
+            everywhere = np.full((1, len(self.senses)), math.inf)
+            outcome = self._prove(everywhere)
+            if not outcome.closed:
+                self.find(self._refuted(outcome, "no design is feasible", "feasible"))
+            return
+        gap = front.certificate.gap
+        if gap is None or not 0 < gap < 1:
+            self.find("the certificate claims a proof but no gap")
+            return
+        self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
+        if front.complete:
+            outcome = self._prove(uncovered(self._thresholds(gap)))
+            if outcome.closed:
+                self.proven = gap
+                return
+            self.find(self._refuted(outcome, "the front is complete", "feasible and no listed design covers it"))
+        outcome = self._prove(self._thresholds(gap))
+        if outcome.closed:
+            self.proven = gap
+            return
+        self.find(self._refuted(outcome, f"no design improves a listed one by more than {_percent(gap)}", ""))
+        self.proven = self._smallest_gap(gap, outcome)
+
+    def _is_relative(self, k: int) -> bool:
+        """Tell whether objective k is surely positive and to be small, so that a gap is a share of its value."""
+        if not np.all(self.signed[:, k] > 0):
+            return False
+        ends = np.full((1, len(self.senses)), math.inf)
+        ends[0, k] = 0.0
+        return self.tree.surely_positive(k, lambda point: self._lies_below(point, ends), self.deadline)
+
+    def _prove(self, ends: np.ndarray) -> Outcome:
+        """Prove that no feasible design lies below any of the ends (rows) in all objectives."""
+        outcome = self.tree.prove(ends, lambda point: self._lies_below(point, ends), self.deadline)
+        self.nodes += outcome.nodes
+        return outcome
+
+    def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
+        values, limits, _ = self._evaluate(point)
+        for x in self.model.limits:
+            if any(math.isnan(point.data[k]) for k in self.model.void_inputs[x.name]):
+                continue
+            value, bound = limits[x.name]
+            if not holds(residual(value, bound, x.sense, x.scale), x.guard):
+                return False
+        for extra in self.instance.extra:
+            if not holds(residual(values[extra.quantity], extra.limit, extra.sense, NO_SCALE), False):
+                return False
+        signed = self._signed_values(values)
+        return bool(np.any(np.all(signed < ends, axis=1)))
+
+    def _signed_values(self, values: Mapping[str, float]) -> np.ndarray:
+        signed: np.ndarray = np.array([values[name] for name in self.front.frame.objectives]) * self.senses
+        return signed
+
+    def _thresholds(self, gap: float) -> np.ndarray:
+        """Return, per design, what a design must undercut in every objective to improve it by more than the gap."""
+        ends: np.ndarray = self.signed - gap * self._sizes() - SAME * np.abs(self.signed)
+        return ends
+
+    def _sizes(self) -> np.ndarray:
+        """Return what a gap of an objective is measured by: its value, or its range on the front where it has signs."""
+        span = np.ptp(self.signed, axis=0)
+        size = np.where(span > 0, span, np.abs(self.signed))
+        sizes: np.ndarray = np.where(self.relative, np.abs(self.signed), size)
+        return sizes
+
+    def _improvement(self, point: Point) -> tuple[float, int]:
+        """Return by how much a design improves a listed one in every objective, and which."""
+        signed = self._signed_values(self._evaluate(point)[0])
+        with np.errstate(all="ignore"):
+            share = np.min((self.signed - signed) / self._sizes(), axis=1)
+        best = int(np.argmax(share))
+        return float(share[best]), best
+
+    def _smallest_gap(self, gap: float, outcome: Outcome) -> float | None:
+        """Return a gap that can be proven, near the smallest one."""
+        refuted = gap
+        while True:
+            if outcome.witness is not None:
+                refuted = max(refuted, self._improvement(outcome.witness)[0])
+            gap = 2 * refuted
+            if gap > WIDEST_GAP or time.monotonic() > self.deadline:
+                return None
+            outcome = self._prove(self._thresholds(gap))
+            if outcome.closed:
+                break
+            refuted = max(refuted, gap)
+        for _ in range(NARROWINGS):
+            between = math.sqrt(refuted * gap)
+            outcome = self._prove(self._thresholds(between))
+            if outcome.closed:
+                gap = between
+            else:
+                refuted = between
+        return gap
+
+    def _refuted(self, outcome: Outcome, claim: str, what: str) -> str:
+        point = outcome.witness
+        if point is None:
+            return f"the claim that {claim} could not be proven with {outcome.nodes} boxes"
+        words = [
+            f"{v.name} {format_quantity(float(x), v.unit)}"
+            for v, x in zip(self.model.variables, point.variables, strict=True)
+        ]
+        words += [f"{s.slot} {s.table.designations[s.rows[point.rows[s.slot]]]}" for s in self.instance.selection.slots]
+        for entry, value in zip(self.model.data_inputs, point.data, strict=True):
+            if entry.kind == "count":
+                words.append(f"{entry.name} {value:g}")
+            elif entry.kind == "choice":
+                words.append(f"{entry.name} {self.model.declaration.choices[entry.name].labels[int(value)]}")
+        if not what:
+            share, k = self._improvement(point)
+            what = f"feasible and improves design {self.front.designs[k].rank} by {_percent(share)} in every objective"
+        return f"the claim that {claim} is wrong: {', '.join(words)} is {what}"
+
+
+def _evaluator(instance: Instance) -> Any:
+    """Return a function of a point: values, sides of limits and remarks, by CasADi on the written-out formulas."""
+    model = instance.model
+    outputs = list(model.quantity_sx.values()) + [side for x in model.limits for side in (x.value, x.limit)]
+    outputs += [a.when for a in model.declaration.advices]
+    written = expanded(ca.vertcat(*outputs), model.calls)
+    function = ca.Function("check", [ca.vertcat(*model.inputs)], [written])
+
+    def evaluate(point: Point) -> tuple[dict[str, float], dict[str, tuple[float, float]], set[str]]:
+        numbers = iter(np.asarray(function([*point.variables, *point.data])).ravel().tolist())
+        values = {name: next(numbers) for name in model.quantity_sx}
+        limits = {x.name: (next(numbers), next(numbers)) for x in model.limits}
+        return values, limits, {a.code for a in model.declaration.advices if next(numbers) > 0.5}
+
+    return evaluate
+
+
+def uncovered(points: np.ndarray) -> np.ndarray:
+    """Return the ends of the regions that no point covers: everything below an end is not above any point.
+
+    Parameters
+    ----------
+    points : array (points, objectives)
+
+    Returns
+    -------
+    array (regions, objectives)
+        Local upper bounds, infinite where nothing bounds a region.
+
+    References
+    ----------
+    K. Klamroth, R. Lacour, D. Vanderpooten: On the representation of the search region in multi-objective
+    optimization. European J. of Operational Research 245 (2015) 767-778.
+
+    Examples
+    --------
+    >>> uncovered(np.array([[1.0, 2.0], [2.0, 1.0]])).tolist()
+    [[inf, 1.0], [2.0, 2.0], [1.0, inf]]
+    """
+    ends = np.full((1, points.shape[1]), math.inf)
+    for point in points:
+        above = np.all(point < ends, axis=1)
+        split = ends[above]
+        parts = []
+        for k in range(len(point)):
+            part = split.copy()
+            part[:, k] = point[k]
+            parts.append(part)
+        ends = np.unique(np.concatenate([ends[~above], *parts]), axis=0)
+        inside = np.all(ends[:, None, :] <= ends[None, :, :], axis=2)
+        np.fill_diagonal(inside, False)
+        ends = ends[~inside.any(axis=1)]
+    return ends[np.lexsort(ends.T)]
+
+
+def _same(a: float | None, b: float) -> bool:
+    """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself."""
+    if a is None:
+        return math.isnan(b)
+    return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=SAME, abs_tol=NOISE)
+
+
+def _close(a: float, b: float) -> bool:
+    """Tell whether two relative differences are the same."""
+    return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= SAME
+
+
+def _percent(gap: float) -> str:
+    return f"{100 * gap:.3g} %"

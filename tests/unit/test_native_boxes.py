@@ -1,0 +1,422 @@
+"""Compiled contraction of boxes says what NumPy says: every rule, random programs, and the multi-plate family."""
+
+import ctypes
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import synth
+from problems.mechanics.guide_friction import sum_geometric
+from problems.mechanics.startup import reactive_slip_time
+from synth import native, native_boxes
+from synth.contractor import Contractor, Layout
+from synth.formulation import PINNED, SNAP, Formulation
+from synth.instance import Instance, as_catalogs
+from synth.intervals import BACKWARD, FORWARD, Cut, Goal
+from synth.native_source import VECTORS
+from synth.program import OP_SELECT, Program
+from synth.special import TABLE, recorded
+
+HERE = native.cache_folder() is not None and native._compiler() is not None
+pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
+
+ROWS, CLUSTERS = 7, 12
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_cache(tmp_path_factory):
+    """Compile everything anew, and keep the user's cache folder as it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+        # Little optimisation: most of the code is used only once.
+        patch.setattr(native_boxes, "BOX_FLAGS", (*native_boxes.BOX_FLAGS, "-O1"))
+        yield
+
+
+def loaded(code):
+    """Return compiled code."""
+    text = native_boxes.source(code)
+    assert text is not None
+    library = native.library("test", text, native_boxes.BOX_FLAGS)
+    assert library is not None
+    return native_boxes.BoxCode(library, code.sweeps.limits)
+
+
+class Case:
+    """A program with variables, two slots and a requirement, contracted in both ways.
+
+    Parameters
+    ----------
+    program : Program
+        Inputs: variables, two columns of the first slot, one of the second, a requirement.
+    n : int
+        Variables.
+    cuts, goals : list
+    range_ : (float, float)
+        Of all inputs.
+    """
+
+    def __init__(self, program, n, cuts, goals, range_, rng, boxes):
+        self.rng, self.n, self.cuts, self.goals, self.boxes = rng, n, cuts, goals, boxes
+        self.bounds = [c.bound for c in cuts]
+        self.contractor = c = Contractor(program, Layout(n, (0, 0, 1, -1), (1,)), cuts, goals)
+        least, most = range_
+        columns = rng.uniform(least, most, (3, ROWS))
+        columns[1] = np.where(rng.random(ROWS) < 0.15, np.nan, columns[1])
+        self.requirement = float(rng.uniform(least, most))
+        with np.errstate(all="ignore"):
+            constants = c.constant_values([None] * n + [np.nan] * 3 + [self.requirement])
+            per_slot = [
+                c.tabulate([*[None] * n, columns[0], columns[1], np.full(ROWS, np.nan), self.requirement]),
+                c.tabulate([*[None] * n, *np.full((2, ROWS), np.nan), columns[2], self.requirement]),
+            ]
+        self.constants = [float(np.asarray(v).ravel()[0]) for v in constants]
+        rows = [
+            np.broadcast_to(np.asarray(per_slot[c.factor[k]][i], dtype=float), (ROWS,)) for i, k in enumerate(c.tables)
+        ]
+        hull = np.array([v.min() for v in rows]), np.array([v.max() for v in rows])
+        self.low_end, self.high_end = np.full(n, least), np.full(n, most)
+        self.root = c.root(self.low_end, self.high_end, hull, self.constants, self.bounds)
+        pairs = rng.integers(ROWS, size=(2, CLUSTERS))
+        self.tables = []
+        for k, v in zip(c.tables, rows, strict=True):
+            ends = np.minimum(v[pairs[0]], v[pairs[1]]), np.maximum(v[pairs[0]], v[pairs[1]])
+            ends = np.fmax(ends[0], self.root.low[k]), np.fmin(ends[1], self.root.high[k])
+            self.tables.append((c.factor[k], *ends))
+        self.cell = rng.integers(CLUSTERS, size=(boxes, 2)).astype(np.int32)
+        ends = rng.uniform(least, most, (2, boxes, n))
+        ends[1] = np.where(rng.random((boxes, n)) < 0.1, ends[0], ends[1])
+        self.low, self.high = ends.min(axis=0), ends.max(axis=0)
+        whole = rng.random((boxes, n)) < 0.2
+        self.low, self.high = np.where(whole, least, self.low), np.where(whole, most, self.high)
+        self.caps = rng.normal(0, 3, (boxes, len(goals))) * most
+        self.steep = rng.random((len(cuts) + len(goals), n))
+        self.spreads = [rng.random((CLUSTERS, len(cuts) + len(goals))).astype(np.float32) for _ in range(2)]
+
+    def numpy(self, code, capped, passes):
+        """Contract box by box: in NumPy a rule may look at all boxes of a batch."""
+        alive, low, high = np.zeros(self.boxes, dtype=bool), self.low.copy(), self.high.copy()
+        goals, opens = np.zeros((self.boxes, len(self.goals))), np.zeros((self.boxes, len(self.cuts)), dtype=bool)
+        for b in range(self.boxes):
+            ends = [(low[b : b + 1, i], high[b : b + 1, i]) for i in range(self.n)]
+            tables = [(x[self.cell[b, f]][None], y[self.cell[b, f]][None]) for f, x, y in self.tables]
+            caps = [self.caps[b : b + 1, j] for j in range(len(self.goals))] if capped else None
+            with np.errstate(all="ignore"):
+                dead, least, flags = code.function(
+                    ends, tables, self.constants, self.bounds, caps, self.root.low, self.root.high, passes, 1
+                )
+            alive[b] = not dead[0]
+            low[b], high[b] = [float(x[0]) for x, _ in ends], [float(y[0]) for _, y in ends]
+            goals[b] = [float(np.asarray(x).ravel()[0]) for x in least]
+            opens[b] = [bool(np.asarray(x).ravel()[0]) for x in flags]
+        alive &= ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
+        return alive, low, np.maximum(low, high), goals, opens
+
+    def compiled(self, code, capped, passes, workers=1):
+        unbounded = np.full(self.n, np.inf)
+        question = native_boxes.Question(
+            self.tables, np.array(self.constants), np.array(self.bounds), self.root,
+            -unbounded, unbounded, np.ones(self.n), self.steep, self.spreads, [np.empty(0)] * self.n, (SNAP, PINNED),
+        )  # fmt: skip
+        prepared = native_boxes.Prepared(self.contractor, question)
+        return loaded(code).contract(
+            prepared, self.cell, self.low, self.high, np.full(self.caps.shape, -np.inf), np.arange(self.boxes),
+            self.caps if capped else None, np.ones(len(self.steep)), passes, workers,
+        )  # fmt: skip
+
+    def agree(self, capped, passes, rtol, atol=0.0):
+        """Check that both ways agree; return how many boxes are alive."""
+        code = self.contractor.code(self.root, capped)
+        alive, low, high, goals, opens = self.numpy(code, capped, passes)
+        found = self.compiled(code, capped, passes)
+        np.testing.assert_array_equal(found.alive, alive)
+        np.testing.assert_array_equal(found.tag, np.flatnonzero(alive))
+        np.testing.assert_array_equal(found.cell, self.cell[alive])
+        np.testing.assert_array_equal(found.open[alive], opens[alive])
+        np.testing.assert_allclose(found.low, low[alive], rtol, atol)
+        np.testing.assert_allclose(found.high, high[alive], rtol, atol)
+        expected = np.where(np.isnan(goals), -np.inf, goals)[alive]
+        np.testing.assert_allclose(found.bounds, expected, rtol, atol)
+        counted = np.concatenate([opens, np.ones(goals.shape, dtype=bool)], axis=1)[alive].astype(float)
+        spreads = [np.einsum("bj,bj->b", counted, s[self.cell[alive, f]]) for f, s in enumerate(self.spreads)]
+        scores = np.concatenate([counted @ self.steep * (high[alive] - low[alive]), np.stack(spreads, axis=1)], axis=1)
+        np.testing.assert_allclose(found.scores, scores, 1e-5, 1e-6)
+        return int(alive.sum())
+
+
+def limits_at(rng, program, nodes, inputs):
+    """Return limits on some nodes that hold at a point with a little to spare, with sides at random."""
+    with np.errstate(all="ignore"):
+        values = [float(np.asarray(v).ravel()[0]) for v in program.compile(nodes)(inputs)]
+    cuts = []
+    for node, value in zip(nodes, values, strict=True):
+        # With nothing to spare the last bit of a logarithm would decide whether a limit is open.
+        spare = 1e-3 * (1 + abs(value)) if np.isfinite(value) else np.inf
+        sense = "at_most" if rng.random() < 0.5 or not np.isfinite(value) else "at_least"
+        level = value if np.isfinite(value) else 0.0
+        cuts.append(Cut(sense, node, None, 1e-9, level + spare if sense == "at_most" else level - spare))
+    return cuts
+
+
+# -- every rule --------------------------------------------------------------------------------------
+
+SYMBOLIC = {
+    ca.OP_CONSTPOW: lambda a, b: ca.SX.binary(ca.OP_CONSTPOW, a, 1.7),
+    OP_SELECT: lambda a, b: ca.if_else(a < b, a * b, a - b),
+    ca.OP_IF_ELSE_ZERO: lambda a, b: ca.SX.binary(ca.OP_IF_ELSE_ZERO, a < b, a),
+    ca.OP_AND: lambda a, b: ca.logic_and(a < b, a < 1) * a,
+    ca.OP_OR: lambda a, b: ca.logic_or(a < b, a < 1) * b,
+    ca.OP_NOT: lambda a, b: ca.logic_not(a < b) * b,
+}
+TWO = {
+    ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV, ca.OP_POW, ca.OP_FMIN, ca.OP_FMAX, ca.OP_HYPOT, ca.OP_ATAN2,
+    ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE,
+}  # fmt: skip
+
+
+def use_of(op, a, b):
+    if op in SYMBOLIC:
+        return SYMBOLIC[op](a, b)
+    return ca.SX.binary(op, a, b) if op in TWO else ca.SX.unary(op, a)
+
+
+@pytest.mark.parametrize("capped", [False, True])
+@pytest.mark.parametrize("range_", [(-2.0, 2.0), (0.2, 2.5), (1.0, 3.0)])
+def test_every_rule_agrees(range_, capped):
+    rng = np.random.default_rng(3)
+    operations = sorted(FORWARD)
+    powers = [-2.0, -1.5, 0.5, 2.0, 3.0, 4.0]
+    n = 2 * (len(operations) + len(powers))
+    symbols, data = [ca.SX.sym(f"x{k}") for k in range(n)], [ca.SX.sym(f"c{k}") for k in range(4)]
+    outputs = [use_of(op, *symbols[2 * k : 2 * k + 2]) for k, op in enumerate(operations)]
+    outputs += [
+        ca.SX.binary(ca.OP_CONSTPOW, symbols[2 * (len(operations) + k)], e) + symbols[2 * (len(operations) + k) + 1]
+        for k, e in enumerate(powers)
+    ]
+    goals = [symbols[0] * data[0] + data[1], data[2] / data[3] - symbols[1]]
+    program = Program([*symbols, *data], [*outputs, *goals])
+    point = rng.uniform(*range_, n + 4)
+    cuts = limits_at(rng, program, program.outputs[: len(outputs)], list(point))
+    case = Case(program, n, cuts, [Goal(program.outputs[-2], 1), Goal(program.outputs[-1], -1)], range_, rng, 60)
+    # Boxes around the point stay alive, so that what each rule narrows is compared.
+    around = rng.random(case.low.shape) < 0.97
+    case.low = np.where(around, np.minimum(case.low, point[:n]), case.low)
+    case.high = np.where(around, np.maximum(case.high, point[:n]), case.high)
+    for passes in (1, 3):
+        assert case.agree(capped, passes, 1e-12, 1e-14) > 0
+
+
+def test_every_operation_with_a_rule_has_one_in_c():
+    rules = native_boxes.rules
+    assert set(rules.FORWARD) | set(rules.POWERS) == set(FORWARD)
+    assert set(rules.BACKWARD) | set(rules.POWERS) == set(BACKWARD)
+
+
+# -- random programs ---------------------------------------------------------------------------------
+
+ARITHMETIC = [
+    lambda a, b: a + b,
+    lambda a, b: a - b,
+    lambda a, b: a * b,
+    lambda a, b: a / (1.5 + b * b),
+    lambda a, b: a / b,
+    lambda a, b: a * a - b,
+    lambda a, b: np.sqrt(1 + a * a) * b,
+    lambda a, b: np.sqrt(a) + b,
+    lambda a, b: np.maximum(a, b),
+    lambda a, b: np.minimum(a, 2 * b),
+    lambda a, b: np.abs(a - b),
+    lambda a, b: np.where(a < b, a * b, b * b + 0.1),
+    lambda a, b: (a < b) * 0.7 + a,
+    lambda a, b: np.floor(a) + b,
+    lambda a, b: 1 / (2 + np.abs(a)) + b,
+    lambda a, b: np.where(np.logical_and(a > 0, b > 0), a, -b),
+]
+SMOOTH = [
+    *ARITHMETIC,
+    lambda a, b: np.exp(-np.hypot(a, b)),
+    lambda a, b: np.log1p(a * a) + b,
+    lambda a, b: np.tanh(a) * b,
+    lambda a, b: np.sin(a) + np.cos(b),
+    lambda a, b: np.arctan(a) - b,
+    lambda a, b: (1 + a * a) ** 0.7 - b,
+    lambda a, b: (1 + a * a) ** b,
+    lambda a, b: a**3 + b,
+    lambda a, b: np.expm1(np.minimum(a, 2)) + b,
+    lambda a, b: sum_geometric(2 + a * a, 0.1 + b * b),
+    lambda a, b: sum_geometric(a, b),
+    lambda a, b: reactive_slip_time(2 + a * a, 1 + b, 3, 1 + b * b, 0.5),
+]
+
+
+def random_case(seed, makers, boxes=60):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 4))
+    symbols, data = [ca.SX.sym(f"x{k}") for k in range(n)], [ca.SX.sym(f"c{k}") for k in range(4)]
+    pool = [*symbols, *data, ca.SX(float(rng.uniform(0.5, 2)))]
+    with recorded() as calls:
+        for _ in range(int(rng.integers(8, 40))):
+            a, b = (pool[k] for k in rng.integers(len(pool), size=2))
+            pool.append(makers[rng.integers(len(makers))](a, b))
+    program = Program([*symbols, *data], pool[-6:], calls)
+    range_ = [(-1.5, 2.0), (0.1, 2.0), (1.0, 4.0)][rng.integers(3)]
+    node = program.outputs
+    cuts = limits_at(rng, program, node[:2], list(rng.uniform(*range_, n + 4)))
+    cuts.append(Cut(["at_most", "at_least", "equal"][rng.integers(3)], node[2], node[3], 1e-9))
+    return Case(program, n, cuts, [Goal(node[4], 1), Goal(node[5], -1)], range_, rng, boxes)
+
+
+@given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
+@settings(deadline=None, derandomize=True, max_examples=15)
+def test_arithmetic_agrees_to_the_last_bit(seed, passes, capped):
+    random_case(seed, ARITHMETIC).agree(capped, passes, rtol=0.0)
+
+
+@given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
+@settings(deadline=None, derandomize=True, max_examples=15)
+def test_random_programs_agree(seed, passes, capped):
+    random_case(seed, SMOOTH).agree(capped, passes, 1e-12, 1e-12)
+
+
+def test_the_result_is_the_same_for_any_number_of_threads(monkeypatch):
+    monkeypatch.setattr(native_boxes, "PART", 5)
+    case = random_case(11, ARITHMETIC, boxes=83)
+    code = case.contractor.code(case.root, False)
+    alone = case.compiled(code, False, 2)
+    for workers in (2, 3, 8):
+        shared = case.compiled(code, False, 2, workers)
+        for name in ("alive", "cell", "low", "high", "bounds", "scores", "tag"):
+            np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name))
+
+
+# -- special functions -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", sorted(n for n in TABLE if n.startswith("problems.")))
+def test_special_functions_agree(name):
+    function, count = TABLE[name], 4096
+    rng = np.random.default_rng(1)
+    arguments = np.exp(rng.uniform(np.log(1e-4), np.log(1e3), (len(function.elasticity), count)))
+    arguments[:, :64] = np.where(rng.random((len(arguments), 64)) < 0.3, 0.0, arguments[:, :64])
+    places = ", ".join(f"*(const vd *)(in + {k} * count + i)" for k in range(len(arguments)))
+    text = "\n".join([
+        VECTORS, native_boxes.rules.COMMON, native_boxes.formula_source("value", function),
+        "void run(const double *in, double *out, long long count) {",
+        f"    for (long long i = 0; i < count; i += LANES) *(vd *)(out + i) = value({places});",
+        "}",
+    ])  # fmt: skip
+    library = native.library("test", text, native_boxes.BOX_FLAGS)
+    # Registers are read from places that are multiples of their length.
+    memory = np.empty((len(arguments) + 1) * count + 8)
+    start = (-memory.ctypes.data // 8) % 8
+    memory = memory[start : start + (len(arguments) + 1) * count].reshape(-1, count)
+    memory[:-1] = arguments
+    library.run(ctypes.c_void_p(memory.ctypes.data), ctypes.c_void_p(memory[-1].ctypes.data), ctypes.c_longlong(count))
+    with np.errstate(all="ignore"):
+        expected = function.formula(*arguments)
+    assert np.isfinite(expected).sum() > count / 4
+    np.testing.assert_allclose(memory[-1], expected, 1e-14)
+
+
+# -- the multi-plate family --------------------------------------------------------------------------
+
+REQUIREMENTS = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
+OPTIONS = {
+    "default": {},
+    "exact_active": {"guide_series": "exact", "load_kind": "active"},
+    "lipka": {"friction_basis": "worst_case", "guide_series": "lipka"},
+    "dry": {"lubrication": "dry"},
+}
+OBJECTIVES = {"mass": "min", "actuation_force": "min", "friction_work": "min"}
+
+
+def formulation(options, grid=False, requirements=REQUIREMENTS):
+    problem = synth.load("multi_plate_clutch", **options)
+    return Formulation(Instance(problem, requirements, as_catalogs(None), grid=grid), OBJECTIVES, 2)
+
+
+def batches(form, rounds=12):
+    """Contract and split from the root on, with caps that differ from box to box; yield every batch."""
+    rng = np.random.default_rng(2)
+    boxes = form.root()
+    least = form.phi_of(boxes.bounds)[0]
+    for _ in range(rounds):
+        caps = least + rng.uniform(5.0, 12.0, boxes.bounds.shape)
+        yield boxes, caps
+        boxes, _ = form.split(form.contract(boxes, caps))
+
+
+def compare(form, boxes, caps, passes, every, monkeypatch):
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
+    expected = form.contract(boxes, caps, passes, every)
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1")
+    found = form.contract(boxes, caps, passes, every)
+    np.testing.assert_array_equal(found.cell, expected.cell)
+    np.testing.assert_array_equal(found.tag, expected.tag)
+    for name in ("low", "high", "bounds"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), 1e-12)
+    np.testing.assert_allclose(found.scores, expected.scores, 1e-5, 1e-6)
+
+
+@pytest.mark.parametrize("grid", [False, True])
+@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
+def test_the_family_agrees(options, grid, monkeypatch):
+    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    form = formulation(options, grid)
+    for boxes, caps in batches(form):
+        compare(form, boxes, caps, 2, False, monkeypatch)
+    compare(form, boxes, np.median(caps, axis=0), 1, True, monkeypatch)
+    compare(form, boxes, None, 3, True, monkeypatch)
+    assert len(boxes) > 30
+    assert form.propagation._code(False, True).compiled is not None
+
+
+# -- when code is compiled ---------------------------------------------------------------------------
+
+
+def test_code_is_compiled_only_once_it_pays(monkeypatch):
+    asked = []
+
+    def library(name, text, flags, make):
+        asked.append(make)
+
+    monkeypatch.setattr(native_boxes, "library", library)
+    case = random_case(5, ARITHMETIC, boxes=8)
+    code = case.contractor.code(case.root, False)
+    for boxes in (10, native_boxes.COMPILE_AFTER - 10, 1, 10):
+        assert native_boxes.compiled(code, boxes) is None
+    assert asked == [False, True]  # looked for in the cache folder once, then made once
+
+
+def test_it_can_be_switched_off(monkeypatch):
+    monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
+    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    form = formulation({})
+    assert len(form.root()) == 1
+    assert form.propagation._code(True, False).compiled is None
+    assert native.library("test", "int one(void) { return 1; }") is None
+
+
+def test_requirements_do_not_enter_the_source():
+    code = [
+        form.propagation._code(False, True)
+        for form in (formulation({}), formulation({}, requirements={**REQUIREMENTS, "load_torque": "612.345 N*m"}))
+    ]
+    assert native_boxes.source(code[0]) == native_boxes.source(code[1])
+
+
+def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
+    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    monkeypatch.delitem(native_boxes.rules.FORWARD, ca.OP_FLOOR)
+    x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
+    program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
+    cuts = [Cut("at_most", program.outputs[0], None, 1e-9, 1.0)]
+    case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
+    code = case.contractor.code(case.root, False)
+    assert native_boxes.source(code) is None
+    assert native_boxes.compiled(code, 1) is None
+    assert code.hopeless

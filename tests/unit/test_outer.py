@@ -1,0 +1,142 @@
+"""Optuna over parts: what it does where bounds do not close and enumeration does not reach."""
+
+import numpy as np
+import pytest
+
+import synth
+from synth import outer, search
+from synth.cover import Clock, Cover, Stopped
+from synth.formulation import Archive, Formulation
+from synth.instance import Instance, catalogs_for
+from synth.outer import search_parts, study_file
+from tests.unit.strut import NEEDED, RODS, Strut
+
+TRIALS = 16
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch, tmp_path):
+    """Let bounds and enumeration give up at once, keep studies in a folder of the test."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(search, "EFFORT", 1)
+    monkeypatch.setattr(search, "COARSE_EFFORT", 1)
+    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 1)
+    monkeypatch.setattr(search, "OUTER_TRIALS", TRIALS)
+    monkeypatch.setattr(outer, "BATCH", 4)
+
+
+def ask(objectives=None, **more):
+    return synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5, **more)
+
+
+def journals(tmp_path):
+    return sorted((tmp_path / "clutchsynth" / "studies").glob("*.journal"))
+
+
+def limits_hold(front):
+    """Tell whether there are designs and all of them keep all limits (those without a value are void)."""
+    residuals = [r for d in front.designs for r in d.residuals.values()]
+    return len(residuals) > 0 and all(not d.violated for d in front.designs) and not np.any(np.array(residuals) > 1e-6)
+
+
+class Breaks:
+    """Lets the time run out after some batches of trials."""
+
+    def __init__(self, monkeypatch, batches):
+        self.batches, self.done = batches, 0
+        inner, check = outer._inner, Clock.check
+
+        def counted(*args):
+            self.done += 1
+            return inner(*args)
+
+        def stopping(clock, *boxes):
+            if self.done >= self.batches:
+                raise Stopped("time limit")
+            check(clock, *boxes)
+
+        monkeypatch.setattr(outer, "_inner", counted)
+        monkeypatch.setattr(Clock, "check", stopping)
+
+
+def test_optuna_takes_over_and_says_so(tmp_path):
+    front = ask()
+    assert front.certificate.kind == "heuristic"
+    assert front.status == "feasible"
+    assert front.statistics["outer_trials"] == TRIALS
+    assert not front.complete
+    assert limits_hold(front)
+    assert journals(tmp_path) == []
+
+
+def test_what_enumeration_reaches_is_not_left_to_optuna(monkeypatch, tmp_path):
+    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 240)
+    front = ask()
+    assert front.certificate.kind in ("global", "exhaustive")
+    assert front.statistics["outer_trials"] == 0
+    assert limits_hold(front)
+    assert journals(tmp_path) == []
+
+
+def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
+    with monkeypatch.context() as patch:
+        Breaks(patch, 2)
+        stopped = ask()
+    assert stopped.interrupted == "time limit"
+    assert stopped.certificate.kind == "heuristic"
+    assert limits_hold(stopped)
+    assert len(journals(tmp_path)) == 1
+    resumed = ask()
+    assert not resumed.interrupted
+    assert resumed.statistics["outer_trials"] == TRIALS - 2 * outer.BATCH
+    assert resumed.certificate.kind == "heuristic"
+    assert limits_hold(resumed)
+    assert journals(tmp_path) == []
+
+
+def test_another_question_does_not_take_up_the_study(monkeypatch, tmp_path):
+    with monkeypatch.context() as patch:
+        Breaks(patch, 1)
+        ask()
+    assert ask(seed=1).statistics["outer_trials"] == TRIALS
+    assert len(journals(tmp_path)) == 1
+
+
+@pytest.mark.parametrize(("columns", "kept"), [([0], False), ([0, 1], True)])
+def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, kept):
+    problem = Strut()
+    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
+    form = Formulation(instance, {"mass": "min", "flexibility": "min"}, 2)
+    root = form.root()
+    left = form.split(root)[0].take(slice(0, 1))  # half of everything
+    archive = Archive(columns, form.n, 2)
+    purpose = Cover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
+    journal = tmp_path / "study.journal" if kept else None
+    assert search_parts(form, left, purpose, Clock(), journal, 0, TRIALS) == TRIALS
+    assert journal is None or not journal.exists()
+    assert len(archive)
+    rows, phi = form.feasible_rows(archive.variables, archive.combination)
+    assert len(rows) == len(archive)
+    np.testing.assert_array_equal(phi, archive.phi)
+    for f, tree in enumerate(form.cells.trees):
+        assert np.isin(instance.digits(archive.combination)[f], tree.rows(int(left.cell[0, f]))).all()
+    assert len(form.archive)
+
+
+def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
+    def file(objectives=("mass",), seed=0, needed=NEEDED, **more):
+        problem = Strut(**more)
+        instance = Instance(problem, needed, catalogs_for(problem, {"rods": RODS}))
+        return study_file(instance, dict.fromkeys(objectives, "min"), seed)
+
+    files = [
+        file(),
+        file(seed=1),
+        file(("flexibility",)),
+        file(("mass", "flexibility")),
+        file(needed={"load": "21 kN"}),
+        file(finish="coated"),
+    ]
+    assert len(set(files)) == len(files)
+    assert file() == files[0]
+    assert files[0].parent == tmp_path / "clutchsynth" / "studies"
