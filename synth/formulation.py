@@ -14,6 +14,7 @@ from synth.feasibility import holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.model import Evaluation
+from synth.native import COMPILED_FROM
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
 from synth.program import Program
@@ -26,7 +27,6 @@ TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
 CAP_ROWS = 512
-COMPILED_FROM = 5000
 
 
 @dataclass(frozen=True)
@@ -501,8 +501,6 @@ class Formulation:
     def batch_nlp(self) -> BatchNlp:
         """Return the NLP of this question for many designs at once; built once per model and set of rows."""
         rows = self.rows()
-        # Compiling pays for large questions only. What decides is the question, not what happens to be compiled
-        # already: the same question always goes the same way, to the last digit.
         native = None if self.instance.combinations >= COMPILED_FROM else False
         made: BatchNlp = self.model.function(
             ("batch", rows, native), lambda: BatchNlp(self.model.program, self.n, rows, native)

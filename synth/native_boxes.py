@@ -26,8 +26,6 @@ from synth.special import SpecialFunction
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
 BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
-# Compiling takes a second or two, a hundred thousand boxes in NumPy; what is compiled is kept for other questions.
-COMPILE_AFTER = 20_000
 # Threads take the next so many boxes when they are free: a core that is busy with something else holds nobody up.
 PART = 512
 SCORE_WIDTH = 16
@@ -253,22 +251,16 @@ class BoxCode:
         return kept
 
 
-def compiled(code: Code, boxes: int) -> BoxCode | None:
-    """Return the compiled form of generated code that is to contract so many boxes more, if there is one.
-
-    It is looked for at once, and made when the code has contracted many boxes.
-    """
+def compiled(code: Code) -> BoxCode | None:
+    """Return the compiled form of generated code; None where it cannot be had."""
     if not switched_on():
         return None
-    code.contracted += boxes
-    make = code.contracted > COMPILE_AFTER
-    if code.compiled is None and not code.hopeless and (make or not code.looked):
-        code.looked = True
+    if code.compiled is None and not code.hopeless:
         text = source(code)
-        loaded = None if text is None else library("boxes", text, BOX_FLAGS, make)
+        loaded = None if text is None else library("boxes", text, BOX_FLAGS)
         if loaded is not None:
             code.compiled = BoxCode(loaded, code.sweeps.limits)
-        code.hopeless = loaded is None and (make or text is None)
+        code.hopeless = loaded is None
     found: BoxCode | None = code.compiled
     return found
 

@@ -587,4 +587,5 @@ class _FrontSearch:
             explanation=explanation,
             settings=settings,
             interrupted=interrupted,
+            question=self.instance,
         )
