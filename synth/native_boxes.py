@@ -121,7 +121,6 @@ class Prepared:
 
     def __init__(self, contractor: Contractor, question: Question) -> None:
         self.n, self.factors = len(question.lower), len(question.spreads)
-        self.goals = question.steep.shape[0] - len(contractor.cuts)
         width = -(-question.steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
@@ -142,7 +141,7 @@ class Prepared:
         for name, arrays in self._lists.items():
             self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
         self.numbers = {
-            "factors": self.factors, "goals": self.goals, "score_width": width,
+            "factors": self.factors, "score_width": width,
             "snap": question.margins[0], "pinned": question.margins[1],
         }  # fmt: skip
 
@@ -198,14 +197,14 @@ class BoxCode:
             "high": np.ascontiguousarray(high, dtype=float),
             "bounds": np.ascontiguousarray(bounds, dtype=float),
             "tag": np.ascontiguousarray(tag, dtype=np.int32),
-            "caps": np.ascontiguousarray(np.zeros(prepared.goals) if caps is None else caps, dtype=float),
+            "caps": np.ascontiguousarray(np.zeros(1) if caps is None else caps, dtype=float),
         }
         step = given["caps"].shape[1] if given["caps"].ndim == 2 else 0
         taken: dict[str, np.ndarray] = {
             "out_cell": np.empty((count, factors), dtype=np.int32),
             "out_low": np.empty((count, n)),
             "out_high": np.empty((count, n)),
-            "out_bounds": np.empty((count, prepared.goals)),
+            "out_bounds": np.empty(bounds.shape),
             "out_tag": np.empty(count, dtype=np.int32),
             "out_scores": np.empty((count, n + factors), dtype=np.float32),
             "alive": np.empty(count, dtype=bool),
@@ -218,7 +217,15 @@ class BoxCode:
         def part(first: int, last: int) -> _Batch:
             # Every array has a row per box, so that a part begins so many rows further on.
             places = {name: place + first * stride for name, (place, stride) in moving.items()}
-            return _Batch(count=last - first, passes=passes, caps_step=step, **prepared.numbers, **still, **places)
+            return _Batch(
+                count=last - first,
+                goals=bounds.shape[1],
+                passes=passes,
+                caps_step=step,
+                **prepared.numbers,
+                **still,
+                **places,
+            )
 
         parts = max(1, count // PART) if workers > 1 else 1
         ends = [count * k // parts for k in range(parts + 1)]
