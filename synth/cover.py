@@ -72,9 +72,9 @@ def cover(
     queue, fresh, stuck = nothing, [boxes], nothing
     while (len(queue) or fresh) and looked <= effort:
         if not len(queue):
-            # Sorting everything that waits costs time, so that a whole generation is taken at once.
-            queue, rest = _most_open(form, Boxes.joined(fresh), purpose)
-            fresh = [rest] if len(rest) else []
+            queue = _most_open(form, _latest(fresh), purpose)
+            if not len(queue):
+                continue
         clock.check([queue, *fresh, stuck])
         if enough is not None and len(form.archive) > enough:
             return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
@@ -119,8 +119,21 @@ def best(
     return (purpose.known[0] if len(purpose.known) else None), found
 
 
-def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> tuple[Boxes, Boxes]:
-    """Return the next generation, boxes with most room first, and the rest; covered ones are dropped."""
+def _latest(fresh: list[Boxes]) -> Boxes:
+    """Take the next generation off the end of a list: the boxes that were split last, so that few wait at a time."""
+    taken: list[Boxes] = []
+    count = 0
+    while fresh and count < GENERATION:
+        taken.append(fresh.pop())
+        count += len(taken[-1])
+    if count > GENERATION:
+        fresh.append(taken[-1].take(slice(0, count - GENERATION)))
+        taken[-1] = taken[-1].take(slice(count - GENERATION, None))
+    return Boxes.joined(taken[::-1])
+
+
+def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> Boxes:
+    """Return boxes with most room first; covered ones are dropped."""
     lower = form.phi_of(waiting.bounds)
     space = purpose.room(lower)
     keep = np.flatnonzero(space > 0)
@@ -128,4 +141,4 @@ def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> tuple[Box
     low = lower[:, purpose.columns].mean(axis=1)
     key = np.where(np.isfinite(space), -space, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
     order = keep[np.argsort(key, kind="stable")] if len(keep) > BATCH else keep
-    return waiting.take(order[:GENERATION]), waiting.take(order[GENERATION:])
+    return waiting.take(order)

@@ -26,7 +26,7 @@ from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_variables, solve_everywhere
 
-EFFORT = 6_000_000
+EFFORT = 20_000_000
 FILL_EFFORT = 20_000
 TIE_EFFORT = 40_000
 COARSE = 0.1
