@@ -27,14 +27,8 @@ from synth.units import split_header
 # The colours of M. Okabe and K. Ito, told apart by the colour-blind; each has a dash of its own, for print without.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")
 DASHES: tuple[Any, ...] = (
-    "-",
-    (0, (6, 2)),
-    (0, (2, 1.2)),
-    (0, (6, 1.5, 1.5, 1.5)),
-    (0, (1, 1)),
-    (0, (9, 2, 2, 2)),
-    "-",
-)
+    "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
+)  # fmt: skip
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
 STYLE: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib, so that the figure is the same everywhere

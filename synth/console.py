@@ -67,6 +67,7 @@ TITLES = {
     "derived": "Derived quantities",
     "limit": "Limits",
     "objective": "Objectives",
+    "setting": "Settings of the simulation (simulate --set)",
     "refusal": "Refused input",
     "advice": "Remarks",
 }
@@ -96,7 +97,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     kind, default = row["kind"], row["default"]
     if kind in ("limit", "objective"):
         return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
-    if kind in ("option", "derived", "column", "slot", "choice"):
+    if kind in ("setting", "option", "derived", "column", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
     bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]

@@ -5,8 +5,8 @@ curve, any course of the ramp, lock-up that is lost again, a driver that stalls,
 
 Equations of motion (S1, lecture): M1 - M_k = J1 domega1/dt (1) and M_k - M2 = J2 domega2/dt (2). While the clutch
 slips, M_k is what the ramp gives, in the direction of slip; locked, it is what both sides need to keep one speed.
-Clutch (slipping, locked), load (at rest, turning) and ramp (its corners) make smooth pieces; the integration ends at the
-event that closes a piece and starts afresh behind it, so that no step ever crosses a kink.
+Clutch (slipping, locked), load (at rest, turning) and ramp (its corners) make smooth pieces; the integration ends at
+the event that closes a piece and starts afresh behind it, so that no step ever crosses a kink.
 
 Numbers only, SI.
 """
@@ -465,6 +465,8 @@ class _Integration:
             time, state, reached = self._integrate(mode, time, state)
             if abs(time - question.ramp_time) <= 1e-12 * question.ramp_time and time > 0:
                 self._note(time, "ramp ends")
+            if reached == "lock" and question.stands and motion == 0:
+                reached = "stall"  # the load has not moved: the driver has come down to it
             if reached == "lock":
                 slip, motion, state = self._lock(time, state, slip, motion)
             elif reached == "slip":
