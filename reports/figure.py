@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.style import context
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import LogFormatter, ScalarFormatter
 
 from synth.errors import InputError
 from synth.units import split_header
@@ -172,10 +172,13 @@ def _panels_by_unit(frame: pd.DataFrame, x: str) -> list[dict[str, Any]]:
     for column in frame.columns:
         if column != x:
             groups.setdefault(split_header(str(column))[1] or "-", []).append(str(column))
-    return [
-        {"label": columns[0] if len(columns) == 1 else f"[{unit}]", "columns": columns}
-        for unit, columns in groups.items()
-    ]
+    return [{"label": _common_label(columns, unit), "columns": columns} for unit, columns in groups.items()]
+
+
+def _common_label(columns: Sequence[str], unit: str) -> str:
+    """Name an axis by the last word that its columns share: driver_speed and driven_speed give speed."""
+    last = {split_header(column)[0].split("_")[-1] for column in columns}
+    return columns[0] if len(columns) == 1 else f"{last.pop() if len(last) == 1 else 'value'} [{unit}]"
 
 
 def _label(header: str) -> str:
@@ -207,8 +210,9 @@ def _draw_panel(
     name, unit = split_header(str(panel.get("label", columns[0])))
     logarithmic = bool(panel.get("log", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
+    named = len(columns) > 1 or _legend(columns[0], name) != name.replace("_", " ")
     for column in columns:
-        k = styles.setdefault(_legend(column, name), len(styles))
+        k = styles.setdefault(_legend(column, name), len(styles)) if named else 0
         axis.plot(
             frame[x].to_numpy(),
             frame[column].to_numpy(dtype=float) * factor,
@@ -224,15 +228,16 @@ def _draw_panel(
     axis.set_ylabel(textwrap.fill(name.replace("_", " "), 16) + _unit_text(unit))
     if logarithmic:
         axis.set_yscale("log")
+        axis.yaxis.set_major_formatter(LogFormatter())  # plain numbers, not powers of ten
+        axis.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.5)))
     else:
         formatter = ScalarFormatter(useOffset=False)
         formatter.set_powerlimits((-4, 6))
         axis.yaxis.set_major_formatter(formatter)
         axis.margins(y=0.08)
-    handles = len(columns) > 1 or _legend(columns[0], name) != name.replace("_", " ")
-    if handles:
+    if named:
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
-    _name_lines(axis, lines, factor, len(columns) if handles else 0)
+    _name_lines(axis, lines, factor, len(columns) if named else 0)
 
 
 def _legend(column: str, panel: str) -> str:

@@ -1,4 +1,4 @@
-"""The start-up integrated in time: against closed forms, against a plain integration of one's own, and by its energy."""
+"""The start-up integrated in time: against closed forms, a plain integration of one's own, and its energy."""
 
 import math
 from functools import partial
