@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
 COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
-HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna")
+HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib")
 
 # One ring, three plate numbers: the force is all that is left to find.
 SMALL = """
