@@ -162,10 +162,15 @@ class Contractor:
     cuts : list of Cut
         Limits; ``bound`` of a constant right side is handed over with each question.
     goals : list of Goal
+    pivots : list of int
+        Inner nodes whose ends belong to a box as those of a variable do: they are handed over, met with what the
+        arguments say, and handed back.
     """
 
-    def __init__(self, program: Program, layout: Layout, cuts: Sequence[Cut], goals: Sequence[Goal]) -> None:
-        self.program, self.layout = program, layout
+    def __init__(
+        self, program: Program, layout: Layout, cuts: Sequence[Cut], goals: Sequence[Goal], pivots: Sequence[int] = ()
+    ) -> None:
+        self.program, self.layout, self.pivots = program, layout, tuple(pivots)
         self.cuts, self.goals = list(cuts), list(goals)
         wanted = [c.value for c in cuts] + [c.limit for c in cuts if c.limit is not None] + [g.node for g in goals]
         self.order = program.needed(wanted) if wanted else []
@@ -338,7 +343,10 @@ class _Writer:
             later=self._sweep(later=True),
             constants=tuple(owner.constants),
             tables=tuple(owner.tables),
-            variables=tuple((k, int(self.program.nodes[k].constant)) for k in self._variables()),
+            variables=(
+                *((k, int(self.program.nodes[k].constant)) for k in self._variables()),
+                *((k, owner.layout.n_variables + i) for i, k in enumerate(owner.pivots)),
+            ),
             goals=tuple(f"l{g.node}" if g.sign > 0 else f"-h{g.node}" for g in owner.goals),
             limits=len(owner.cuts),
         )
@@ -386,7 +394,7 @@ class _Writer:
 
     def _node(self, k: int, later: bool) -> None:
         low, high = self._natural(k, later)
-        if later:
+        if later or k in self.owner.pivots:
             low, high = f"v_fmax(l{k}, {low})", f"v_fmin(h{k}, {high})"
         self._set(f"l{k}", low)
         self._set(f"h{k}", high)
@@ -497,7 +505,7 @@ class _Writer:
     def _backward(self) -> None:
         for k in reversed(self.owner.inner):
             self._back(k)
-        for k in [*self._variables(), *self.owner.tables]:
+        for k in [*self._variables(), *self.owner.tables, *self.owner.pivots]:
             size = f"h{k}" if self._positive(k) else f"v_abs(h{k})"
             self.out.append(Kill(f"l{k} > h{k} + {ROUNDING!r} * {size}"))
         # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.

@@ -158,9 +158,11 @@ class Formulation:
         All objectives of interest with their sense: those to trade off first, then those that settle ties.
     traded : int
         How many, from the first, are traded off against each other.
+    conflict : bool
+        Whether to prepare for proving that limits exclude each other.
     """
 
-    def __init__(self, instance: Instance, objectives: Mapping[str, str], traded: int) -> None:
+    def __init__(self, instance: Instance, objectives: Mapping[str, str], traded: int, conflict: bool = False) -> None:
         self.instance = instance
         self.model = model = instance.model
         self.n = len(model.variables)
@@ -183,8 +185,12 @@ class Formulation:
         self.solved_combinations: set[int] = set()
         self.archive = Archive(range(traded), self.n, len(self.goals))
         self._rows: Rows | None = None
-        self.propagation = Propagation(instance, cuts, self.goals, traded)
+        self.propagation = Propagation(instance, cuts, self.goals, traded, conflict)
         self.cells = self.propagation.cells
+        self.width = self.propagation.width
+        carried = np.zeros(self.width - self.n, dtype=bool)
+        self._gridded = np.concatenate([self.gridded, carried])
+        self._span = np.concatenate([self.upper - self.lower, np.zeros(len(carried))])
         positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
         self.log_goals = np.array(positive, dtype=bool)
         self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
@@ -240,10 +246,10 @@ class Formulation:
         n, m = len(cell), len(self.goals)
         return Boxes(
             cell,
-            np.broadcast_to(self.propagation.low, (n, self.n)).copy(),
-            np.broadcast_to(self.propagation.high, (n, self.n)).copy(),
+            np.broadcast_to(self.propagation.low, (n, self.width)).copy(),
+            np.broadcast_to(self.propagation.high, (n, self.width)).copy(),
             np.full((n, m), -np.inf),
-            np.ones((n, self.n + len(self.cells.trees)), dtype=np.float32),
+            np.ones((n, self.width + len(self.cells.trees)), dtype=np.float32),
             np.zeros(n, dtype=np.int32),
         )
 
@@ -267,6 +273,8 @@ class Formulation:
         ``caps`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
         that only settle ties.
         """
+        if boxes.low.shape[1] < self.width:
+            boxes = self._with_pivots(boxes)
         width = boxes.bounds.shape[1]
         if every_goal and width < len(self.goals):
             unknown = np.full((len(boxes), len(self.goals) - width), -np.inf)
@@ -279,6 +287,14 @@ class Formulation:
             own = caps if caps is None or caps.ndim == 1 else caps[rows]
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
+
+    def _with_pivots(self, boxes: Boxes) -> Boxes:
+        """Return boxes of variables with all that the inner nodes they carry could be."""
+        low, high = (
+            np.concatenate([ends, np.broadcast_to(known[self.n :], (len(boxes), self.width - self.n))], axis=1)
+            for ends, known in ((boxes.low, self.propagation.low), (boxes.high, self.propagation.high))
+        )
+        return replace(boxes, low=low, high=high)
 
     def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int, every: bool) -> Boxes:
         self.contracted += len(boxes)
@@ -297,7 +313,7 @@ class Formulation:
         bounds = boxes.bounds.copy()
         for j, least in enumerate(found.goals):
             bounds[:, j] = np.fmax(bounds[:, j], least)
-        scores = self.propagation.scores(boxes.cell, low, high, found.open, len(found.goals))
+        scores = self.propagation.scores(boxes.cell, low, high, found.open, len(found.goals), values)
         result = Boxes(boxes.cell, low, high, bounds, scores, boxes.tag).take(alive)
         return self._without_refused(result) if self.instance.joint_refusals else result
 
@@ -311,8 +327,9 @@ class Formulation:
         """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
         alive = np.ones(len(low), dtype=bool)
         # An active limit loosened by the slack must not cost a grid point or a pinned value.
-        np.maximum(low, self.lower, out=low)
-        np.minimum(high, self.upper, out=high)
+        n = self.n
+        np.maximum(low[:, :n], self.lower, out=low[:, :n])
+        np.minimum(high[:, :n], self.upper, out=high[:, :n])
         for k, grid in enumerate(self.grids):
             if len(grid):
                 first = np.searchsorted(grid, low[:, k] * (1 - SNAP) - PINNED)
@@ -327,14 +344,14 @@ class Formulation:
     def _splittable(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return widths, 0 where a variable cannot be split any more."""
         size = np.maximum(np.abs(low), np.abs(high))
-        floor = np.where(self.gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * (self.upper - self.lower)))
+        floor = np.where(self._gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * self._span))
         width = self.propagation.widths(low, high)
         result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
         return result
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
-        n, count = self.n, len(boxes)
+        n, count = self.width, len(boxes)
         can = np.zeros((count, n + len(self.cells.trees)), dtype=bool)
         width = self._splittable(boxes.low, boxes.high)
         can[:, :n] = width > 0
@@ -486,11 +503,16 @@ class Formulation:
             combinations = self.cells.combination(self.cells.random_leaves(part.cell, rng))
             self.candidates(self.makeable(self.inside(part, share)), combinations)
 
+    def ends(self, boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:
+        """Return the ends of the variables of boxes, without those of the inner nodes that they carry."""
+        return boxes.low[:, : self.n], boxes.high[:, : self.n]
+
     def inside(self, boxes: Boxes, share: np.ndarray | float) -> np.ndarray:
         """Return points inside boxes: share 0 is the lower, 1 the upper end; by ratio where positive."""
+        low, high = self.ends(boxes)
         with np.errstate(all="ignore"):
-            ratio = boxes.low * (boxes.high / boxes.low) ** share
-        points: np.ndarray = np.where(boxes.low > 0, ratio, boxes.low + share * (boxes.high - boxes.low))
+            ratio = low * (high / low) ** share
+        points: np.ndarray = np.where(low > 0, ratio, low + share * (high - low))
         return points
 
     def makeable(self, variables: np.ndarray) -> np.ndarray:

@@ -32,7 +32,8 @@ SCORE_WIDTH = 16
 
 NUMBERS = {
     "count": "long long", "passes": "long long", "factors": "long long", "goals": "long long",
-    "caps_step": "long long", "score_width": "long long", "snap": "double", "pinned": "double",
+    "caps_step": "long long", "weights_step": "long long", "bits": "long long",
+    "score_width": "long long", "snap": "double", "pinned": "double",
 }  # fmt: skip
 GIVEN = {
     "cell": "int", "low": "double", "high": "double", "bounds": "double", "tag": "int", "caps": "double",
@@ -185,7 +186,8 @@ class BoxCode:
         tag : array (boxes,)
         caps : array (objectives,) or (boxes, objectives), optional
             Upper bounds of the objectives, with their sign.
-        weights : array (limits + objectives,)
+        weights : array (patterns, limits + objectives)
+            One row per set of capped objectives, a power of 2; or one row alone.
         passes : int
         workers : int
             Threads; the boxes are split between them and the result is the same for any number.
@@ -197,7 +199,7 @@ class BoxCode:
             "high": np.ascontiguousarray(high, dtype=float),
             "bounds": np.ascontiguousarray(bounds, dtype=float),
             "tag": np.ascontiguousarray(tag, dtype=np.int32),
-            "caps": np.ascontiguousarray(np.zeros(1) if caps is None else caps, dtype=float),
+            "caps": np.ascontiguousarray(np.full(bounds.shape[1], np.inf) if caps is None else caps, dtype=float),
         }
         step = given["caps"].shape[1] if given["caps"].ndim == 2 else 0
         taken: dict[str, np.ndarray] = {
@@ -211,6 +213,7 @@ class BoxCode:
             "open": np.empty((count, self.limits), dtype=bool),
         }
         fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)}
+        numbers = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1}
         moving = {name: (a.ctypes.data, a.strides[0]) for name, a in (given | taken).items() if name != "caps" or step}
         still = {name: a.ctypes.data for name, a in (fixed | given).items() if name not in moving}
 
@@ -222,7 +225,7 @@ class BoxCode:
                 goals=bounds.shape[1],
                 passes=passes,
                 caps_step=step,
-                **prepared.numbers,
+                **numbers,
                 **still,
                 **places,
             )
@@ -301,7 +304,7 @@ def _struct() -> str:
 def _sizes(code: Code) -> str:
     owner = code.contractor
     sizes = {
-        "N": owner.layout.n_variables, "LIMITS": len(owner.cuts), "GOALS": len(owner.goals),
+        "N": owner.layout.n_variables + len(owner.pivots), "LIMITS": len(owner.cuts), "GOALS": len(owner.goals),
         "TABLES": len(owner.tables), "NODES": len(owner.program.nodes), "SCORE_WIDTH": SCORE_WIDTH,
     }  # fmt: skip
     lines = [f"#define {name} {value}" for name, value in sizes.items()]
@@ -426,7 +429,7 @@ def _tighten(code: Code) -> str:
     lines += [f"    const vd l{k} = all(b->constants[{i}]), h{k} = l{k};" for i, k in enumerate(sweeps.constants)]
     lines += [f"    vd l{k} = T[{i}][0], h{k} = T[{i}][1];" for i, k in enumerate(sweeps.tables)]
     lines += [f"    vd l{k} = V[{i}][0], h{k} = V[{i}][1];" for k, i in sweeps.variables]
-    lines += [f"    vd l{k}, h{k};" for k in owner.inner]
+    lines += [f"    vd l{k}, h{k};" for k in owner.inner if k not in owner.pivots]
     lines += [f"    vi o{j};" for j in range(sweeps.limits)]
     lines += ["    vd s, t, m;", "    vi p, q, dead = all_i(0);"]
     lines += [f"    {line}" for statement in sweeps.first for line in _in_c(statement, owner)]
@@ -555,8 +558,15 @@ long long contract(const Batch *b) {
         }
         if (!any(~dead)) continue;
         for (int i = 0; i < N; i++) scores[i] = all(0.0);
+        const double *own[LANES];
+        for (int l = 0; l < LANES; l++) {
+            long long pattern = 0;
+            for (int j = 0; j < b->bits; j++) pattern |= (long long)(C[j][l] - C[j][l] == 0.0) << j;
+            own[l] = b->weights + pattern * b->weights_step;
+        }
         for (int j = 0; j < LIMITS + GOALS; j++) {
-            const vd weight = j < LIMITS ? keep(open[j], all(b->weights[j])) : all(b->weights[j]);
+            vd weight;
+            for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || open[j][l] ? own[l][j] : 0.0;
             for (int i = 0; i < N; i++) scores[i] += weight * b->steep[j * N + i];
             for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
         }

@@ -7,6 +7,7 @@ propagation of the search, the splitting of min, max and where into smooth branc
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -194,6 +195,14 @@ class Program:
         for k, node in enumerate(self.nodes):
             marked[k] = k in wanted or any(marked[a] for a in node.args)
         return marked
+
+    def with_inputs(self, nodes: Sequence[int]) -> Program:
+        """Return the same program with some inner nodes as further inputs, behind the others."""
+        result = copy.copy(self)
+        result.nodes = list(self.nodes)
+        for position, k in enumerate(nodes):
+            result.nodes[k] = Node(ca.OP_INPUT, (), float(self.n_inputs + position))
+        return result
 
     def needed(self, outputs: Sequence[int]) -> list[int]:
         """Return the nodes needed for the given nodes, in order of evaluation."""

@@ -11,20 +11,26 @@ import casadi as ca
 import numpy as np
 
 from synth.clusters import Cells, ClusterTree, Factor
-from synth.contractor import Code, Contractor, Layout, Root
+from synth.contractor import INNER, Code, Contractor, Layout, Root
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.native import COMPILED_FROM
 from synth.native_boxes import Packed, Prepared, Question, compiled
+from synth.program import OP_SPECIAL
 from synth.special import expanded
 
 SAMPLES = 256
 STEP = 1e-4
 LARGEST_INFLUENCE = 50.0
-LEAST_INFLUENCE = 0.01
-LEAST_WEIGHT = 0.005
+LEAST_INFLUENCE = 0.001
+LEAST_WEIGHT = 0.001
+MOST_BITS = 3  # objectives that are told apart when weights are learned
+SOME = 1e-3  # share of the multipliers of all objectives from which one counts as asked for
+ENOUGH = 8  # problems solved before their own weights are believed
 # Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
 PARTS_FIRST = 3.0
+PIVOT_OF = 2  # variables that an inner node depends on to be worth carrying
+MOST_PIVOTS = 1
 COMPILE_AFTER = 20_000  # boxes of a question; as many as NumPy does in about a tenth of a second
 
 
@@ -50,9 +56,13 @@ class Propagation:
     goals : list of Goal
         Objectives: those to trade off first.
     traded : int
+    conflict : bool
+        Nothing feasible is known, so that what limits see counts as what objectives see: for pivots.
     """
 
-    def __init__(self, instance: Instance, cuts: Sequence[Cut], goals: Sequence[Goal], traded: int) -> None:
+    def __init__(
+        self, instance: Instance, cuts: Sequence[Cut], goals: Sequence[Goal], traded: int, conflict: bool = False
+    ) -> None:
         self.instance, self.model = instance, instance.model
         self.cuts, self.goals = list(cuts), list(goals)
         self.n = len(self.model.variables)
@@ -64,13 +74,14 @@ class Propagation:
         layout = Layout(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
         plain = tuple(replace(c, bound=0.0) for c in cuts)
 
-        def contractor(wanted: Sequence[Goal]) -> Contractor:
-            key = ("contractor", plain, tuple(wanted))
-            made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted))
+        def contractor(wanted: Sequence[Goal], pivots: tuple[int, ...]) -> Contractor:
+            key = ("contractor", plain, tuple(wanted), pivots)
+            made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted, pivots))
             return made
 
         # Objectives that only settle ties would cost time while others are traded off.
-        self._contractors = {False: contractor(goals[:traded]), True: contractor(goals)}
+        wanted = {False: goals[:traded], True: goals}
+        self._contractors = {every: contractor(own, ()) for every, own in wanted.items()}
         self.factors = self._factors(names, owner)
         self._constants, self._roots = dict[bool, list[float]](), dict[bool, Root]()
         self._least = dict[int, float]()
@@ -85,9 +96,14 @@ class Propagation:
                 known = v[~np.isnan(v)]
                 self._least[node] = float(known.min()) if len(known) else np.nan
         self.empty = any(root.empty for root in self._roots.values())
-        ends = [self._ends_of_variable(i) for i in range(self.n)]
+        self.pivots = self._pivots(conflict)
+        if self.pivots:
+            self._contractors = {every: contractor(own, self.pivots) for every, own in wanted.items()}
+        self.width = self.n + len(self.pivots)
+        ends = [self._ends_of_variable(i) for i in range(self.n)] + [self.range_of(k) for k in self.pivots]
         self.low, self.high = np.array([a for a, _ in ends]), np.array([b for _, b in ends])
         self.positive = self.low > 0
+        self.grids = [*instance.grids(), *(np.empty(0) for _ in self.pivots)]
         self._influence = self._influences()
         weights = self._influence.sum(axis=0)
         trees = [ClusterTree(f, weights[[self.n + i for i in f.inputs]]) for f in self.factors]
@@ -96,10 +112,15 @@ class Propagation:
             every: self._tables_of(c, self._roots[every], per_row[every]) for every, c in self._contractors.items()
         }
         self._spreads = [self._spread(tree) for tree in trees]
-        self.weights = np.ones(len(self.cuts) + len(self.goals), dtype=np.float32)
-        self._learned, self._lessons = np.zeros(len(self.weights)), 0
+        self._bits = traded if traded <= MOST_BITS else 0
+        self._learned = np.zeros((1 << self._bits, len(self.cuts) + len(self.goals)))
+        self._lessons = np.zeros(1 << self._bits, dtype=np.int64)
+        self.weights = self._weights()
         # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
-        self._steep = np.maximum(self._influence[:, : self.n], LEAST_INFLUENCE).astype(np.float32)
+        moving = np.concatenate(
+            [self._influence[:, : self.n], self._influence[:, len(self._influence[0]) - len(self.pivots) :]], axis=1
+        )
+        self._steep = np.maximum(moving, LEAST_INFLUENCE).astype(np.float32)
         self._range = np.maximum(self.high - self.low, 1e-300)
         self._codes: dict[tuple[bool, bool], Code] = {}
         self._prepared: dict[bool, Prepared] = {}
@@ -112,6 +133,28 @@ class Propagation:
 
     def _one_data(self) -> list[float]:
         return [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.zeros(1, dtype=np.int64))]
+
+    def _pivots(self, conflict: bool) -> tuple[int, ...]:
+        """Return inner nodes that boxes carry and split as if they were variables.
+
+        What a special function reads of many variables and parts at once, a torque for instance, is blurred by all of
+        them although the objective sees that one number alone. Where only limits see it the blur costs less than
+        carrying it, unless nothing is feasible: then limits are all that there is.
+        """
+        program, contractor, root = self.model.program, self._contractors[False], self._roots[False]
+        order = set(contractor.order)
+        seen = contractor.order if conflict else program.needed([g.node for g in contractor.goals])
+        readers = [program.nodes[k] for k in contractor.order if program.nodes[k].op == OP_SPECIAL]
+        read = {a for k in seen if program.nodes[k].op == OP_SPECIAL for a in program.nodes[k].args}
+        count = Counter(a for node in readers for a in set(node.args) if a in read)
+        moving = [program.dependence([i]) for i in range(self.n)]
+        result = []
+        for k, _ in count.most_common():
+            inner = k in order and contractor.kind[k] == INNER and contractor.narrows[k]
+            bounded = root.low[k] > 0 and bool(np.isfinite(root.high[k]))
+            if inner and bounded and sum(bool(marked[k]) for marked in moving) >= PIVOT_OF:
+                result.append(k)
+        return () if self.empty else tuple(sorted(result[:MOST_PIVOTS]))
 
     def _ends_of_variable(self, position: int) -> tuple[float, float]:
         low, high = float(self.instance.lower[position]), float(self.instance.upper[position])
@@ -191,10 +234,10 @@ class Propagation:
         program, n = self.model.program, self.n
         rng = np.random.default_rng(0)
         nodes = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
-        share = rng.random((SAMPLES, n))
+        share, low, high = rng.random((SAMPLES, n)), self.low[:n], self.high[:n]
         with np.errstate(all="ignore"):
-            ratio = self.low * (self.high / self.low) ** share
-        points = np.where(self.positive, ratio, self.low + share * (self.high - self.low))
+            ratio = low * (high / low) ** share
+        points = np.where(self.positive[:n], ratio, low + share * (high - low))
         numbers = [rng.integers(size, size=SAMPLES) for size in self.instance.radix]
         data = [np.full(SAMPLES, v) for v in self._one_data()]
         for digits, factor in zip(numbers, self.factors, strict=True):
@@ -202,7 +245,12 @@ class Propagation:
                 data[k] = factor.columns[digits, position]
         inputs = [points[:, i] for i in range(n)] + data
         moving = list(range(n)) + [n + k for f in self.factors for k in f.inputs]
-        evaluate = self.model.function(("influence", tuple(nodes)), lambda: program.compile(nodes))
+        pivoted = program.with_inputs(self.pivots)
+        evaluate = self.model.function(("influence", tuple(nodes), self.pivots), lambda: pivoted.compile(nodes))
+        at_pivots = self.model.function(("pivots", self.pivots), lambda: program.compile(self.pivots))
+        with np.errstate(all="ignore"):
+            inputs += [np.broadcast_to(np.asarray(v, dtype=float), (SAMPLES,)) for v in at_pivots(inputs)]
+        moving += range(len(inputs) - len(self.pivots), len(inputs))
         result = np.zeros((len(self.cuts) + len(self.goals), len(inputs)))
         with np.errstate(all="ignore"):
             before = self._sizes(evaluate(inputs))
@@ -272,14 +320,14 @@ class Propagation:
         """
         count = len(cell)
         function = self._code(every, caps is not None).function
-        variables = [(low[:, i], high[:, i]) for i in range(self.n)]
+        variables = [(low[:, i], high[:, i]) for i in range(self.width)]
         tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
         root = self._roots[every]
         with np.errstate(all="ignore"):
             dead, goals, opens = function(
                 variables, tables, self._constants[every], self.bounds, caps, root.low, root.high, passes, count
             )
-        a, b = np.empty((count, self.n)), np.empty((count, self.n))
+        a, b = np.empty((count, self.width)), np.empty((count, self.width))
         for i, (x, y) in enumerate(variables):
             a[:, i], b[:, i] = x, y
         return Propagated(~dead, a, b, goals, opens)
@@ -340,17 +388,23 @@ class Propagation:
             constants=np.array(self._constants[every]),
             rights=np.array(self.bounds),
             root=self._roots[every],
-            lower=instance.lower,
-            upper=instance.upper,
+            lower=np.concatenate([instance.lower, self.low[self.n :]]),
+            upper=np.concatenate([instance.upper, self.high[self.n :]]),
             spans=np.where(self.positive, 0.0, self._range),
             steep=self._steep,
             spreads=self._spreads,
-            grids=instance.grids(),
+            grids=self.grids,
             margins=margins,
         )
 
     def scores(
-        self, cell: np.ndarray, low: np.ndarray, high: np.ndarray, opens: Sequence[Any], goals: int
+        self,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        opens: Sequence[Any],
+        goals: int,
+        caps: np.ndarray | None = None,
     ) -> np.ndarray:
         """Return, per variable and factor, how far limits that are undecided and objectives spread over it."""
         count, limits = len(cell), len(self.cuts)
@@ -358,12 +412,12 @@ class Propagation:
         for j, flag in enumerate(opens):
             counted[:, j] = flag
         counted[:, limits : limits + goals] = 1.0
-        counted *= self.weights
-        result = np.zeros((count, self.n + len(self.factors)), dtype=np.float32)
-        if self.n:
-            result[:, : self.n] = (counted @ self._steep) * self.widths(low, high)
+        counted *= self.weights[0 if caps is None else self._pattern(np.isfinite(caps[..., : self._bits]))]
+        result = np.zeros((count, self.width + len(self.factors)), dtype=np.float32)
+        if self.width:
+            result[:, : self.width] = (counted @ self._steep) * self.widths(low, high)
         for f, spread in enumerate(self._spreads):
-            result[:, self.n + f] = np.einsum("bj,bj->b", counted, spread.take(cell[:, f], axis=0))
+            result[:, self.width + f] = np.einsum("bj,bj->b", counted, spread.take(cell[:, f], axis=0))
         return result
 
     def learn(self, multipliers: np.ndarray) -> None:
@@ -377,9 +431,34 @@ class Propagation:
         good = np.isfinite(total) & (total > 0)
         if not good.any():
             return
-        self._learned += (sizes[good] / total[good, None]).sum(axis=0)
-        self._lessons += int(good.sum())
-        self.weights = (self._learned / self._lessons + LEAST_WEIGHT).astype(np.float32)
+        shares = sizes[good] / total[good, None]
+        first = len(self.cuts)
+        own = shares[:, first : first + self._bits]
+        pattern = self._pattern(own > SOME * own.sum(axis=1, keepdims=True))
+        np.add.at(self._learned, pattern, shares)
+        np.add.at(self._lessons, pattern, 1)
+        self.weights = self._weights()
+
+    def _pattern(self, objectives: np.ndarray) -> np.ndarray:
+        """Return the number of each set of objectives (..., bits)."""
+        return np.asarray(objectives @ (1 << np.arange(self._bits)), dtype=np.int64)
+
+    def _weights(self) -> np.ndarray:
+        """Return the weights of limits and objectives, per set of objectives that are capped.
+
+        An objective without a cap decides nothing, unless none has one.
+        """
+        first, count = len(self.cuts), int(self._lessons.sum())
+        result = np.ones(self._learned.shape)
+        if count:
+            result[:] = self._learned.sum(axis=0) / count
+            own = self._lessons >= ENOUGH
+            result[own] = self._learned[own] / self._lessons[own, None]
+            result += LEAST_WEIGHT
+        for pattern in range(1, len(result)):
+            idle = [k for k in range(self._bits) if not pattern >> k & 1]
+            result[pattern, [first + k for k in idle]] = 0.0
+        return result.astype(np.float32)
 
     def widths(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return widths of boxes on the scale of the influences."""

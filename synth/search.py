@@ -190,9 +190,8 @@ class _FrontSearch:
     ) -> None:
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
         self.started = time.monotonic()
-        self.form = Formulation(instance, self._chain(), len(chosen))
-        self.form.workers = workers
-        self.m = len(chosen)
+        self.workers, self.m = workers, len(chosen)
+        self.form = self._formulation(conflict=False)
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.stage, self.done = "", 0.0
         self.seed, self.rng = seed, np.random.default_rng(seed)
@@ -213,6 +212,11 @@ class _FrontSearch:
         self.current: Cover | None = None  # the one that is under way
         self.proven_designs = set[bytes]()
         self.looked = 0
+
+    def _formulation(self, conflict: bool) -> Formulation:
+        form = Formulation(self.instance, self._chain(), self.m, conflict)
+        form.workers = self.workers
+        return form
 
     def _chain(self) -> dict[str, str]:
         """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
@@ -250,6 +254,8 @@ class _FrontSearch:
         explanation = None
         try:
             self._timed("bounds", self._root)
+            if len(self.pool):
+                self._timed("coarse", self._coarse)
             if len(self.pool):
                 if self.m == 1 or not self.form.log_goals[: self.m].all():
                     self._timed("extremes", self._extremes)
@@ -369,15 +375,27 @@ class _FrontSearch:
 
     # -- the front -----------------------------------------------------------------------------
 
+    def _coarse(self) -> None:
+        """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
+        for conflict in (False, True):
+            if conflict:
+                known = self.form
+                self.form = self._formulation(conflict)
+                self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
+                self.form.solved_combinations = known.solved_combinations
+                self.purpose = self._purpose(None)
+                self.pool = self.form.root()
+            outcome = self._covered(self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0)), COARSE_EFFORT)
+            if len(self.form.archive):
+                self._seek(self._fine())
+                return
+            if outcome.closed:
+                self.pool, self.open_combinations = self.form.nothing(), 0.0
+                return
+
     def _cover(self) -> None:
-        """Cover everything: coarsely first, then as finely as the points asked for need, at most as the gap."""
+        """Cover everything as finely as the points asked for need, at most as the gap."""
         form = self.form
-        coarse = self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0))
-        outcome = self._covered(coarse, COARSE_EFFORT)
-        if outcome.closed and not len(form.archive):
-            self.open_combinations = 0.0
-            return
-        self._seek(self._fine())
         fine = self._fine()
         outcome = self._covered(fine, EFFORT)
         left = outcome.open

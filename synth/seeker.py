@@ -27,6 +27,7 @@ FAMILIES = 48  # known combinations that are tried at all places
 # Problems in a round: some tens of milliseconds, compiled or not.
 MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
+CONFLICTS = 64
 
 
 class Seeker:
@@ -43,6 +44,8 @@ class Seeker:
         if self.failures >= PATIENCE and self.rounds % (self.failures - PATIENCE + 2):
             return
         form = self.form
+        if form.n and not len(form.archive):
+            self._conflicts(batch)
         phi = form.phi_of(batch.bounds)
         space, along = self.purpose.room(phi), phi[:, self.purpose.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, PROBES)))
@@ -55,17 +58,30 @@ class Seeker:
             found += good
         self.failures = 0 if found else self.failures + 1
 
+    def _conflicts(self, batch: Boxes) -> None:
+        """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
+        form = self.form
+        boxes = batch.take(self.rng.integers(len(batch), size=min(CONFLICTS, len(batch))))
+        combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
+        nothing = np.zeros((len(boxes), len(form.goals)))
+        caps = np.tile(self.purpose.plain, (len(boxes), 1))
+        tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
+        found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
+        if not form.gridded.any():
+            self.offer(found.variables, combinations)
+
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
-        point = np.all(small.high - small.low <= 1e-12 * np.abs(small.high), axis=1)
+        low, high = form.ends(small)
+        point = np.all(high - low <= 1e-12 * np.abs(high), axis=1)
         # A single point is settled by its evaluation; a small box only nearly so.
-        self.offer(small.low[point], form.combination(small.take(point)), exact=True)
+        self.offer(low[point], form.combination(small.take(point)), exact=True)
         rest = small.take(~point)
-        self.offer(0.5 * (rest.low + rest.high), form.combination(rest))
+        self.offer(form.inside(rest, 0.5), form.combination(rest))
         rest = rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
-        self.offer(0.5 * (rest.low + rest.high), form.combination(rest), exact=True)
+        self.offer(form.inside(rest, 0.5), form.combination(rest), exact=True)
         return rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
 
     def _tightened(self, boxes: Boxes) -> Boxes:
@@ -78,12 +94,8 @@ class Seeker:
         if not single:
             boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
         if form.gridded.any():
-            middle = form.makeable(form.inside(boxes, 0.5))
-            boxes = replace(
-                boxes,
-                low=np.where(form.gridded, middle, boxes.low),
-                high=np.where(form.gridded, middle, boxes.high),
-            )
+            middle, (low, high) = form.makeable(form.inside(boxes, 0.5)), form.ends(boxes)
+            boxes = replace(boxes, low=np.where(form.gridded, middle, low), high=np.where(form.gridded, middle, high))
         if form.gridded.any() or not single:
             boxes = self._tightened(boxes)
         return self._keep(boxes)
@@ -236,8 +248,9 @@ class Seeker:
                 return 0
         tasks = self._upwards(form.phi_of(boxes.bounds)[:, columns])
         combinations = form.combination(boxes)
-        settled = form.gridded & (boxes.low == boxes.high)
-        low, high = np.where(settled, boxes.low, form.lower), np.where(settled, boxes.high, form.upper)
+        low, high = form.ends(boxes)
+        settled = form.gridded & (low == high)
+        low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
         answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
@@ -259,8 +272,8 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
     steps = np.array(np.meshgrid(*[np.arange(-REACH, REACH) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T
     count = len(steps)
-    low = np.tile(form.propagation.low, (len(variables) * count, 1))
-    high = np.tile(form.propagation.high, (len(variables) * count, 1))
+    low = np.tile(form.propagation.low[: form.n], (len(variables) * count, 1))
+    high = np.tile(form.propagation.high[: form.n], (len(variables) * count, 1))
     for k, grid in enumerate(form.grids):
         if len(grid):
             place = np.searchsorted(grid, variables[:, k] * (1 - SNAP))[:, None] + steps[None, :, k]

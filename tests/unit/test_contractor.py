@@ -392,9 +392,9 @@ def around(form, rng, points, combinations, scale):
 
 def assert_kept(kept, points, phi, form):
     np.testing.assert_array_equal(np.sort(kept.tag), np.arange(len(points)))
-    own, least = points[kept.tag], form.phi_of(kept.bounds)
-    assert np.all(own >= kept.low - 1e-7 * np.abs(own) - 1e-12)
-    assert np.all(own <= kept.high + 1e-7 * np.abs(own) + 1e-12)
+    own, least, (low, high) = points[kept.tag], form.phi_of(kept.bounds), form.ends(kept)
+    assert np.all(own >= low - 1e-7 * np.abs(own) - 1e-12)
+    assert np.all(own <= high + 1e-7 * np.abs(own) + 1e-12)
     assert not np.any(least > phi[kept.tag] + 1e-7 * (1 + np.abs(phi[kept.tag])))
 
 
@@ -525,6 +525,29 @@ def test_boxes_around_feasible_designs_survive(family):
         for caps in (None, phi + spare + TIE * (1 + np.abs(phi))):
             for passes in (1, 3):
                 assert_kept(form.contract(boxes, caps, passes), points, phi, form)
+
+
+def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(family):
+    form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(6)
+    pivots = form.propagation.pivots
+    assert pivots  # friction work sees the torque, which many variables and parts make together
+    data = form.instance.data(family.combinations)
+    values = family.model.program.compile(pivots)([*points.T, *data])
+    held = np.stack([np.broadcast_to(v, len(points)) for v in values], axis=1)
+    boxes = around(form, rng, points, family.combinations, 0.0)
+    for scale in (1.0, 0.1, 0.0):
+        low = points * np.exp(-scale * rng.exponential(1.0, points.shape))
+        high = points * np.exp(scale * rng.exponential(1.0, points.shape))
+        for width in (0.1, 1e-3, 0.0):
+            least = held * np.exp(-width * rng.random(held.shape))
+            most = held * np.exp(width * rng.random(held.shape))
+            carrying = replace(
+                boxes,
+                low=np.concatenate([np.maximum(low, family.instance.lower), least], axis=1),
+                high=np.concatenate([np.minimum(high, family.instance.upper), most], axis=1),
+            )
+            assert_kept(form.contract(carrying, None, 3), points, phi, form)
+            assert_kept(form.contract(carrying, phi + TIE * (1 + np.abs(phi)), 2), points, phi, form)
 
 
 def test_the_root_box_holds_all_feasible_designs(family):

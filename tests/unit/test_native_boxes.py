@@ -125,7 +125,7 @@ class Case:
         prepared = native_boxes.Prepared(self.contractor, question)
         return loaded(code).contract(
             prepared, self.cell, self.low, self.high, np.full(self.caps.shape, -np.inf), np.arange(self.boxes),
-            self.caps if capped else None, np.ones(len(self.steep)), passes, workers,
+            self.caps if capped else None, np.ones((1, len(self.steep))), passes, workers,
         )  # fmt: skip
 
     def agree(self, capped, passes, rtol, atol=0.0):
