@@ -1,0 +1,67 @@
+"""Disc clutch: torque through one or two large dry discs between pressure plates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems import blocks
+from problems.mechanics import disc
+from problems.mechanics import ring as ring_formulas
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class DiscClutch(DesignProblem):
+    """Dry disc clutch with one or two discs, two friction surfaces each.
+
+    Sizing and start-up follow S1; the worn-in capacity (uniform wear) is Shigley's.
+    """
+
+    name = "disc_clutch"
+    title = "Disc clutch"
+    sources = (
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        "Shigley, Mechanical Engineering Design, disc clutch: uniform pressure and uniform wear",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = blocks.declare_duty(d, "still_air", "dry")
+        ring = blocks.declare_ring(d, 0.11, 0.13)
+        pack = blocks.declare_disc_pack(d, duty, ring)
+        force = d.variable(
+            "actuation_force", "N", 50, 200000, symbol="F0",
+            text="Axial force of the springs on the pressure plate", source="S1 (lecture on friction clutches), F",
+        )  # fmt: skip
+        ramp_time = blocks.declare_ramp_time(d)
+        pair = blocks.declare_friction_pair(d, self.name, duty, "dry")
+
+        def torque(mu: Any) -> Any:
+            return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
+
+        required = blocks.sizing_torque(duty)
+        torques = blocks.declare_torque(d, duty, pair, required, torque(pair.mu_low), torque(pair.mu_high))
+        blocks.declare_worn_torque(d, pair, torques, ring, pack, force)
+        start = blocks.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        blocks.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
+        size = blocks.disc_size(duty, ring, pair, pack)
+        blocks.declare_size(
+            d, size, "Pressure plates, linings and cores, without flywheel, springs and cover",
+            "Outside of the cover, 2 (r2 + s_cover)",
+            "Length of the released discs and pressure plates, without flywheel, springs and cover",
+        )  # fmt: skip
+        blocks.declare_disc_inertia(d, duty, ring, pair, pack)
+        blocks.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
+        blocks.declare_envelope(d, duty, force, size.diameter, size.length)
+        d.objective("mass")
+        d.objective("actuation_force")
+        for name in ("outer_diameter", "volume", "friction_work", "disc_inertia"):
+            d.objective(name, default=False)
