@@ -84,31 +84,30 @@ class ConeClutch(DesignProblem):
             text="Outer spring, or inner cone that closes the axial force inside", source=f"{S1}, inner-cone clutch",
         )  # fmt: skip
 
-        def torque(mu: Any, normal_force: Any) -> Any:
-            return cone.friction_torque(mu, normal_force, shape.mean_diameter, shape.ratio, shape.angle)
-
-        def engaged(mu: Any) -> Any:
-            return cone.normal_force(shape.force, shape.angle, mu)
+        def torque(peripheral_force: Any) -> Any:
+            return cone.friction_torque(peripheral_force, shape.mean_diameter, shape.ratio, shape.angle)
 
         low, high = pair.mu_low, pair.mu_high
-        seated_normal_force = cone.seated_force(shape.force, shape.angle)
-        seated_torque = torque(high, seated_normal_force)
+        # The peripheral force stays one expression for torque and pressure, so that a bound on one reaches the other.
+        grip_low = shape.force * cone.grip_factor(shape.angle, low)
+        grip_high = grip_low if high is low else shape.force * cone.grip_factor(shape.angle, high)
+        seated_force = cone.seated_force(shape.force, shape.angle)
+        seated_torque = torque(high * seated_force)
         torques = blocks.declare_torque(
-            d, duty, pair, blocks.sizing_torque(duty), torque(low, engaged(low)), torque(high, engaged(high)),
-            overload=seated_torque,
-        )  # fmt: skip
+            d, duty, pair, blocks.sizing_torque(duty), torque(grip_low), torque(grip_high), overload=seated_torque
+        )
         start = blocks.declare_startup(d, duty, torques, ramp_time)
         blocks.declare_surface_loads(
-            d, duty, pair, start, shape.area, shape.area, engaged(low) / shape.area, shape.largest_diameter / 2
+            d, duty, pair, start, shape.area, shape.area, grip_low / low / shape.area, shape.largest_diameter / 2
         )
-        self._declare_seating(d, duty, wants, pair, shape, seated_torque, seated_normal_force / shape.area)
-        self._declare_release(d, duty, wants, pair, shape, cone.release_force(engaged(high), shape.angle, high))
+        self._declare_seating(d, duty, wants, pair, shape, seated_torque, seated_force / shape.area)
+        self._declare_release(d, duty, wants, pair, shape, cone.release_force(grip_high / high, shape.angle, high))
         self._declare_bearing(d, wants, shape, layout)
         shell_mass = cone.shell_mass(duty.steel_density, shape.area, shape.shell_thickness)
         lining = pair.part.lining_thickness
         size = blocks.Size(
             mass=cone.clutch_mass(
-                layout.mass_factor, shell_mass, plates.lining_mass(pair.part.density, lining, shape.area)
+                layout.mass_factor, shape.area, duty.steel_density, shape.shell_thickness, pair.part.density, lining
             ),
             diameter=cone.overall_diameter(shape.largest_diameter, shape.shell_thickness, lining),
             length=cone.overall_length(shape.length, shape.angle, layout.length_add),

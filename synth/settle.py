@@ -15,6 +15,7 @@ STARTS = 6
 DIRECTIONS = 5
 BATCH = 2048
 MOST_TIES = 50
+MOST_MOVES = 8
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
@@ -25,8 +26,43 @@ def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
         _, first = np.unique(archive.combination[near], return_index=True)
         chosen = [archive[int(near[i])] for i in np.sort(first)[:MOST_TIES]]
         order = [k, *(j for j in range(traded) if j != k)]
-        for c in settle_variables(form, chosen, 0, order):
+        exact = settle_makeable(form, settle_variables(form, chosen, 0, order), traded, order)
+        for c in settle_variables(form, exact, 0, order):
             archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
+
+
+def settle_makeable(
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int]
+) -> list[Candidate]:
+    """Move one makeable value at a time while the objectives, compared in their order, become smaller.
+
+    None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid, the
+    other objectives decide that way.
+    """
+    return [_settle_makeable(form, candidate, traded, list(order)) for candidate in candidates]
+
+
+def _settle_makeable(form: Formulation, candidate: Candidate, traded: int, order: list[int]) -> Candidate:
+    for _ in range(MOST_MOVES):
+        before = candidate
+        for k in np.flatnonzero(form.gridded & (form.lower < form.upper)):
+            grid = form.grids[k]
+            grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
+            trials = np.tile(candidate.variables, (len(grid), 1))
+            trials[:, k] = grid
+            rows, phi = form.feasible_rows(trials, np.full(len(grid), candidate.combination))
+            left = rows[np.all(phi[rows, :traded] <= candidate.phi[:traded] + TIE, axis=1)]
+            for j in order:
+                left = left[phi[left, j] <= np.min(phi[left, j], initial=np.inf) + TIE]
+            if not len(left):
+                continue
+            gain = candidate.phi[order] - phi[left[0], order]
+            decisive = np.flatnonzero(np.abs(gain) > TIE)
+            if len(decisive) and gain[decisive[0]] > 0:
+                candidate = Candidate(candidate.combination, trials[left[0]], phi[left[0]])
+        if candidate is before:
+            break
+    return candidate
 
 
 def settle_variables(

@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from problems.mechanics import Quantity
+from synth.special import special
 
 
 def wedge_factor(half_angle: Quantity, mu: Quantity) -> Quantity:
@@ -44,6 +45,38 @@ def wedge_factor(half_angle: Quantity, mu: Quantity) -> Quantity:
     return np.sin(half_angle) + mu * np.cos(half_angle)
 
 
+@special((-1.0, 0.0), (0.0, 1.0))
+def grip_factor(half_angle: Quantity, mu: Quantity) -> Quantity:
+    """Peripheral force over the spring force of a clutch that has just engaged, mu/(sin(alpha) + mu cos(alpha)).
+
+    It falls with the angle while tan(alpha) < 1/mu, and rises with the friction.
+
+    Parameters
+    ----------
+    half_angle : scalar, array or symbol
+        alpha [rad], with tan(alpha) < 1/mu.
+    mu : scalar, array or symbol
+        Sliding friction [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        mu N/F [-]; the wedge effect for which a cone is chosen (mu for a disc).
+
+    References
+    ----------
+    S1 (lecture), advantage of the cone: the wedge effect; derived.
+
+    Examples
+    --------
+    By hand, 0.2/(0.5 + 0.2 cos 30 degrees):
+
+    >>> float(grip_factor(np.pi / 6, 0.2))
+    0.297086
+    """
+    return mu / wedge_factor(half_angle, mu)
+
+
 def normal_force(engaging_force: Quantity, half_angle: Quantity, mu: Quantity) -> Quantity:
     """Resultant of the pressure under a spring that has just engaged the clutch, N = F/(sin(alpha) + mu cos(alpha)).
 
@@ -52,7 +85,7 @@ def normal_force(engaging_force: Quantity, half_angle: Quantity, mu: Quantity) -
     engaging_force : scalar, array or symbol
         Spring force F [N].
     half_angle : scalar, array or symbol
-        alpha [rad].
+        alpha [rad], with tan(alpha) < 1/mu.
     mu : scalar, array or symbol
         Sliding friction [-].
 
@@ -72,7 +105,7 @@ def normal_force(engaging_force: Quantity, half_angle: Quantity, mu: Quantity) -
     >>> float(normal_force(673.205, np.pi / 6, 0.2))
     1000.0
     """
-    return engaging_force / wedge_factor(half_angle, mu)
+    return engaging_force * grip_factor(half_angle, mu) / mu
 
 
 def mean_radius_factor(ring_ratio: Quantity, half_angle: Quantity) -> Quantity:
@@ -105,16 +138,14 @@ def mean_radius_factor(ring_ratio: Quantity, half_angle: Quantity) -> Quantity:
 
 
 def friction_torque(
-    mu: Quantity, normal_force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity, half_angle: Quantity
+    peripheral_force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity, half_angle: Quantity
 ) -> Quantity:
     """Torque at uniform pressure, M = mu N (dm/2)(1 + c**2 sin(alpha)**2/3).
 
     Parameters
     ----------
-    mu : scalar, array or symbol
-        Sliding friction [-].
-    normal_force : scalar, array or symbol
-        N [N].
+    peripheral_force : scalar, array or symbol
+        mu N [N].
     mean_diameter : scalar, array or symbol
         dm [m].
     ring_ratio : scalar, array or symbol
@@ -133,23 +164,21 @@ def friction_torque(
 
     Examples
     --------
-    By hand, 0.2 x 1000 x 0.1 x (1 + 0.04 x 0.25/3):
+    By hand, 200 x 0.1 x (1 + 0.04 x 0.25/3):
 
-    >>> float(friction_torque(0.2, 1000, 0.2, 0.2, np.pi / 6))
+    >>> float(friction_torque(200, 0.2, 0.2, np.pi / 6))
     20.0667
     """
-    return mu * normal_force * mean_diameter / 2 * mean_radius_factor(ring_ratio, half_angle)
+    return peripheral_force * mean_diameter / 2 * mean_radius_factor(ring_ratio, half_angle)
 
 
-def worn_torque(mu: Quantity, normal_force: Quantity, mean_diameter: Quantity) -> Quantity:
+def worn_torque(peripheral_force: Quantity, mean_diameter: Quantity) -> Quantity:
     """Torque of worn-in faces (pressure times radius constant), M = mu N dm/2.
 
     Parameters
     ----------
-    mu : scalar, array or symbol
-        Sliding friction [-].
-    normal_force : scalar, array or symbol
-        N [N].
+    peripheral_force : scalar, array or symbol
+        mu N [N].
     mean_diameter : scalar, array or symbol
         dm [m].
 
@@ -166,10 +195,10 @@ def worn_torque(mu: Quantity, normal_force: Quantity, mean_diameter: Quantity) -
     --------
     By hand:
 
-    >>> worn_torque(0.2, 1000, 0.2)
+    >>> worn_torque(200, 0.2)
     20.0
     """
-    return mu * normal_force * mean_diameter / 2
+    return peripheral_force * mean_diameter / 2
 
 
 def service_force(normal_force: Quantity, half_angle: Quantity) -> Quantity:
@@ -623,17 +652,30 @@ def shell_mass(density: Quantity, area: Quantity, shell_thickness: Quantity) -> 
     return density * area * shell_thickness
 
 
-def clutch_mass(mass_factor: Quantity, shell_mass: Quantity, lining_mass: Quantity) -> Quantity:
-    """Mass of the clutch, mass_factor (2 m_shell + m_lining).
+def clutch_mass(
+    mass_factor: Quantity,
+    area: Quantity,
+    density: Quantity,
+    shell_thickness: Quantity,
+    lining_density: Quantity,
+    lining_thickness: Quantity,
+) -> Quantity:
+    """Mass of the clutch, mass_factor A (2 rho t_s + rho_lining t_lining).
 
     Parameters
     ----------
     mass_factor : scalar, array or symbol
         Of the layout [-].
-    shell_mass : scalar, array or symbol
-        One shell, inner or outer cone [kg].
-    lining_mass : scalar, array or symbol
-        Lining [kg].
+    area : scalar, array or symbol
+        Friction face A [m2].
+    density : scalar, array or symbol
+        Density of the shells rho [kg/m3].
+    shell_thickness : scalar, array or symbol
+        Inner and outer cone, each t_s [m].
+    lining_density : scalar, array or symbol
+        Density of the lining [kg/m3].
+    lining_thickness : scalar, array or symbol
+        t_lining [m].
 
     Returns
     -------
@@ -646,7 +688,9 @@ def clutch_mass(mass_factor: Quantity, shell_mass: Quantity, lining_mass: Quanti
 
     Examples
     --------
-    >>> clutch_mass(1.35, 1.0, 0.2)
-    2.97
+    By hand, 1.35 x 0.02 x (2 x 7850 x 0.005 + 2000 x 0.003):
+
+    >>> clutch_mass(1.35, 0.02, 7850, 0.005, 2000, 0.003)
+    2.2815
     """
-    return mass_factor * (2 * shell_mass + lining_mass)
+    return mass_factor * area * (2 * density * shell_thickness + lining_density * lining_thickness)
