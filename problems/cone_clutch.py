@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import blocks
-from problems.mechanics import cone, heat, plates
+from problems.mechanics import cone, heat
 from synth import DesignProblem
 from synth.declaration import Declaration, Part
 
@@ -22,6 +22,11 @@ TYPICAL = "engineering-typical value"
 # The friction work is shared by the inner and the outer cone.
 SHELL_SHARE = 0.5
 COOLING = "still_air"
+
+
+# Of the curves: half angles [deg], and friction where no pair is chosen.
+ANGLES_SHOWN = (4.0, 45.0)
+FRICTION_SHOWN = (0.1, 0.2, 0.3, 0.4, 0.5)
 
 
 @dataclass(frozen=True)
@@ -220,7 +225,14 @@ class ConeClutch(DesignProblem):
         )
 
     def _declare_seating(
-        self, d: Declaration, duty: blocks.Duty, wants: Wants, pair: blocks.Pair, shape: Cone, torque: Any, pressure: Any
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        wants: Wants,
+        pair: blocks.Pair,
+        shape: Cone,
+        torque: Any,
+        pressure: Any,
     ) -> None:
         """Declare torque and pressure after vibration has removed the axial friction."""
         d.derive(
@@ -309,3 +321,99 @@ class ConeClutch(DesignProblem):
             "shell helps, or a lower temperature_rise_limit",
             source="Neale, Tribology Handbook, Table 7.4",
         )
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the axial forces over the half angle: for some friction values, and those of a design.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw; mean diameter, face and torque are held, the angle varies.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``force_ratio_over_angle``, and of a design ``force_over_angle``.
+        """
+        curves = {"force_ratio_over_angle": self._force_ratio_over_angle(spec)}
+        if design is not None:
+            curves["force_over_angle"] = self._force_over_angle(spec, design)
+        return curves
+
+    def _force_ratio_over_angle(self, spec: Mapping[str, Any]) -> pd.DataFrame:
+        import pandas as pd
+
+        degrees = np.linspace(*ANGLES_SHOWN, 165)
+        angle = np.radians(degrees)
+        engaging = {f"engaging, friction {mu:g} [-]": cone.engaging_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
+        releasing = {f"releasing, friction {mu:g} [-]": cone.release_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
+        frame = pd.DataFrame({"half angle [deg]": degrees, **engaging, **releasing})
+        required = blocks.sizing_torque_of(spec)
+        frame.attrs = {
+            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {required:.4g} N*m)",
+            "panels": [
+                {"label": "engaging force dm/(2M) [-]", "columns": list(engaging)},
+                {"label": "releasing force dm/(2M) [-]", "columns": list(releasing)},
+            ],
+            "marks": [
+                {"x": float(np.degrees(cone.locking_angle(mu))), "label": f"self-locking below, {mu:g}"}
+                for mu in FRICTION_SHOWN
+            ],
+            "lines": [{"panel": 1, "y": 0.0, "label": "below: must be pulled apart"}],
+            "source": DERIVED,
+        }
+        return frame
+
+    def _force_over_angle(self, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+        import pandas as pd
+
+        value, pair = design.values, design.parts["friction_pair"]
+        worst_case = self.options.get("friction_basis", self.options.get("basis", "nominal")) == "worst_case"
+        low, high = (pair["mu_min"], pair["mu_max"]) if worst_case else (pair["mu_dynamic"], pair["mu_dynamic"])
+        static = max(pair["mu_static"], high) if worst_case else pair["mu_static"]
+        degrees = np.linspace(*ANGLES_SHOWN, 165)
+        angle = np.radians(degrees)
+        mean, ratio = value["mean_diameter"], value["ring_ratio"]
+        area = cone.face_area(mean, value["generator_length"])
+        # The normal force that carries the torque of the design at each angle, and the spring that engages it.
+        normal = value["torque"] / cone.friction_torque(low, mean, ratio, angle)
+        spring = cone.engaging_force(normal, angle, low)
+        seated = cone.seated_force(spring, angle)
+        frame = pd.DataFrame({
+            "half angle [deg]": degrees,
+            "engaging: the spring [N]": spring,
+            "in service [N]": cone.service_force(normal, angle),
+            "releasing [N]": cone.release_force(cone.normal_force(spring, angle, high), angle, high),
+            "engaged [N*m]": np.full_like(angle, value["torque"]),
+            "seated by vibration [N*m]": cone.friction_torque(high * seated, mean, ratio, angle),
+            "engaged [N/mm2]": normal / area / 1e6,
+            "seated by vibration [N/mm2]": seated / area / 1e6,
+        })  # fmt: skip
+        by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
+        locking, kept = (float(np.degrees(cone.locking_angle(k * static))) for k in (1.0, spec["locking_margin"]))
+        allowed = pair["p_allow"] / 1e6
+        lines = [
+            {"panel": 0, "y": 0.0, "label": "below: must be pulled apart"},
+            {"panel": 2, "y": allowed, "label": "p_allow"},
+            {"panel": 2, "y": allowed * spec["seating_pressure_factor"], "label": "p_allow of seated cones"},
+        ]
+        if spec["overload_torque"] is not None:
+            lines.append({"panel": 1, "y": spec["overload_torque"], "label": "overload_torque"})
+        frame.attrs = {
+            "title": f"Cone clutch: forces over the half angle for {value['torque']:.4g} N*m, {pair['designation']}",
+            "panels": [
+                {"label": "axial force [N]", "columns": by_unit["[N]"]},
+                {"label": "torque [N*m]", "columns": by_unit["[N*m]"]},
+                {"label": "pressure [N/mm2]", "columns": by_unit["[N/mm2]"]},
+            ],
+            "marks": [
+                {"x": float(np.degrees(value["cone_half_angle"])), "label": "this design"},
+                {"x": kept, "label": "locking_margin"},
+            ],
+            "spans": [{"from": ANGLES_SHOWN[0], "to": max(locking, ANGLES_SHOWN[0]), "label": "self-locking"}],
+            "lines": lines,
+            "source": DERIVED,
+        }
+        return frame

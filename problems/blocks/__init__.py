@@ -23,6 +23,7 @@ from problems.blocks.duty import (
     declare_ramp_time,
     declare_size,
     sizing_torque,
+    sizing_torque_of,
 )
 from problems.blocks.engagement import (
     Pair,
@@ -94,4 +95,5 @@ __all__ = [
     "disc_size",
     "pack_size",
     "sizing_torque",
+    "sizing_torque_of",
 ]

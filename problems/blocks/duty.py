@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -244,6 +245,12 @@ def sizing_torque(duty: Duty, surface_factor: Any = 1.0) -> Any:
     return ring_formulas.required_torque(
         duty.load_torque, duty.safety_factor, duty.switching_factor, duty.speed_factor, surface_factor
     )
+
+
+def sizing_torque_of(spec: Mapping[str, Any]) -> float:
+    """Return M_req [N m] of given requirements, in SI by name, as curves show it."""
+    factors = (spec["safety_factor"], spec["switching_factor"], spec["speed_factor"])
+    return float(ring_formulas.required_torque(spec["load_torque"], *factors))
 
 
 def declare_envelope(d: Declaration, duty: Duty, force: Any, diameter: Any, length: Any) -> None:

@@ -177,8 +177,8 @@ def declare_torque(
         d.refuse(
             "capacity_window_empty",
             duty.overload_torque < required,
-            "an overload_torque of at least the sizing torque required_torque (load_torque times safety_factor over the "
-            "other operating factors); otherwise no torque satisfies both",
+            "an overload_torque of at least the sizing torque (load_torque times safety_factor over the other operating "
+            "factors); otherwise no torque satisfies both",
         )
     return torques
 

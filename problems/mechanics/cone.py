@@ -1,8 +1,8 @@
 """Cone clutch: torque, axial forces in service, on engaging and on releasing, self-locking, seating and sizing.
 
-The half angle alpha lies between generator and axis, the friction face has the mean diameter dm and the generator length
-l, c = l/dm. N is the resultant of the pressure. alpha = 90 degrees gives the disc clutch. Every function takes floats,
-arrays or CasADi symbols, angles in radians.
+The half angle alpha lies between generator and axis, the friction face has the mean diameter dm and the generator
+length l, c = l/dm. N is the resultant of the pressure. alpha = 90 degrees gives the disc clutch. Every function takes
+floats, arrays or CasADi symbols, angles in radians.
 
 Sources: S1 (lecture on friction clutches), single-cone and inner-cone clutch; its formulas are lost in print and were
 derived again from its questions (axial force for a torque, axial force for engaging) and sizing steps.
