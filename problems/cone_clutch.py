@@ -25,7 +25,7 @@ COOLING = "still_air"
 
 
 # Of the curves: half angles [deg], and friction where no pair is chosen.
-ANGLES_SHOWN = (4.0, 45.0)
+ANGLES_SHOWN = (4.0, 30.0)
 FRICTION_SHOWN = (0.1, 0.2, 0.3, 0.4, 0.5)
 
 
@@ -321,6 +321,13 @@ class ConeClutch(DesignProblem):
             "shell helps, or a lower temperature_rise_limit",
             source="Neale, Tribology Handbook, Table 7.4",
         )
+        d.advise(
+            "cooling_pause",
+            rise > pair.part.optional("temp_continuous") - duty.ambient_temperature,
+            "one engagement makes the shell hotter than the lining stands continuously: it has to cool down before "
+            "the next; frequent switching makes cooling compulsory",
+            source="Neale, Tribology Handbook, Table 7.4; S0 (Szoke 1966), cooling of the plates",
+        )
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the axial forces over the half angle: for some friction values, and those of a design.
@@ -345,7 +352,7 @@ class ConeClutch(DesignProblem):
     def _force_ratio_over_angle(self, spec: Mapping[str, Any]) -> pd.DataFrame:
         import pandas as pd
 
-        degrees = np.linspace(*ANGLES_SHOWN, 165)
+        degrees = np.linspace(*ANGLES_SHOWN, 105)
         angle = np.radians(degrees)
         engaging = {f"engaging, friction {mu:g} [-]": cone.engaging_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
         releasing = {f"releasing, friction {mu:g} [-]": cone.release_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
@@ -373,7 +380,7 @@ class ConeClutch(DesignProblem):
         worst_case = self.options.get("friction_basis", self.options.get("basis", "nominal")) == "worst_case"
         low, high = (pair["mu_min"], pair["mu_max"]) if worst_case else (pair["mu_dynamic"], pair["mu_dynamic"])
         static = max(pair["mu_static"], high) if worst_case else pair["mu_static"]
-        degrees = np.linspace(*ANGLES_SHOWN, 165)
+        degrees = np.linspace(*ANGLES_SHOWN, 105)
         angle = np.radians(degrees)
         mean, ratio = value["mean_diameter"], value["ring_ratio"]
         area = cone.face_area(mean, value["generator_length"])
@@ -392,7 +399,7 @@ class ConeClutch(DesignProblem):
             "seated by vibration [N/mm2]": seated / area / 1e6,
         })  # fmt: skip
         by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
-        locking, kept = (float(np.degrees(cone.locking_angle(k * static))) for k in (1.0, spec["locking_margin"]))
+        locking, kept = np.degrees(cone.locking_angle(static * np.array([1.0, max(spec["locking_margin"], 1.0)])))
         allowed = pair["p_allow"] / 1e6
         lines = [
             {"panel": 0, "y": 0.0, "label": "below: must be pulled apart"},
@@ -408,11 +415,11 @@ class ConeClutch(DesignProblem):
                 {"label": "torque [N*m]", "columns": by_unit["[N*m]"]},
                 {"label": "pressure [N/mm2]", "columns": by_unit["[N/mm2]"]},
             ],
-            "marks": [
-                {"x": float(np.degrees(value["cone_half_angle"])), "label": "this design"},
-                {"x": kept, "label": "locking_margin"},
+            "marks": [{"x": float(np.degrees(value["cone_half_angle"])), "label": "this design"}],
+            "spans": [
+                {"from": ANGLES_SHOWN[0], "to": locking, "label": "self-locking"},
+                {"from": locking, "to": kept, "label": "below locking_margin"},
             ],
-            "spans": [{"from": ANGLES_SHOWN[0], "to": max(locking, ANGLES_SHOWN[0]), "label": "self-locking"}],
             "lines": lines,
             "source": DERIVED,
         }

@@ -46,8 +46,7 @@ def declare_friction_pair(d: Declaration, family: str, duty: Duty, lubrication: 
         The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
     """
     conditions = [f"'{family}' in family_hint"]
-    if lubrication is not None:
-        conditions.append(f"lubrication == '{lubrication}'")
+    conditions.append(f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')")
     if duty.allow_obsolete == "no":
         conditions.append("new_design_allowed == 1")
     part = d.part(
@@ -177,8 +176,8 @@ def declare_torque(
         d.refuse(
             "capacity_window_empty",
             duty.overload_torque < required,
-            "an overload_torque of at least the sizing torque (load_torque times safety_factor over the other operating "
-            "factors); otherwise no torque satisfies both",
+            "an overload_torque of at least the sizing torque (load_torque times safety_factor over the other "
+            "operating factors); otherwise no torque satisfies both",
         )
     return torques
 
