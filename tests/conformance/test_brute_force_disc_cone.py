@@ -1,8 +1,8 @@
 """Disc and cone clutch against plain enumeration: nothing makeable beats a front by more than its gap.
 
 Every combination and every makeable dimension inside the limits of an instance is evaluated, with the ramp given.
-Torque, pressure and power grow with the force, so the least force that carries what must be carried is tried first, then
-a ladder of larger ones for objectives that fall with the force.
+Torque, pressure and power grow with the force, so the least force that carries what must be carried is tried first,
+then a ladder of larger ones for objectives that fall with the force.
 """
 
 import numpy as np
