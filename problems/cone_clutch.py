@@ -119,6 +119,7 @@ class ConeClutch(DesignProblem):
         )
         blocks.declare_size(
             d, size, "Both shells and the lining, times the mass_factor of the layout", "Outside of the outer cone",
+            "dm + l_g sin(alpha) + 2 (t_s + t_lining)",
             "Length of the cone and what the layout adds to it",
         )  # fmt: skip
         self._declare_temperature(d, duty, wants, pair, start, shell_mass)

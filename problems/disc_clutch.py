@@ -57,7 +57,8 @@ class DiscClutch(DesignProblem):
         size = blocks.disc_size(duty, ring, pair, pack)
         blocks.declare_size(
             d, size, "Pressure plates, linings and cores, without flywheel, springs and cover",
-            "Outside of the cover, 2 (r2 + s_cover)",
+            "Outside of the cover",
+            "2 (r2 + s_cover)",
             "Length of the released discs and pressure plates, without flywheel, springs and cover",
         )  # fmt: skip
         blocks.declare_disc_inertia(d, duty, ring, pair, pack)

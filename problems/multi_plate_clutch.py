@@ -49,7 +49,7 @@ class MultiPlateClutch(DesignProblem):
         size = blocks.pack_size(duty, wants, ring, pair, pack)
         blocks.declare_pack_temperature(d, duty, pair, start, size)
         blocks.declare_size(
-            d, size, "Plates with linings", "Outside of the drum, 2 (b + s_drum)",
+            d, size, "Plates with linings", "Outside of the drum", "2 (b + s_drum)",
             "Length of the released pack, without actuator and end stops",
         )  # fmt: skip
         blocks.declare_drag(d, duty, wants, ring, pack)

@@ -279,7 +279,7 @@ class Size:
     length: Any
 
 
-def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, along: str) -> None:
+def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, across: str, along: str) -> None:
     """Declare mass, outer diameter, length and volume.
 
     Parameters
@@ -288,10 +288,10 @@ def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, along: 
         Takes the declarations.
     size : Size
         What is declared.
-    mass_of, outside, along : str
-        What the mass is of, what is outermost, and what the length runs over; for the reader.
+    mass_of, outside, across, along : str
+        What the mass is of, what is outermost and by which formula, and what the length runs over; for the reader.
     """
-    d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source="geometry")
+    d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source=f"geometry, {across}")
     d.derive("length", "mm", size.length, symbol="L", text=along, source="geometry")
     d.derive(
         "volume", "dm3", plates.cylinder_volume(size.diameter, size.length), symbol="V",
