@@ -90,8 +90,7 @@ CASES: dict[str, Family] = {
         option_sets={
             "default": {},
             "active": {"load_kind": "active", "cooling": "fan"},
-            "worst_case": {"friction_basis": "worst_case"},
-            "obsolete": {"allow_obsolete": "yes"},
+            "worst_case": {"friction_basis": "worst_case", "allow_obsolete": "yes"},
         },
         requirements=CAR,
         optional={
@@ -113,27 +112,12 @@ CASES: dict[str, Family] = {
                     "jerk_limit": "300 rad/s3",
                     "outer_diameter_limit": "240 mm",
                 },
-                settings={"parts": {"friction_pair": ["woven_dry", "wound_yarn_dry", "moulded_dry"]}},
+                settings={"parts": {"friction_pair": ["wound_yarn_dry", "moulded_dry"]}},
                 tighten={
                     "load_torque": "64 N*m",
                     "outer_diameter_limit": "215 mm",
                     "temperature_rise_limit": "60 K",
                 },
-            ),
-            "press": Case(
-                requirements={
-                    "load_torque": "400 N*m",
-                    "driver_speed": "300 rpm",
-                    "driven_inertia": "8 kg*m2",
-                    "engagements_per_hour": 12,
-                    "actuation_force_limit": "9 kN",
-                },
-                options={"friction_basis": "worst_case"},
-                settings={
-                    "parts": {"friction_pair": ["sinter_bronze_dry", "moulded_dry"]},
-                    "fix": {"ramp_time": "0.4 s"},
-                },
-                tighten={"actuation_force_limit": "8 kN", "safety_factor": 1.6},
             ),
         },
         infeasible=Case(
@@ -152,8 +136,7 @@ CASES: dict[str, Family] = {
         option_sets={
             "default": {},
             "active": {"load_kind": "active"},
-            "worst_case": {"friction_basis": "worst_case"},
-            "forced_oil": {"cooling": "through_oil", "allow_obsolete": "yes"},
+            "worst_case": {"friction_basis": "worst_case", "cooling": "through_oil", "allow_obsolete": "yes"},
         },
         requirements=CONE,
         optional={
@@ -167,19 +150,6 @@ CASES: dict[str, Family] = {
             "bearing_force_limit": "20 kN",
         },
         feasible={
-            "drive": Case(
-                requirements={**CONE, "jerk_limit": "600 rad/s3", "outer_diameter_limit": "400 mm"},
-                settings={
-                    "parts": {"friction_pair": ["millboard_dry", "moulded_dry", "sinter_bronze_dry"]},
-                    "fix": {"ramp_time": "0.3 s"},
-                },
-                tighten={
-                    "load_torque": "210 N*m",
-                    "outer_diameter_limit": "260 mm",
-                    "locking_margin": 1.2,
-                    "temperature_rise_limit": "20 K",
-                },
-            ),
             "inner": Case(
                 requirements={
                     **CONE,
