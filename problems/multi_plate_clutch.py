@@ -54,10 +54,13 @@ class MultiPlateClutch(DesignProblem):
         )
         size = blocks.pack_size(duty, wants, ring, pair, pack)
         blocks.declare_pack_temperature(d, duty, pair, start, size)
-        self._declare_size(d, size)
+        blocks.declare_size(
+            d, size, "Plates with linings", "Outside of the drum", "2 (b + s_drum)",
+            "Length of the released pack, without actuator and end stops",
+        )  # fmt: skip
         blocks.declare_drag(d, duty, wants, ring, pack)
         blocks.declare_envelope(d, duty, force, size.diameter, size.length)
-        blocks.declare_pack_remarks(d, options, duty, lubrication)
+        blocks.declare_pack_remarks(d, options, lubrication)
         self._declare_objectives(d)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
@@ -82,21 +85,6 @@ class MultiPlateClutch(DesignProblem):
             "actuation_force", "N", 50, 200000, symbol="F0",
             text="Axial force of the actuator on the first plate", source="S0 (Szoke 1966), F0",
         )  # fmt: skip
-
-    def _declare_size(self, d: Declaration, size: blocks.PackSize) -> None:
-        d.derive(
-            "outer_diameter", "mm", size.diameter, symbol="D",
-            text="Outside of the drum", source="geometry, 2 (b + s_drum)",
-        )  # fmt: skip
-        d.derive(
-            "length", "mm", size.length, symbol="L",
-            text="Length of the released pack, without actuator and end stops", source="geometry",
-        )  # fmt: skip
-        d.derive(
-            "volume", "dm3", plates.cylinder_volume(size.diameter, size.length), symbol="V",
-            text="Enveloping cylinder", source="geometry, pi D**2 L/4",
-        )  # fmt: skip
-        d.derive("mass", "kg", size.mass, symbol="m", text="Plates with linings", source="geometry")
 
     def _refuse_impossible(
         self,

@@ -517,6 +517,15 @@ class Instance:
             rest = rest // size
         return result[::-1]
 
+    def neighbours(self, combination: int) -> np.ndarray:
+        """Return the numbers of all combinations that differ in one part, count or choice."""
+        found, weight = [np.empty(0, dtype=np.int64)], 1
+        for size in reversed(self.radix):
+            own = combination // weight % size
+            found.append(combination + weight * (np.delete(np.arange(size), own) - own))
+            weight *= size
+        return np.concatenate(found)
+
     def data(self, combinations: np.ndarray) -> list[Any]:
         """Return the data inputs of the model for combinations given by number."""
         digits = self.digits(combinations)

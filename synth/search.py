@@ -24,7 +24,7 @@ from synth.problem import DesignProblem, load
 from synth.purposes import Cover, Staircase, proven_slack
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.seeker import Seeker
-from synth.settle import polish_extremes, same_designs, settle_variables, solve_everywhere
+from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
 
 EFFORT = 20_000_000
 FILL_EFFORT = 20_000
@@ -555,6 +555,7 @@ class _FrontSearch:
             caps[0] = chosen[0].phi[0] + TIE
             better = self._best(1, caps, chosen[0], TIE_EFFORT)
             chosen[0] = chosen[0] if better is None else better
+        chosen = settle_discrete(form, chosen, self.m, range(len(form.goals)))
         chosen = settle_variables(form, chosen, self.m)
         kept, alternatives = [], []
         for candidate, ties in zip(chosen, same_designs(form, self.pool, chosen, self.m), strict=True):

@@ -148,17 +148,9 @@ class Seeker:
 
     def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return combinations that differ from a parent in one part, with its variables and phi."""
-        form, radix = self.form, self.form.instance.radix
-        own = np.array([c.combination for c in parents], dtype=np.int64)
-        digits, step = form.instance.digits(own), 1
-        made, source = [], []
-        for f in reversed(range(len(radix))):
-            others = own[:, None] + (np.arange(radix[f])[None, :] - digits[f][:, None]) * step
-            step *= radix[f]
-            keep = others != own[:, None]
-            made.append(others[keep])
-            source.append(np.nonzero(keep)[0])
-        combinations, rows = np.concatenate(made), np.concatenate(source)
+        form = self.form
+        made = [form.instance.neighbours(c.combination) for c in parents]
+        combinations, rows = np.concatenate(made), np.repeat(np.arange(len(made)), [len(x) for x in made])
         _, first = np.unique(combinations, return_index=True)
         first = first[form.not_refused(combinations[first])]
         if len(first) > self._most_solved():

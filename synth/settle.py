@@ -16,6 +16,7 @@ STARTS = 6
 DIRECTIONS = 5
 BATCH = 2048
 MOST_TIES = 50
+MOST_MOVES = 8
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
@@ -26,8 +27,54 @@ def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
         _, first = np.unique(archive.combination[near], return_index=True)
         chosen = [archive[int(near[i])] for i in np.sort(first)[:MOST_TIES]]
         order = [k, *(j for j in range(traded) if j != k)]
-        for c in settle_variables(form, chosen, 0, order):
+        exact = settle_discrete(form, settle_variables(form, chosen, 0, order), traded, order)
+        for c in settle_variables(form, exact, 0, order):
             archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
+
+
+def settle_discrete(
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int]
+) -> list[Candidate]:
+    """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
+
+    None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid or among
+    parts, the other objectives decide that way.
+    """
+    return [_settle_discrete(form, candidate, traded, list(order)) for candidate in candidates]
+
+
+def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order: list[int]) -> Candidate:
+    movable = np.flatnonzero(form.gridded & (form.lower < form.upper))
+    for _ in range(MOST_MOVES):
+        before = candidate
+        for k in movable:
+            grid = form.grids[k]
+            grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
+            trials = np.tile(candidate.variables, (len(grid), 1))
+            trials[:, k] = grid
+            candidate = _better(form, candidate, trials, np.full(len(grid), candidate.combination), traded, order)
+        others = form.instance.neighbours(candidate.combination)
+        trials = np.tile(candidate.variables, (len(others), 1))
+        candidate = _better(form, candidate, trials, others, traded, order)
+        if candidate is before:
+            break
+    return candidate
+
+
+def _better(
+    form: Formulation, own: Candidate, trials: np.ndarray, combinations: np.ndarray, traded: int, order: list[int]
+) -> Candidate:
+    """Return the best trial by the objectives in their order where it is better than a design, else the design."""
+    rows, phi = form.feasible_rows(trials, combinations)
+    left = rows[np.all(phi[rows, :traded] <= own.phi[:traded] + TIE, axis=1)]
+    for j in order:
+        left = left[phi[left, j] <= np.min(phi[left, j], initial=np.inf) + TIE]
+    for row in left[:1]:
+        gain = own.phi[order] - phi[row, order]
+        decisive = np.flatnonzero(np.abs(gain) > TIE)
+        if len(decisive) and gain[decisive[0]] > 0:
+            return Candidate(int(combinations[row]), trials[row], phi[row])
+    return own
 
 
 def settle_variables(

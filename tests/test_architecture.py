@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("synth", "problems", "problems/mechanics", "catalogs", "reports")
+PACKAGES = ("synth", "problems", "problems/blocks", "problems/mechanics", "catalogs", "reports")
 OURS = {package.split("/")[0] for package in PACKAGES}
 
 
@@ -73,6 +73,7 @@ MAY_IMPORT = {
     "problems": {
         "problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special",
     },
+    "problems/blocks": {"problems", "numpy", "synth.declaration", "synth.errors"},
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
     "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},

@@ -54,9 +54,126 @@ def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.
     return x
 
 
+def sound_discs(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with the narrow rings of disc clutches."""
+    low, high = instance.lower, instance.upper
+    x = low * (high / low) ** rng.random((count, len(low)))
+    names = [v.name for v in instance.model.variables]
+    outer = rng.uniform(0.15, 0.4, count)
+    x[:, names.index("ring_outer_diameter")] = outer
+    x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.76, 0.81, count)
+    x[:, names.index("actuation_force")] = rng.uniform(1e3, 1.5e4, count)
+    x[:, names.index("ramp_time")] = rng.uniform(0.05, 1.5, count)
+    return x
+
+
+def sound_cones(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with cones of a sensible ratio and forces of a sensible size."""
+    low, high = instance.lower, instance.upper
+    x = low * (high / low) ** rng.random((count, len(low)))
+    names = [v.name for v in instance.model.variables]
+    mean = rng.uniform(0.15, 0.45, count)
+    x[:, names.index("mean_diameter")] = mean
+    x[:, names.index("generator_length")] = mean * rng.uniform(0.14, 0.21, count)
+    x[:, names.index("actuation_force")] = rng.uniform(2e3, 2e4, count)
+    x[:, names.index("ramp_time")] = rng.uniform(0.05, 1.5, count)
+    return x
+
+
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 
+CAR = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
+CONE = {"load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2"}
+
 CASES: dict[str, Family] = {
+    "disc_clutch": Family(
+        option_sets={
+            "default": {},
+            "active": {"load_kind": "active", "cooling": "fan"},
+            "worst_case": {"friction_basis": "worst_case", "allow_obsolete": "yes"},
+        },
+        requirements=CAR,
+        optional={
+            "startup_torque": "120 N*m",
+            "overload_torque": "600 N*m",
+            "actuation_force_limit": "8 kN",
+            "outer_diameter_limit": "400 mm",
+            "length_limit": "80 mm",
+            "jerk_limit": "2000 rad/s3",
+            "acceleration_limit": "400 rad/s2",
+        },
+        feasible={
+            "car": Case(
+                requirements={
+                    **CAR,
+                    "safety_factor": 2.5,
+                    "engagements_per_hour": 20,
+                    "startup_torque": "120 N*m",
+                    "jerk_limit": "300 rad/s3",
+                    "outer_diameter_limit": "240 mm",
+                },
+                settings={"parts": {"friction_pair": ["wound_yarn_dry", "moulded_dry"]}},
+                tighten={
+                    "load_torque": "64 N*m",
+                    "outer_diameter_limit": "215 mm",
+                    "temperature_rise_limit": "60 K",
+                },
+            ),
+        },
+        infeasible=Case(
+            requirements={
+                **CAR,
+                "safety_factor": 2.5,
+                "outer_diameter_limit": "150 mm",
+                "actuation_force_limit": "1500 N",
+            },
+            settings={"parts": {"friction_pair": ["woven_dry", "moulded_dry"]}},
+        ),
+        culprits=frozenset({"torque_capacity", "worn_torque_capacity", "outer_diameter", "actuation_force"}),
+        sound=sound_discs,
+    ),
+    "cone_clutch": Family(
+        option_sets={
+            "default": {},
+            "active": {"load_kind": "active"},
+            "worst_case": {"friction_basis": "worst_case", "cooling": "through_oil", "allow_obsolete": "yes"},
+        },
+        requirements=CONE,
+        optional={
+            "startup_torque": "340 N*m",
+            "overload_torque": "2000 N*m",
+            "actuation_force_limit": "30 kN",
+            "outer_diameter_limit": "500 mm",
+            "length_limit": "150 mm",
+            "jerk_limit": "3000 rad/s3",
+            "acceleration_limit": "150 rad/s2",
+            "bearing_force_limit": "20 kN",
+        },
+        feasible={
+            "inner": Case(
+                requirements={
+                    **CONE,
+                    "engagements_per_hour": 20,
+                    "overload_torque": "1200 N*m",
+                    "bearing_force_limit": "1 kN",
+                    "length_limit": "92 mm",
+                },
+                options={"friction_basis": "worst_case"},
+                settings={
+                    "parts": {"friction_pair": ["millboard_dry", "woven_dry"]},
+                    "limits": {"outer_diameter": "<= 420 mm"},
+                    "fix": {"ramp_time": "0.5 s"},
+                },
+                tighten={"overload_torque": "1100 N*m", "length_limit": "88 mm"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**CONE, "outer_diameter_limit": "200 mm", "actuation_force_limit": "4 kN"},
+            settings={"parts": {"friction_pair": ["millboard_dry", "moulded_dry"]}},
+        ),
+        culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force"}),
+        sound=sound_cones,
+    ),
     "multi_plate_clutch": Family(
         option_sets={
             "default": {},

@@ -6,7 +6,7 @@ from functools import partial, wraps
 import pytest
 from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
-from problems.mechanics import guide_friction, heat, motors, plates, ring, startup
+from problems.mechanics import cone, disc, guide_friction, heat, motors, plates, ring, startup
 
 RANGES = {
     "ring_ratio": (0.05, 0.3),
@@ -17,6 +17,7 @@ RANGES = {
     "surface": (1, 9),
     "waves": (3, 12),
     "pullout_torque_ratio": (1.5, 4),
+    "half_angle": (0.1, 0.45),
 }
 # Above the load torque, and sizes that meet every regime of the start-up.
 START_RANGES = {"torque": (2.2, 6.0), "load_torque": (0.5, 2.0), "ramp_time": (0.2, 6.0), "driven_inertia": (0.3, 3.0)}
@@ -34,6 +35,7 @@ START = {
 KAPPAS = {"inner_ratio": "-", "outer_ratio": "-"}
 SPLINES = {"friction_radius": "m", "inner_spline_radius": "m", "outer_spline_radius": "m"}
 HEAT = {"friction_work": "J", "switching_rate": "1/s"}
+WEDGE = {"half_angle": "-", "mu": "-"}
 COOLING = {"heat_transfer": "W/(m2 K)", "cooled_area": "m2"}
 
 
@@ -248,6 +250,62 @@ CASES = [
     (plates.sliding_speed, {"speed_difference": "1/s", "radius": "m"}, "m/s"),
     (plates.static_hold, {"torque": "N m", "mu_static": "-", "mu_dynamic": "-", "load_torque": "N m"}, "-"),
     (plates.shaft_shear_stress, {"torque": "N m", "diameter": "m"}, "Pa"),
+    (disc.surface_count, {"discs": "-"}, "-"),
+    (disc.pressure_plate_mass, {"density": "kg/m3", "thickness": "m", "ring_area": "m2"}, "kg"),
+    (disc.lining_inertia, {"density": "kg/m3", "thickness": "m", **DM_C}, "kg m2"),
+    (
+        disc.core_inertia,
+        {"density": "kg/m3", "thickness": "m", "outer_radius": "m", "hub_radius": "m"},
+        "kg m2",
+    ),
+    (disc.disc_inertia, {"discs": "-", "lining": "kg m2", "core": "kg m2"}, "kg m2"),
+    (
+        disc.clutch_length,
+        {"discs": "-", "lining_thickness": "m", "core_thickness": "m", "plate_thickness": "m", "gap": "m"},
+        "m",
+    ),
+    (disc.worn_pressure, {"force": "N", **DM_C, "radius": "m"}, "Pa"),
+    (cone.wedge_factor, WEDGE, "-"),
+    (positional(cone.grip_factor), WEDGE, "-"),
+    (cone.normal_force, {"engaging_force": "N", **WEDGE}, "N"),
+    (cone.mean_radius_factor, {"ring_ratio": "-", "half_angle": "-"}, "-"),
+    (cone.friction_torque, {"peripheral_force": "N", **DM_C, "half_angle": "-"}, "N m"),
+    (cone.worn_torque, {"peripheral_force": "N", "mean_diameter": "m"}, "N m"),
+    (cone.service_force, {"normal_force": "N", "half_angle": "-"}, "N"),
+    (cone.engaging_force, {"normal_force": "N", **WEDGE}, "N"),
+    (cone.release_force, {"normal_force": "N", **WEDGE}, "N"),
+    (cone.locking_angle, {"mu": "-"}, "-"),
+    (cone.self_locking, WEDGE, "-"),
+    (cone.face_area, {"mean_diameter": "m", "generator_length": "m"}, "m2"),
+    (cone.pressure_torque, {"mu": "-", "pressure": "Pa", **DM_C, "half_angle": "-"}, "N m"),
+    (
+        cone.sizing_mean_diameter,
+        {"torque": "N m", "mu": "-", "pressure": "Pa", "ring_ratio": "-", "half_angle": "-"},
+        "m",
+    ),
+    (cone.seating_factor, WEDGE, "-"),
+    (cone.seated_force, {"spring_force": "N", "half_angle": "-"}, "N"),
+    (cone.bearing_force, {"spring_force": "N", "force_closed": "-"}, "N"),
+    (cone.largest_diameter, {"mean_diameter": "m", "generator_length": "m", "half_angle": "-"}, "m"),
+    (
+        cone.overall_diameter,
+        {"largest_diameter": "m", "shell_thickness": "m", "lining_thickness": "m"},
+        "m",
+    ),
+    (cone.overall_length, {"generator_length": "m", "half_angle": "-", "length_add": "m"}, "m"),
+    (cone.shell_mass, {"density": "kg/m3", "area": "m2", "shell_thickness": "m"}, "kg"),
+    (
+        cone.clutch_mass,
+        {
+            "mass_factor": "-",
+            "area": "m2",
+            "density": "kg/m3",
+            "shell_thickness": "m",
+            "lining_density": "kg/m3",
+            "lining_thickness": "m",
+        },
+        "kg",
+    ),
 ]
 
 # Not formulas of floats and symbols alike: inverse relations, and a table of many results (tested in test_startup).
@@ -292,7 +350,7 @@ def test_no_formula_is_left_out():
     covered = {_name(case[0]) for case in CASES} | OTHERWISE_TESTED
     # Lambdas stand for functions with several results or a free number of arguments.
     covered |= {"plate_torque", "first_phase_push_force", "constant_torque_slip"}
-    for module in (ring, guide_friction, startup, heat, plates, motors):
+    for module in (ring, guide_friction, startup, heat, plates, motors, disc, cone):
         public = {
             name
             for name, member in inspect.getmembers(module, inspect.isfunction)

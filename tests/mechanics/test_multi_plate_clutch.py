@@ -2,8 +2,8 @@
 
 import math
 
-import numpy as np
 import pytest
+from start_by_steps import start
 
 import synth
 from synth.instance import Instance, as_catalogs
@@ -85,23 +85,6 @@ def contact_forces(series, force, surfaces, kappa_a, kappa_b):
         kappa = kappa_b if j % 2 else kappa_a
         forces.append(forces[-1] * (1 - kappa) / (1 + kappa))
     return forces
-
-
-def start(torque, load, inertia, speed, ramp, kind):
-    """Friction work, slip time, peak power and torque at lock by small steps of constant torque slope."""
-    count = 200_000
-    # the lock lies before this time for both kinds of load
-    end = 1.001 * max(ramp, (inertia * speed + torque * ramp / 2 + load * ramp) / (torque - load))
-    t = np.linspace(0.0, end, count + 1)
-    clutch = torque * np.minimum(t / ramp, 1.0)
-    resisting = np.full_like(t, load) if kind == "active" else np.minimum(clutch, load)
-    net = (clutch - resisting) / inertia
-    driven = np.concatenate([[0.0], np.cumsum((net[1:] + net[:-1]) / 2 * np.diff(t))])
-    last = int(np.argmax(driven >= speed))
-    assert last > 0
-    power = clutch * np.maximum(speed - driven, 0.0)
-    work = np.sum((power[1 : last + 1] + power[:last]) / 2 * np.diff(t)[:last])
-    return work, t[last], power[: last + 1].max(), clutch[last]
 
 
 def by_hand(given, pair, t_i, t_o, d_out, d_in, force, ramp, z, *, series, kind, worst, cooled, aid=(0.0, 1.0, 1.0)):

@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+import problems.cone_clutch
 import problems.multi_plate_clutch  # noqa: F401 - fills the table
 from problems.mechanics import startup
 from synth.special import TABLE, SpecialFunction
@@ -23,6 +24,9 @@ RANGES = {
     "driven_inertia": (1e-4, 1e4),
     "driver_speed": (1e-1, 6e3),
     "ramp_time": (1e-2, 10),
+    # Cones blunter than arctan(1/mu), where the wedge effect ends, are beyond the bounds of the family.
+    "half_angle": (1e-3, 0.45),
+    "mu": (1e-3, 0.7),
 }
 ANYTHING = (1e-4, 1e3)
 
@@ -217,9 +221,9 @@ def test_the_table_is_complete():
     names = {n.rsplit(".", 1)[1] for n in NAMES}
     assert names == {
         "sum_geometric", "sum_lipka", "sum_exact", "peak_rise_per_work", "reactive_friction_work",
-        "reactive_slip_time", "reactive_peak_slip_power",
+        "reactive_slip_time", "reactive_peak_slip_power", "grip_factor",
     }  # fmt: skip
     assert all(isinstance(TABLE[n], SpecialFunction) for n in NAMES)
     assert {n.rsplit(".", 1)[1] for n in NAMES if TABLE[n].curvature is None} == {
-        "sum_exact", "reactive_peak_slip_power",
+        "sum_exact", "reactive_peak_slip_power", "grip_factor",
     }  # fmt: skip

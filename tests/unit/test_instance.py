@@ -315,3 +315,11 @@ def test_combinations_are_numbered_through():
         assert thickness[number] == table.number("thickness")[row]
         assert plates[number] == counts["plates"]
     assert data[labels.index("load")] == 20000.0
+
+
+def test_neighbours_differ_in_one_part_count_or_choice():
+    question = instance(parts={"plate": ["core 2", "core 3"]})
+    digits = np.array(question.digits(np.arange(48)))
+    for number in (0, 13, 47):
+        wanted = np.flatnonzero((digits != digits[:, [number]]).sum(axis=0) == 1)
+        assert sorted(question.neighbours(number)) == list(wanted)

@@ -1,0 +1,237 @@
+"""Disc clutch: mass, inertia, length and pressure of one or two lined discs between pressure plates.
+
+Torque, ring integrals and sizing are those of :mod:`problems.mechanics.ring`. Every function takes floats, arrays or
+CasADi symbols.
+
+Sources: S1 (lecture on friction clutches), disc clutch and its use in motor cars; Shigley (Mechanical Engineering
+Design), uniform wear; geometry.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from problems.mechanics import Quantity
+
+# The linings insulate, so that the metal takes the heat. The pressure plate of a single disc meets one surface of two;
+# of a twin disc the intermediate plate is the hottest and meets two of four.
+HOTTEST_PLATE_SHARE = 0.5
+
+
+def surface_count(discs: Quantity) -> Quantity:
+    """Friction surface pairs of lined discs, z = 2 n_d.
+
+    Parameters
+    ----------
+    discs : scalar, array or symbol
+        n_d [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        z [-].
+
+    References
+    ----------
+    S1 (lecture), disc clutch of a motor car: two friction surface pairs.
+
+    Examples
+    --------
+    >>> surface_count(1), surface_count(2)
+    (2, 4)
+    """
+    return 2 * discs
+
+
+def pressure_plate_mass(density: Quantity, thickness: Quantity, ring_area: Quantity) -> Quantity:
+    """Mass of a pressure plate as wide as the friction ring, rho t A1.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    thickness : scalar, array or symbol
+        t_p [m].
+    ring_area : scalar, array or symbol
+        Area of one friction surface A1 [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    By hand, 7200 x 0.01 x 0.02:
+
+    >>> pressure_plate_mass(7200, 0.01, 0.02)
+    1.44
+    """
+    return density * thickness * ring_area
+
+
+def lining_inertia(density: Quantity, thickness: Quantity, mean_diameter: Quantity, ring_ratio: Quantity) -> Quantity:
+    """Moment of inertia of the two linings of a disc, rho t pi (r2**4 - r1**4).
+
+    Uses r2**4 - r1**4 = dm**4 c (1 + c**2)/2.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        Density of the lining [kg/m3].
+    thickness : scalar, array or symbol
+        Thickness of one lining [m].
+    mean_diameter : scalar, array or symbol
+        dm [m].
+    ring_ratio : scalar, array or symbol
+        c [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Inertia of both [kg m2].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    By hand, 2000 x 0.003 x pi (0.112**4 - 0.088**4):
+
+    >>> lining_inertia(2000, 0.003, 0.2, 0.12)
+    0.0018356
+    """
+    return density * thickness * np.pi * mean_diameter**4 * ring_ratio * (1 + ring_ratio**2) / 2
+
+
+def core_inertia(density: Quantity, thickness: Quantity, outer_radius: Quantity, hub_radius: Quantity) -> Quantity:
+    """Moment of inertia of the core of a disc, rho t pi (r2**4 - r_hub**4)/2.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    thickness : scalar, array or symbol
+        t_core [m].
+    outer_radius, hub_radius : scalar, array or symbol
+        r2, r_hub [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Inertia [kg m2].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    By hand, 7850 x 0.002 x pi (0.112**4 - 0.02**4)/2:
+
+    >>> core_inertia(7850, 0.002, 0.112, 0.02)
+    0.0038766
+    """
+    return density * thickness * np.pi * (outer_radius**4 - hub_radius**4) / 2
+
+
+def disc_inertia(discs: Quantity, lining: Quantity, core: Quantity) -> Quantity:
+    """Moment of inertia of the discs on the driven shaft, n_d (J_lining + J_core).
+
+    Parameters
+    ----------
+    discs : scalar, array or symbol
+        n_d [-].
+    lining, core : scalar, array or symbol
+        Both linings and the core of one disc [kg m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        J_disc [kg m2]; a gearbox has to synchronise it when it shifts.
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    >>> disc_inertia(2, 0.0018356, 0.0038766)
+    0.0114244
+    """
+    return discs * (lining + core)
+
+
+def clutch_length(
+    discs: Quantity, lining_thickness: Quantity, core_thickness: Quantity, plate_thickness: Quantity, gap: Quantity
+) -> Quantity:
+    """Length of the released clutch, n_d (2 t_lining + t_core + t_p) + z gap.
+
+    Parameters
+    ----------
+    discs : scalar, array or symbol
+        n_d [-].
+    lining_thickness : scalar, array or symbol
+        One lining [m].
+    core_thickness : scalar, array or symbol
+        t_core [m].
+    plate_thickness : scalar, array or symbol
+        Pressure plate t_p [m].
+    gap : scalar, array or symbol
+        Release gap per surface [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Length [m], without flywheel, springs and cover.
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    By hand, 2 (2 x 3 + 2 + 8) + 4 x 0.3 mm:
+
+    >>> clutch_length(2, 3, 2, 8, 0.3)
+    33.2
+    """
+    return discs * (2 * lining_thickness + core_thickness + plate_thickness) + surface_count(discs) * gap
+
+
+def worn_pressure(force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity, radius: Quantity) -> Quantity:
+    """Pressure of a worn-in lining at a radius, p = F/(2 pi r (r2 - r1)).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Axial force F [N].
+    mean_diameter : scalar, array or symbol
+        dm [m].
+    ring_ratio : scalar, array or symbol
+        c [-].
+    radius : scalar, array or symbol
+        r [m], from r1 to r2.
+
+    Returns
+    -------
+    scalar, array or symbol
+        p [Pa].
+
+    References
+    ----------
+    Shigley, Mechanical Engineering Design, disc clutch with uniform wear: p r is constant.
+
+    Examples
+    --------
+    By hand, 1000/(2 pi 0.035 0.012), at the inner edge of a ring of 3.5 and 4.7 cm:
+
+    >>> worn_pressure(1000, 0.082, 0.012 / 0.082, 0.035)
+    378940.
+    """
+    return force / (2 * np.pi * radius * mean_diameter * ring_ratio)
