@@ -107,8 +107,8 @@ def _dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    length: np.ndarray = np.sqrt(_dot(vectors, vectors))
-    return vectors / length[:, None]
+    unit: np.ndarray = vectors / np.sqrt(_dot(vectors, vectors))[:, None]
+    return unit
 
 
 def _derivative(values: np.ndarray, order: int) -> np.ndarray:
