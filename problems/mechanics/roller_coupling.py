@@ -884,7 +884,7 @@ def point_contact_half_length(
 
     Examples
     --------
-    Computed here, within 0.5 % of the elliptic integrals:
+    Computed here; the elliptic integrals are met within 1.5 %:
 
     >>> float(1000 * point_contact_half_length(2000.0, 113e9, 0.020, 0.500))
     2.774
@@ -917,7 +917,8 @@ def point_contact_pressure(
     Returns
     -------
     scalar, array or symbol
-        p_H [Pa].
+        p_H [Pa]; within 0.5 % of the elliptic integrals for rollers of 34 to 90 mm on a crown of 500 mm, 1.4 % low for
+        16 mm.
 
     References
     ----------
