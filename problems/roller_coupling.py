@@ -782,6 +782,7 @@ def _motion(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
     columns["driven torque [N*m]"] = force.driven_torque
     frame = pd.DataFrame(columns)
 
+    steady, vibration = roller_motion.steady_and_vibrating(force.first_shaft)
     normal = values["tangential_force"] + values["centrifugal_force"]
     least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], angle) - diameter
     panels = [
@@ -808,5 +809,13 @@ def _motion(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
             {"panel": 3, "y": values["pin_force"], "label": "pin_force"},
         ],
         "source": f"exact kinematics; closed forms: {S3}, eq. (14), (18) to (25)",
+        "quantities": {
+            "axial_slide": float(np.ptp(motion.slide)),
+            "speed_fluctuation": float(motion.speed_ratio.max() - 1),
+            "centrifugal_force": float(np.ptp(force.contact[:, 0]) / 2),
+            "pin_force": float(force.pins.max()),
+            "steady_force": float(steady),
+            "vibration_force": float(vibration),
+        },
     }
     return frame

@@ -383,6 +383,8 @@ def test_motion_agrees_with_the_closed_forms_of_the_limits(requirements, balance
     assert math.hypot(*steady) == pytest.approx(values["steady_force"], rel=1e-9)
     assert np.hypot(*(shaft - steady).T).max() == pytest.approx(values["vibration_force"], abs=1e-7)
     assert frame["driven torque [N*m]"].to_numpy() == pytest.approx(300.0)
+    for name, simulated in frame.attrs["quantities"].items():
+        assert simulated == pytest.approx(values[name], rel=1e-4, abs=1e-7), name
     wide = (
         frame[["float centre x [mm]", "float centre y [mm]"]].max()
         - frame[["float centre x [mm]", "float centre y [mm]"]].min()
