@@ -724,7 +724,10 @@ def _angled_shafts_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
     )
     frame.attrs = {
         "title": f"One turn with shafts at {math.degrees(spec['shaft_angle']):.3g} deg",
-        "panels": [{"label": column, "columns": [column]} for column in frame.columns[1:]],
+        "panels": [
+            {"label": label, "columns": [column]}
+            for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)
+        ],
         "source": f"{S3}, eq. (23) to (25), generalised",
     }
     return frame
@@ -791,11 +794,12 @@ def _motion(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
         {"label": "contact force [N]", "columns": [c for c in frame.columns if c.startswith("contact force")]},
         {"label": "pin force [N]", "columns": [c for c in frame.columns if c.startswith("pin force")]},
         {"label": "force on shaft 1 [N]", "columns": [c for c in frame.columns if c.startswith("force on shaft 1")]},
+        {"label": "float centre [mm]", "columns": ["float centre x [mm]", "float centre y [mm]"]},
     ]
     if spec["shaft_angle"] > 0:
         panels += [
-            {"label": label, "columns": [label]}
-            for label in ("lead of the driven shaft [deg]", "slide along shaft 2 [mm]")
+            {"label": "lead [deg]", "columns": ["lead of the driven shaft [deg]"]},
+            {"label": "slide [mm]", "columns": ["slide along shaft 2 [mm]"]},
         ]
     frame.attrs = {
         "title": "One turn of the roller coupling",
