@@ -167,8 +167,8 @@ CASES: dict[str, Family] = {
                 requirements={**MILL, "outer_diameter_limit": "260 mm"},
                 settings={
                     "parts": {
-                        "roller": ["6203", "6204", "6303", "6304"],
-                        "float_material": ["100Cr6", "16MnCr5", "EN AW-7075-T6"],
+                        "roller": ["6203", "6204", "6303"],
+                        "float_material": ["100Cr6", "EN AW-7075-T6"],
                     },
                 },
                 tighten={
@@ -190,8 +190,8 @@ CASES: dict[str, Family] = {
                 options={"roller_contact": "crowned"},
                 settings={
                     "parts": {
-                        "roller": "outer_diameter <= 47",
-                        "float_material": ["100Cr6", "18CrNiMo7-6", "Ti-6Al-4V"],
+                        "roller": ["NATV 12", "NATR 12", "NATV 15"],
+                        "float_material": ["100Cr6", "Ti-6Al-4V"],
                     },
                     "objectives": ["outer_diameter", "pin_force"],
                 },

@@ -19,10 +19,10 @@ CASES = {
         {"required_torque": "150 N*m", "driver_speed": "1450 rpm", "offset": "5 mm"},
         {"roller": ["6001", "6002", "6202"], "float_material": ["100Cr6", "Ti-6Al-4V"]},
         {
-            "arm_radius": "28 mm .. 50 mm",
-            "guide_half_length": "34 mm .. 62 mm",
+            "arm_radius": "30 mm .. 48 mm",
+            "guide_half_length": "38 mm .. 58 mm",
             "contact_length": "3 mm .. 8 mm",
-            "rim": "3 mm .. 6 mm",
+            "rim": "3 mm .. 4.5 mm",
         },
     ),
     "crowned": (
@@ -39,9 +39,9 @@ CASES = {
         {"roller": ["NATV 12", "NUTR 15"], "float_material": ["100Cr6", "EN AW-7075-T6"]},
         {
             "arm_radius": "30 mm .. 60 mm",
-            "guide_half_length": "38 mm .. 74 mm",
+            "guide_half_length": "40 mm .. 70 mm",
             "contact_length": "5 mm .. 9 mm",
-            "rim": "3 mm .. 5 mm",
+            "rim": "3 mm .. 4 mm",
         },
     ),
 }
