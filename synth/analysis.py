@@ -297,7 +297,7 @@ def _read_values(
         if name in d.choices:
             label = ("yes" if value else "no") if isinstance(value, bool) else str(value)
             if label not in d.choices[name].labels:
-                raise InputError(f"values: {name}", value, "one of " + ", ".join(d.choices[name].labels))
+                raise InputError(f"values: {name}", value, d.choices[name].expected(label))
             choices[name] = label
             continue
         si = float(value) if in_si else parse_quantity(value, model.units[name], f"values: {name}")

@@ -91,7 +91,10 @@ class Count:
 
 @dataclass(frozen=True)
 class Choice:
-    """A discrete unknown that the search decides; its symbol is the index of the label."""
+    """A discrete unknown that the search decides; its symbol is the index of the label.
+
+    ``refused`` holds labels that people ask for and that cannot be offered, each with the reason.
+    """
 
     name: str
     symbol: str
@@ -99,6 +102,12 @@ class Choice:
     source: str
     labels: tuple[str, ...]
     sx: Any
+    refused: Mapping[str, str] = field(default_factory=dict)
+
+    def expected(self, label: str) -> str:
+        """Return what may stand in place of a label that is not offered, with the reason where there is one."""
+        reason = self.refused.get(label)
+        return "one of " + ", ".join(self.labels) + (f"; {reason}" if reason else "")
 
     def select(self, values: Mapping[str, Any]) -> Any:
         """Return the value that belongs to the chosen label.
@@ -178,7 +187,10 @@ class PartColumn:
 
 @dataclass(frozen=True)
 class Derived:
-    """A named, reported quantity; it exists only where the guards in ``needs`` hold."""
+    """A named, reported quantity; it exists only where the guards in ``needs`` hold.
+
+    No limit above ``ceiling`` (SI) may be typed for it.
+    """
 
     name: str
     unit: str
@@ -187,6 +199,7 @@ class Derived:
     source: str
     needs: tuple[str, ...]
     sx: Any
+    ceiling: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -413,13 +426,19 @@ class Declaration:
         return record.sx
 
     def choice(
-        self, name: str, labels: Sequence[str], symbol: str | None = None, text: str = "", source: str = ""
+        self,
+        name: str,
+        labels: Sequence[str],
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+        refused: Mapping[str, str] | None = None,
     ) -> Choice:
-        """Declare a discrete unknown that the search decides."""
+        """Declare a discrete unknown that the search decides; ``refused`` says why other labels cannot be asked for."""
         symbol = self._claim(name, symbol)
         if not labels or len(set(labels)) < len(labels):
             raise DeclarationError(f"{self.problem}: choice {name} needs labels, each once")
-        record = Choice(name, symbol, text, source, tuple(labels), ca.SX.sym(name))
+        record = Choice(name, symbol, text, source, tuple(labels), ca.SX.sym(name), dict(refused or {}))
         self.choices[name] = record
         return record
 
@@ -462,16 +481,19 @@ class Declaration:
         text: str = "",
         source: str = "",
         needs: str | Sequence[str] = (),
+        ceiling: float | None = None,
     ) -> Any:
         """Declare a named, reported quantity and return its expression.
 
         ``needs`` names the guards (limits with ``guard=True``) without which it does not exist;
-        it and all that depends on it are null where one of them fails.
+        it and all that depends on it are null where one of them fails. A user's own limit on it above
+        ``ceiling`` (in ``unit``) is refused: it would allow what the model does not cover.
         """
         symbol = self._claim(name, symbol)
-        parse_unit(unit)
+        parsed = parse_unit(unit)
         guards = (needs,) if isinstance(needs, str) else tuple(needs)
-        record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr))
+        highest = np.inf if ceiling is None else float(to_si(ceiling, parsed))
+        record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr), highest)
         self.derived[name] = record
         return record.sx
 

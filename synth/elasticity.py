@@ -42,6 +42,7 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
     gradient = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
     tight, sizes = _tight(form, start, combinations)
+    spoken = {position: _speaking_of(form, position) for position in requirements.values()}
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
@@ -63,7 +64,7 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
                 answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
             )
             for name, position in requirements.items():
-                if any(_speaks_of(form, int(j), position) for j in np.flatnonzero(tight[i])):
+                if np.any(tight[i] & spoken[position]):
                     continue  # the least change breaks a limit that no variable can restore
                 value = float(slopes[position]) * form.instance.requirements[name]
                 if abs(value) > NOISE:
@@ -119,6 +120,7 @@ def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -
     return tight, sizes
 
 
-def _speaks_of(form: Formulation, j: int, position: int) -> bool:
+def _speaking_of(form: Formulation, position: int) -> np.ndarray:
+    """Return which limits depend on a data input."""
     marked = form.model.program.dependence([form.n + position])
-    return any(marked[k] for k in (form.cuts[j].value, form.cuts[j].limit) if k is not None)
+    return np.array([any(marked[k] for k in (cut.value, cut.limit) if k is not None) for cut in form.cuts], dtype=bool)

@@ -251,7 +251,7 @@ class Instance:
         known = self._symbol_values()
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
             if not kinds and number(expanded(refusal.when, model.calls), known) > 0.5:
-                raise InputError(refusal.code, self._involved(refusal.when), refusal.message)
+                raise InputError(refusal.code, self._involved(refusal.when) or self._chosen_options(), refusal.message)
 
     def _symbol_values(self) -> dict[str, float]:
         requirements = self.model.declaration.requirements
@@ -265,6 +265,11 @@ class Instance:
             if r.name in self.requirements and str(r.sx) in used
         ]
         return ", ".join(shown)
+
+    def _chosen_options(self) -> str:
+        """Return the options that are not at their default: what a refusal without requirements speaks of."""
+        options = self.model.declaration.options.values()
+        return ", ".join(f"{o.name} = {o.chosen}" for o in options if o.chosen != o.default)
 
     # -- limits and fix ------------------------------------------------------------------------
 
@@ -308,6 +313,11 @@ class Instance:
         else:
             sign = {"at_most": "<=", "at_least": ">=", "equal": "=="}[sense]
             label = f"{name} {sign} {format_quantity(bound, unit, None)}"
+            ceiling = model.declaration.derived[name].ceiling
+            if sense != "at_least" and bound > ceiling:
+                raise InputError(
+                    f"limits: {name}", format_quantity(bound, unit), f"at most {format_quantity(ceiling, unit)}"
+                )
             for other in self.extra:
                 if other.quantity == name and _contradict(other.sense, other.limit, sense, bound):
                     raise InputError(
@@ -457,7 +467,7 @@ class Instance:
                 label = self._fixed_discrete[choice.name]
                 label = ("yes" if label else "no") if isinstance(label, bool) else str(label)
                 if label not in choice.labels:
-                    raise InputError(f"fix: {choice.name}", label, "one of " + ", ".join(choice.labels))
+                    raise InputError(f"fix: {choice.name}", label, choice.expected(label))
                 indices = np.array([choice.labels.index(label)])
             self.selection.choices[choice.name] = indices.astype(float)
 
@@ -488,15 +498,13 @@ class Instance:
         )
         if not bad.any():
             return
-        labels = (
-            [slot.table.designations[r] for r in slot.rows]
-            if slot is not None
-            else [f"{v:g}" for v in (selection.counts | selection.choices)[name]]
-        )
+        labels = [slot.table.designations[r] for r in slot.rows] if slot is not None else self._stepped_labels(name)
         for k in np.flatnonzero(bad):
             self._leave_out(name, labels[k], f"{refusal.code}: {refusal.message}")
         if bad.all():
-            raise InputError(refusal.code, ", ".join(labels[:5]), refusal.message)
+            shown = ", ".join(labels[:5])
+            choice = name in model.declaration.choices
+            raise InputError(refusal.code, f"{name} = {shown}" if choice else shown, refusal.message)
         if slot is not None:
             position = selection.slots.index(slot)
             selection.slots[position] = SlotRows(
@@ -506,6 +514,13 @@ class Instance:
             selection.counts[name] = selection.counts[name][~bad]
         else:
             selection.choices[name] = selection.choices[name][~bad]
+
+    def _stepped_labels(self, name: str) -> list[str]:
+        """Return the values of a count, or the labels of a choice, that remain."""
+        choice = self.model.declaration.choices.get(name)
+        if choice is not None:
+            return [choice.labels[int(v)] for v in self.selection.choices[name]]
+        return [f"{v:g}" for v in self.selection.counts[name]]
 
     # -- combinations --------------------------------------------------------------------------
 

@@ -329,8 +329,10 @@ class _Outer:
         """Return the range of the elasticity over a range of the argument."""
         values = []
         for y, limit in zip(argument, (self.first, self.last), strict=True):
-            inside = self.domain[0] < y < self.domain[1]
-            value = float(self.elasticity(np.float64(y))) if inside else limit
+            if y <= self.domain[0]:  # also the upper end of a range that is this point alone
+                values.append(self.first)
+                continue
+            value = float(self.elasticity(np.float64(y))) if y < self.domain[1] else self.last
             values.append(value if np.isfinite(value) else limit)
         return min(values), max(values)
 

@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from tests.benchmarks import parts
+from tests.benchmarks.families import families
 from tests.benchmarks.tables import Report, write_csv
 
 PARTS: dict[str, Callable[[parts.Settings], list[Report]]] = {
@@ -21,6 +22,7 @@ PARTS: dict[str, Callable[[parts.Settings], list[Report]]] = {
     "rows": parts.rows,
     "verify": parts.verify,
     "objectives": parts.objectives,
+    "families": lambda settings: families(settings.repeat, settings.time_limit, settings.quick),
 }
 
 

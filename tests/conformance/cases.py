@@ -80,10 +80,25 @@ def sound_cones(rng: np.random.Generator, instance: Instance, count: int) -> np.
     return x
 
 
+def sound_couplings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with clearances and rims of a sensible size, for rollers of any diameter."""
+    names = [v.name for v in instance.model.variables]
+    arm, capacity = rng.uniform(0.04, 0.16, count), rng.uniform(0.005, 0.012, count)
+    found = {
+        "arm_radius": arm,
+        "offset_capacity": capacity,
+        "guide_half_length": arm + capacity * rng.uniform(1.1, 1.4, count) + rng.uniform(0.003, 0.02, count),
+        "contact_length": rng.uniform(0.004, 0.014, count),
+        "rim": rng.uniform(0.003, 0.02, count),
+    }
+    return np.stack([found[name] for name in names], axis=1)
+
+
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 
 CAR = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
 CONE = {"load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2"}
+MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
 
 CASES: dict[str, Family] = {
     "disc_clutch": Family(
@@ -254,6 +269,60 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force", "lug_pressure_outer"}),
         sound=sound_rings,
+    ),
+    "roller_coupling": Family(
+        option_sets={
+            "default": {},
+            "sideways": {"sideways_removable": "yes"},
+            "crowned": {"roller_contact": "crowned"},
+        },
+        requirements=MILL,
+        optional={"outer_diameter_limit": "400 mm", "mass_limit": "40 kg", "vibration_limit": "2 kN"},
+        feasible={
+            "mill": Case(
+                requirements={**MILL, "outer_diameter_limit": "260 mm"},
+                settings={
+                    "parts": {
+                        "roller": ["6203", "6204", "6303"],
+                        "float_material": ["100Cr6", "EN AW-7075-T6"],
+                    },
+                },
+                tighten={
+                    "required_torque": "320 N*m",
+                    "offset": "7 mm",
+                    "pin_shear_limit": "36 N/mm2",
+                },
+            ),
+            "angled_fan": Case(
+                requirements={
+                    "required_torque": "120 N*m",
+                    "driver_speed": "2880 rpm",
+                    "offset": "2 mm",
+                    "shaft_angle": "1.5 deg",
+                    "float_distance": "100 mm",
+                    "guide_angle": "75 deg",
+                    "vibration_limit": "60 N",
+                },
+                options={"roller_contact": "crowned"},
+                settings={
+                    "parts": {
+                        "roller": ["NATV 12", "NATR 12", "NATV 15"],
+                        "float_material": ["100Cr6", "Ti-6Al-4V"],
+                    },
+                    "objectives": ["outer_diameter", "pin_force"],
+                },
+                tighten={
+                    "required_torque": "130 N*m",
+                    "vibration_limit": "20 N",
+                },
+            ),
+        },
+        infeasible=Case(
+            requirements={**MILL, "outer_diameter_limit": "115 mm"},
+            settings={"parts": {"roller": ["6203", "6204"], "float_material": ["100Cr6", "PA6-G (cast)"]}},
+        ),
+        culprits=frozenset({"outer_diameter", "pin_shear", "hertz", "roller_gap", "run_in"}),
+        sound=sound_couplings,
     ),
 }
 

@@ -72,6 +72,16 @@ def test_options(named):
         assert set(o.choices) == set(row["choices"].split(";")), name
 
 
+def test_choices(named):
+    _, rows, everything = named
+    wanted = {r["name"]: r for r in rows if r["kind"] == "choice"}
+    for model in everything:
+        choices = model.declaration.choices
+        assert set(choices) == set(wanted)
+        for name, row in wanted.items():
+            assert (choices[name].symbol, ";".join(choices[name].labels)) == (row["symbol"], row["choices"]), name
+
+
 def test_variables_and_counts(named):
     _, rows, (default, *_) = named
     d = default.declaration

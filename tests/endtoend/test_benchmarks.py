@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import synth
 from synth.instance import Instance
 from synth.tables import Catalogs
 from tests.benchmarks import cases
 from tests.benchmarks.__main__ import main
 from tests.benchmarks.child import MARK
+from tests.benchmarks.families import QUESTIONS, measure
 from tests.benchmarks.hypervolume import Reference
 from tests.benchmarks.tables import Report, write_csv
 
@@ -98,3 +100,13 @@ def test_wrong_options_are_refused(arguments: list[str], monkeypatch: pytest.Mon
     with pytest.raises(SystemExit) as stopped:
         main()
     assert stopped.value.code == 2
+
+
+def test_a_question_to_a_family_is_measured() -> None:
+    question = QUESTIONS[0]
+    found = measure(question, repeat=1, time_limit=60.0, points=2)
+    assert found["certificate"] == "global"
+    assert found["designs"] == 2
+    assert found["combinations"] > 1000
+    assert 0 < found["processor s"]
+    assert {q.family for q in QUESTIONS} <= set(synth.families())

@@ -236,6 +236,41 @@ def test_a_choice_needs_every_label_once():
             d.choice(f"bad{len(labels)}", labels)
 
 
+def choosing(d):
+    x = d.variable("x", "mm", 1, 2)
+    end = d.choice("end", ("hook", "eye"), refused={"glue": "glue does not hold"})
+    d.refuse("hook_bends", end.select({"hook": d.requirement("load", "kN", 1) > 2e3, "eye": 0.0}), "an eye")
+    d.derive("stress", "N/mm2", 1e9 * x, ceiling=4)
+    d.objective("stress")
+
+
+def test_a_label_that_cannot_be_offered_is_refused_with_its_reason():
+    asked = problem(choosing)
+    with pytest.raises(synth.InputError, match="fix: end: got 'glue'; expected one of hook, eye; glue does not hold"):
+        synth.synthesize(asked, {}, fix={"end": "glue"})
+    with pytest.raises(synth.InputError, match="values: end: got 'glue'; expected one of hook, eye; glue does"):
+        synth.evaluate(asked, {}, values={"x": 1, "end": "glue"})
+    with pytest.raises(synth.InputError, match=r"fix: end: got 'rope'; expected one of hook, eye$"):
+        synth.synthesize(asked, {}, fix={"end": "rope"})
+
+
+def test_a_refusal_over_a_choice_names_its_labels():
+    asked = problem(choosing)
+    left = Instance(asked(), {"load": 3}, CATALOGS).selection.left_out
+    assert left == [{"slot": "end", "designation": "hook", "reason": "hook_bends: an eye"}]
+    with pytest.raises(synth.InputError, match="hook_bends: got 'end = hook'; expected an eye"):
+        Instance(asked(), {"load": 3}, CATALOGS, fix={"end": "hook"})
+
+
+def test_no_limit_above_its_ceiling_may_be_typed_for_a_quantity():
+    asked = problem(choosing)()
+    for text in ("<= 4 N/mm2", ">= 5 N/mm2", "1 N/mm2 .. 3 N/mm2"):
+        Instance(asked, {}, CATALOGS, limits={"stress": text})
+    for text in ("<= 4.1 N/mm2", "== 5 N/mm2", "1 N/mm2 .. 5 N/mm2"):
+        with pytest.raises(synth.InputError, match=r"limits: stress: got .*; expected at most 4 N/mm2"):
+            Instance(asked, {}, CATALOGS, limits={"stress": text})
+
+
 # -- parts -----------------------------------------------------------------------------------------
 
 
@@ -477,6 +512,18 @@ def test_a_refusal_over_requirements_stops_the_call_and_shows_their_values():
     Instance(problem(declare)(), {}, CATALOGS)
     with pytest.raises(synth.InputError, match=r"crossed: got 'low = 3 kN, high = 2 kN'; expected low below high"):
         Instance(problem(declare)(), {"low": "3 kN"}, CATALOGS)
+
+
+def test_a_refusal_of_an_option_shows_it():
+    def declare(d):
+        finish = d.option("finish", ("plain", "gold"), "plain")
+        d.refuse("too_dear", finish == "gold", "finish = plain")
+        d.variable("x", "mm", 1, 2)
+        d.objective("x")
+
+    Instance(problem(declare)(), {}, CATALOGS)
+    with pytest.raises(synth.InputError, match="too_dear: got 'finish = gold'; expected finish = plain"):
+        Instance(problem(declare)(finish="gold"), {}, CATALOGS)
 
 
 def test_a_refusal_over_a_part_or_count_leaves_rows_out():

@@ -436,3 +436,12 @@ def test_functions_of_one_argument(op, outer, mirrored):
 def test_every_function_that_is_known_is_tested():
     assert {op for op, _, _ in TABLES} <= set(TEMPLATES)
     assert len(TABLES) == len(OUTER) + len(MIRRORED) + 1
+
+
+@pytest.mark.parametrize("op", [ca.OP_SIN, ca.OP_TAN, ca.OP_COS, ca.OP_ATAN])
+def test_a_range_that_is_the_lower_end_of_the_domain_has_the_elasticity_there(op):
+    outer = OUTER[op]
+    assert outer.ends((0.0, 0.0)) == (outer.first, outer.first)
+    low, high = outer.ends((0.0, 0.2))
+    assert low <= outer.first <= high
+    assert np.isfinite([low, high]).all()
