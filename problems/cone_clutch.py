@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import blocks
+from problems import blocks, startup_hook
 from problems.mechanics import cone, heat
 from synth import DesignProblem
 from synth.declaration import Declaration, Part
@@ -68,6 +68,7 @@ class ConeClutch(DesignProblem):
         "Shigley, Mechanical Engineering Design, cone clutch: uniform pressure and uniform wear",
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
+    simulation_settings = startup_hook.SETTINGS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -330,8 +331,13 @@ class ConeClutch(DesignProblem):
             source="Neale, Tribology Handbook, Table 7.4; S0 (Szoke 1966), cooling of the plates",
         )
 
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the conical shell over repeated engagements."""
+        capacity = SHELL_SHARE * design.values["friction_work"] / design.values["temperature_rise"]
+        return startup_hook.startup_frames(self, spec, design, capacity)
+
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
-        """Return the axial forces over the half angle: for some friction values, and those of a design.
+        """Return axial forces over the half angle, for some friction values and of a design, and the start-up.
 
         Parameters
         ----------
@@ -343,9 +349,12 @@ class ConeClutch(DesignProblem):
         Returns
         -------
         dict of str to DataFrame
-            ``force_ratio_over_angle``, and of a design ``force_over_angle``.
+            ``force_ratio_over_angle``, ``startup_over_torque``, and of a design ``force_over_angle``.
         """
-        curves = {"force_ratio_over_angle": self._force_ratio_over_angle(spec)}
+        curves = {
+            "force_ratio_over_angle": self._force_ratio_over_angle(spec),
+            "startup_over_torque": startup_hook.startup_over_torque(self, spec, design),
+        }
         if design is not None:
             curves["force_over_angle"] = self._force_over_angle(spec, design)
         return curves

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import blocks
+from problems import blocks, startup_hook
 from problems.mechanics import disc
 from problems.mechanics import ring as ring_formulas
 from synth import DesignProblem
@@ -32,6 +32,7 @@ class DiscClutch(DesignProblem):
         "Shigley, Mechanical Engineering Design, disc clutch: uniform pressure and uniform wear",
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
+    simulation_settings = startup_hook.SETTINGS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -69,8 +70,14 @@ class DiscClutch(DesignProblem):
         for name in ("outer_diameter", "volume", "friction_work", "disc_inertia"):
             d.objective(name, default=False)
 
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""
+        # The hottest plate takes its share of the work at the rise of one engagement.
+        hottest = disc.HOTTEST_PLATE_SHARE * design.values["friction_work"] / design.values["temperature_rise"]
+        return startup_hook.startup_frames(self, spec, design, hottest * design.values["discs"])
+
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
-        """Return the size a torque needs; of a design pressure over the radius and torque over the force.
+        """Return the size a torque needs and what starts cost; of a design pressure over radius, torque over force.
 
         Parameters
         ----------
@@ -82,9 +89,13 @@ class DiscClutch(DesignProblem):
         Returns
         -------
         dict of str to DataFrame
-            ``diameter_over_lining``, and of a design ``pressure_over_radius`` and ``torque_over_force``.
+            ``diameter_over_lining``, ``startup_over_torque``, and of a design ``pressure_over_radius`` and
+            ``torque_over_force``.
         """
-        curves = {"diameter_over_lining": self._diameter_over_lining(spec)}
+        curves = {
+            "diameter_over_lining": self._diameter_over_lining(spec),
+            "startup_over_torque": startup_hook.startup_over_torque(self, spec, design),
+        }
         if design is not None:
             curves["pressure_over_radius"] = self._pressure_over_radius(design)
             curves["torque_over_force"] = self._torque_over_force(spec, design)
