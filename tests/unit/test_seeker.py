@@ -1,0 +1,109 @@
+"""Looking for designs beside known ones, and what is learned for splitting."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from strut import NEEDED, RODS, Strut
+
+from synth.clock import Clock
+from synth.formulation import Formulation
+from synth.instance import Instance, catalogs_for
+from synth.purposes import Cover
+from synth.seeker import Seeker, corners, spread_choice
+
+
+def strut_form(traded=2, grid=False):
+    problem = Strut()
+    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
+    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, traded)
+
+
+def seeker(form, slack=1e-3):
+    m = form.traded
+    purpose = Cover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
+    return Seeker(form, purpose, np.random.default_rng(0), False)
+
+
+def first_design(form, combination, rng):
+    """Archive one feasible design of a combination, as it comes."""
+    points = form.lower + rng.random((4000, form.n)) * (form.upper - form.lower)
+    rows, phi = form.feasible_rows(form.makeable(points), np.full(len(points), combination))
+    worst = rows[int(np.argmax(phi[rows, 0]))]
+    form.archive.add(np.array([combination]), form.makeable(points[worst][None, :]), phi[worst][None, :])
+
+
+@pytest.mark.parametrize("grid", [False, True])
+def test_exchanging_parts_finds_what_solving_everything_finds(grid):
+    form, rng = strut_form(1, grid), np.random.default_rng(3)
+    everything = np.arange(form.instance.combinations)
+    points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
+    own = rng.choice(everything, len(points))
+    rows, phi = form.feasible_rows(form.makeable(points), own)
+    first_design(form, int(own[rows[int(np.argmax(phi[rows, 0]))]]), rng)
+    before = form.archive.phi[0, 0]
+    seeker(form).beside(Clock())
+    assert form.archive.phi[0, 0] < before - 0.1
+    assert form.archive.phi[0, 0] <= phi[rows, 0].min() + 1e-9
+
+
+def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
+    form, rng = strut_form(), np.random.default_rng(4)
+    points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
+    own = rng.choice(form.instance.combinations, len(points))
+    rows, phi = form.feasible_rows(points, own)
+    first_design(form, int(own[rows[0]]), rng)
+    seeker(form).beside(Clock())
+    archive = form.archive
+    assert len(archive) > 10
+    assert len(form.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
+    assert np.all(archive.phi[:, :2].min(axis=0) <= phi[rows, :2].min(axis=0) + 1e-9)
+
+
+def test_nothing_is_looked_for_where_nothing_is_known():
+    form = strut_form()
+    seeker(form).beside(Clock())
+    assert form.nlp_solves == 0
+
+
+def test_corners_lie_below_two_neighbours_where_the_steps_are_widest():
+    phi = np.array([[0.0, 10.0], [1.0, 4.0], [1.5, 3.9], [5.0, 0.0]])
+    assert corners(phi, 9).tolist() == [[0.0, 4.0], [1.0, 3.9], [1.5, 0.0]]
+    assert corners(phi, 2).tolist() == [[0.0, 4.0], [1.5, 0.0]]
+    assert corners(phi[:1], 5).tolist() == [[0.0, 10.0]]
+
+
+def test_a_spread_choice_takes_the_most_room_of_each_stretch():
+    rng = np.random.default_rng(1)
+    along, space = rng.random(103), rng.random(103)
+    chosen = spread_choice(along, space, 10)
+    order = np.argsort(along)
+    groups = np.arange(103) * 10 // 103
+    assert sorted(chosen) == sorted(int(order[groups == g][np.argmax(space[order[groups == g]])]) for g in range(10))
+    assert spread_choice(along[:5], space[:5], 10).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_weights_are_learned_for_each_set_of_objectives():
+    propagation = strut_form().propagation
+    cuts = len(propagation.cuts)
+    lessons = np.zeros((40, cuts + 3))
+    lessons[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
+    lessons[20:, [1, cuts + 1]] = 1.0, 1.0
+    propagation.learn(lessons)
+    weights = propagation.weights
+    assert np.argmax(weights[1, :cuts]) == 0
+    assert np.argmax(weights[2, :cuts]) == 1
+    assert weights[1, cuts + 1] == weights[2, cuts] == 0.0  # an objective without a cap decides nothing
+    for one, other in itertools.pairwise((weights[0], weights[3])):
+        np.testing.assert_array_equal(one, other)  # none capped, or both: all lessons count
+    assert weights[0, 0] == pytest.approx(0.375, abs=0.01)
+
+
+def test_limits_that_exclude_each_other_teach_what_to_split():
+    form = strut_form()
+    assert not len(form.archive)
+    boxes = form.root()
+    seeker(form).look(boxes)
+    assert form.propagation._lessons.sum() > 0
