@@ -54,7 +54,7 @@ def main() -> None:
     parser.add_argument("--repeat", type=int, default=3, metavar="N", help="runs per case; the median counts (3)")
     parser.add_argument("--seeds", type=int, default=3, metavar="N", help="runs per random peer; the median counts (3)")
     parser.add_argument("--time-limit", type=float, default=120.0, metavar="S", help="seconds per search (120)")
-    parser.add_argument("--points", type=int, default=400, metavar="N", help="designs of a whole front, at most (400)")
+    parser.add_argument("--points", type=int, default=100, metavar="N", help="designs of a whole front, at most (100)")
     parser.add_argument("--quick", action="store_true", help="smallest sizes, one run each: does it all work?")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="write all figures to this file as well")
     given = parser.parse_args()

@@ -19,6 +19,7 @@ from typing import Any
 MARK = "benchmark result: "
 ADDRESS_SPACE = 12 << 30  # a case that runs away must not take the machine with it
 TINY_TIME_LIMIT = 60.0
+WORKERS = 2
 
 
 def peak_bytes() -> int:
@@ -71,7 +72,7 @@ def search(case: Mapping[str, Any]) -> dict[str, Any]:
     common = {"objectives": case["objectives"], "grid": case["grid"], "catalogs": question["catalogs"]}
 
     def ask(**more: Any) -> Any:
-        return synth.synthesize(cases.problem(), cases.HOIST, **common, **more)
+        return synth.synthesize(cases.problem(), cases.HOIST, **common, workers=WORKERS, **more)
 
     def tiny() -> Any:
         return ask(**cases.TINY, points=2, gap=0.05, time_limit=TINY_TIME_LIMIT)

@@ -26,7 +26,18 @@ class Question:
 
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
 SKEW = {**MILL, "shaft_angle": "2 deg", "float_distance": "50 mm", "guide_angle": "75 deg"}
+CAR = {
+    "load_torque": "60 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.7 kg*m2", "safety_factor": 2.5,
+    "engagements_per_hour": "20 1/h", "startup_torque": "120 N*m", "jerk_limit": "300 rad/s3",
+    "outer_diameter_limit": "240 mm",
+}  # fmt: skip
+DRIVE = {
+    "load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2",
+    "engagements_per_hour": "30 1/h", "jerk_limit": "600 rad/s3", "outer_diameter_limit": "400 mm",
+}  # fmt: skip
 QUESTIONS = [
+    Question("disc_clutch", ("mass", "actuation_force"), CAR),
+    Question("cone_clutch", ("mass", "actuation_force"), DRIVE),
     Question("roller_coupling", ("outer_diameter", "pin_force"), MILL),
     Question("roller_coupling", ("mass", "pin_force"), MILL),
     Question("roller_coupling", ("mass", "offset_capacity"), MILL),
