@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import wrap_spring_blocks as blocks
+from problems import wrap_spring_curves as curves
 from problems.mechanics import wrap_spring as formulas
 from problems.wrap_spring_blocks import DERIVED, DRIVE, S2, TYPICAL
 from synth import DesignProblem
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from synth.declaration import Declaration
 
 OVERLOADS = ("slip_limited", "torque_limited")
@@ -32,14 +35,6 @@ class Wants:
     fatigue_safety: Any
     heat_transfer: Any
     temperature_rise_limit: Any
-
-
-@dataclass(frozen=True)
-class Corner:
-    """The fitted wire at one end of the tolerance: curvature change [1/m], bending moment [N m]."""
-
-    curvature: Any
-    moment: Any
 
 
 class WrapSpringClutch(DesignProblem):
@@ -78,15 +73,15 @@ class WrapSpringClutch(DesignProblem):
             self._refuse_drag(d, duty, wants, friction)
 
         self._declare_fit(d, duty, wants, coils, interference)
-        low = Corner(*blocks.fitted_moment(options, wire, coils, interference - duty.interference_tolerance))
-        high = Corner(*blocks.fitted_moment(options, wire, coils, interference + duty.interference_tolerance))
-        effective = low.moment - blocks.centrifugal_moment(options, duty, wire, coils)
+        low = blocks.fitted_moment(options, wire, coils, interference - duty.interference_tolerance)
+        high = blocks.fitted_moment(options, wire, coils, interference + duty.interference_tolerance)
+        effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
         closing = formulas.closing_torque(effective, friction.exponent_low)
         blocks.declare_closing(d, duty, closing)
         self._declare_liftoff(d, duty, wants, wire, coils, low)
         load = self._declare_overload(d, duty, overload, friction, high)
-        bending = formulas.bending_stress(wire.modulus, wire.thickness, high.curvature)
-        stress, pressure = blocks.declare_load(d, wire, coils, friction, bending, high.moment, load)
+        bending = formulas.bending_stress(high, wire.width, wire.thickness)
+        stress, pressure = blocks.declare_load(d, wire, coils, friction, bending, high, load)
         self._declare_fatigue(d, duty, wants, wire, coils, bending, high)
         self._declare_hub(d, duty, wants, coils, load)
         size = blocks.declare_size(d, duty, wire, coils)
@@ -98,6 +93,12 @@ class WrapSpringClutch(DesignProblem):
         d.objective("drag_torque")
         for name in ("stress_utilisation", "pressure_utilisation", "outer_diameter"):
             d.objective(name, default=False)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
+        if design is None:
+            return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
+        return curves.interference_curves(curves.fitted(self.options, spec, design), spec, design.values)
 
     def _declare_wants(self, d: Declaration) -> Wants:
         model_value = f"{TYPICAL} of the reference model"
@@ -153,9 +154,9 @@ class WrapSpringClutch(DesignProblem):
         d.refuse(
             "drag_limit_unreachable",
             wants.drag_torque_limit < formulas.opening_torque(moment, high),
-            f"a drag_torque_limit that can be reached with the friction range of the pair and {coils} coils per hub, at "
-            "least slip_safety required_torque (1 - exp(-beta_max))/(exp(beta_min) - 1); raise it or choose a pair with "
-            "more friction",
+            f"a drag_torque_limit that can be reached with the friction range of the pair and {coils} coils per hub, "
+            "at least slip_safety required_torque (1 - exp(-beta_max))/(exp(beta_min) - 1): raise it or choose a pair "
+            "with more friction",
         )
 
     def _declare_fit(
@@ -180,11 +181,11 @@ class WrapSpringClutch(DesignProblem):
         )
 
     def _declare_liftoff(
-        self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Corner
+        self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
     ) -> None:
         speed = d.derive(
             "liftoff_speed", "1/min",
-            formulas.liftoff_speed(wire.modulus, wire.thickness, low.curvature, wire.density, coils.mean_radius),
+            formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, coils.mean_radius),
             symbol="omega_lift", needs="interference_positive",
             text="Speed at which the loosest spring lifts off its hub", source=DERIVED,
         )  # fmt: skip
@@ -194,11 +195,11 @@ class WrapSpringClutch(DesignProblem):
         )  # fmt: skip
 
     def _declare_overload(
-        self, d: Declaration, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Corner
+        self, d: Declaration, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
     ) -> Any:
         """Declare the largest slip torque and return the torque that the wire sees."""
         slip = d.derive(
-            "slip_torque", "N*m", formulas.closing_torque(high.moment, friction.exponent_high), symbol="T_cap",
+            "slip_torque", "N*m", formulas.closing_torque(high, friction.exponent_high), symbol="T_cap",
             text="Largest torque at which the closing clutch slips: highest friction, tightest fit, at rest",
             source=f"{S2}, eq. (18)-(20)",
         )  # fmt: skip
@@ -224,10 +225,10 @@ class WrapSpringClutch(DesignProblem):
         wire: blocks.Wire,
         coils: blocks.Coils,
         bending: Any,
-        high: Corner,
+        high: Any,
     ) -> None:
         def stress(torque: Any) -> Any:
-            tension = formulas.wire_tension(high.moment + torque, coils.mean_radius)
+            tension = formulas.wire_tension(high + torque, coils.mean_radius)
             return formulas.wire_stress(bending, tension, wire.width, wire.thickness)
 
         used = d.derive(
@@ -271,10 +272,10 @@ class WrapSpringClutch(DesignProblem):
         coils: blocks.Coils,
         friction: blocks.Friction,
         size: blocks.Size,
-        high: Corner,
+        high: Any,
     ) -> None:
         drag = d.derive(
-            "drag_torque", "N*m", formulas.opening_torque(high.moment, friction.exponent_high), symbol="T_open",
+            "drag_torque", "N*m", formulas.opening_torque(high, friction.exponent_high), symbol="T_open",
             text="Drag when overrunning: highest friction, tightest fit", source=f"{S2}, eq. (15), (21)",
         )  # fmt: skip
         if wants.drag_torque_limit is not None:
@@ -282,7 +283,7 @@ class WrapSpringClutch(DesignProblem):
                 "drag_torque", drag, wants.drag_torque_limit, "N*m",
                 text="The clutch overruns freely", source=f"{S2}, eq. (21)",
             )  # fmt: skip
-        preload = formulas.contact_pressure(high.moment, wire.width, coils.hub_radius, coils.mean_radius)
+        preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
         rubbing = d.derive(
             "overrun_pv", "W/mm2", formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius), symbol="pv",
             text="Pressure of the preload times sliding speed when overrunning", source=DERIVED,
@@ -311,11 +312,11 @@ class WrapSpringClutch(DesignProblem):
         wire: blocks.Wire,
         coils: blocks.Coils,
         friction: blocks.Friction,
-        low: Corner,
+        low: Any,
     ) -> None:
         angle = formulas.windup_angle(
             duty.required_torque,
-            low.moment,
+            low,
             friction.part.mu_min * coils.radius_ratio,
             coils.mean_radius,
             wire.modulus * wire.thickness * wire.width,

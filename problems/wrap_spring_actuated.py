@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems import wrap_spring_blocks as blocks
+from problems import wrap_spring_curves as curves
 from problems.mechanics import wrap_spring as formulas
 from problems.wrap_spring_blocks import DERIVED, DRIVE, TYPICAL
 from synth import DesignProblem
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from synth.declaration import Declaration
 
 
@@ -55,9 +58,9 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
         tolerance = duty.interference_tolerance
         widest, narrowest = clearance + tolerance, clearance - tolerance
-        loose_curvature, loose_moment = blocks.fitted_moment(options, wire, coils, -widest)
-        _, tight_moment = blocks.fitted_moment(options, wire, coils, -narrowest)
-        effective = loose_moment - blocks.centrifugal_moment(options, duty, wire, coils)
+        loose = blocks.fitted_moment(options, wire, coils, -widest)
+        tight = blocks.fitted_moment(options, wire, coils, -narrowest)
+        effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
         d.at_least(
             "grip", actuator, -effective, "N*m", guard=True,
             text="The energising torque closes the widest clearance; otherwise nothing grips", source=DERIVED,
@@ -73,8 +76,8 @@ class ActuatedWrapSpringClutch(DesignProblem):
             "wire_torque", "N*m", duty.peak_torque, symbol="T_load",
             text="Torque that the wire sees at overload: peak_torque", source=DERIVED,
         )  # fmt: skip
-        bending = formulas.bending_stress(wire.modulus, wire.thickness, -loose_curvature)
-        stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight_moment, load)
+        bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
+        stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight, load)
         self._declare_actuation(d, duty, wants, coils, widest, actuator)
         d.at_least(
             "hub_bore", coils.hub_diameter, duty.bore_diameter + 2 * wants.hub_wall_min, "mm",
@@ -93,6 +96,12 @@ class ActuatedWrapSpringClutch(DesignProblem):
         d.objective("actuator_torque")
         for name in ("wrap_angle", "outer_diameter"):
             d.objective(name, default=False)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
+        if design is None:
+            return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
+        return curves.clearance_curves(curves.fitted(self.options, spec, design), spec, design.values)
 
     def _declare_wants(self, d: Declaration) -> Wants:
         return Wants(

@@ -51,7 +51,7 @@ def declare_options(d: Declaration) -> Options:
             formulas.MODELS,
             "refined",
             symbol="mdl",
-            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as the source prints",
+            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source",
             source=f"{S2}; refined: derived",
         ),
         wire_choice=d.option(
@@ -59,8 +59,8 @@ def declare_options(d: Declaration) -> Options:
             WIRE_CHOICES,
             "catalogue",
             symbol="wc",
-            text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, its material is "
-            "given by wire_modulus, wire_density and so on",
+            text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, the material "
+            "is given by wire_modulus, wire_density and so on",
             source="supply of the wire",
         ),
         hub_ladder=d.option(
@@ -160,8 +160,8 @@ def declare_duty(d: Declaration, tolerance_text: str) -> Duty:
         ),
         belt_exponent_limit=d.requirement(
             "belt_exponent_limit", "-", lower=1, upper=50, optional=True, symbol="beta_max",
-            text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload means "
-            "little",
+            text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
+            "means little",
             source=DERIVED,
         ),
     )  # fmt: skip
@@ -245,8 +245,8 @@ def declare_wire(d: Declaration, options: Options) -> Wire:
         d.advise(
             "wire_material_unused",
             True,
-            "the wire comes from the catalogue: wire_modulus and the other figures of a wire of one's own are not used; "
-            "they belong to wire_choice custom",
+            "the wire comes from the catalogue: wire_modulus and the other figures of a wire of one's own are not "
+            "used; they belong to wire_choice custom",
         )
     part = d.part(
         "wire",
@@ -428,11 +428,11 @@ def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> F
 # -- torque and stress -----------------------------------------------------------------------------
 
 
-def fitted_moment(options: Options, wire: Wire, coils: Coils, interference: Any) -> tuple[Any, Any]:
-    """Return curvature change [1/m] and bending moment [N m] of the fitted wire, for one corner of the tolerance."""
+def fitted_moment(options: Options, wire: Wire, coils: Coils, interference: Any) -> Any:
+    """Return the bending moment of the fitted wire for one end of the tolerance [N m]."""
     free = formulas.free_radius(interference, coils.mean_radius, options.model)
     curvature = formulas.curvature_change(interference, coils.mean_radius, free)
-    return curvature, formulas.bending_moment(wire.modulus, wire.width, wire.thickness, curvature)
+    return formulas.bending_moment(wire.modulus, wire.width, wire.thickness, curvature)
 
 
 def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -> Any:

@@ -1,8 +1,8 @@
 """Wrap spring clutch: a helical spring across two hubs that grips them by belt friction.
 
-Every function takes floats, arrays or CasADi symbols. Two models: ``seed`` is the source as printed (hub radius and mean
-coil radius are one, the curvature change is linear, the spring has no weight); ``refined`` tells the radii apart, takes
-the exact curvature change and the centrifugal force. An interference below 0 is a clearance.
+Every function takes floats, arrays or CasADi symbols. Two models: ``seed`` is the source as printed (hub radius and
+mean coil radius are one, the curvature change is linear, the spring has no weight); ``refined`` tells the radii apart,
+takes the exact curvature change and the centrifugal force. An interference below 0 is a clearance.
 
 Source: S2 (Kozma, Molnar, Varadi, Oroszvary, wrap spring clutch), eq. (1)-(22); "derived" marks what is not in it.
 """
@@ -80,7 +80,6 @@ def radius_ratio(hub_diameter: Quantity, thickness: Quantity, model: str = "refi
     >>> radius_ratio(0.040, 0.003)
     0.93023
     """
-    # 0 times the arguments would keep their shape at the price of a node; a plain 1 is what a formula needs.
     return 1.0 if model == "seed" else 1 / (1 + thickness / hub_diameter)
 
 
@@ -357,17 +356,15 @@ def bending_moment(elastic_modulus: Quantity, width: Quantity, thickness: Quanti
     return elastic_modulus * second_moment(width, thickness) * curvature
 
 
-def bending_stress(elastic_modulus: Quantity, thickness: Quantity, curvature: Quantity) -> Quantity:
-    """Bending stress of the fitted wire, sigma_b = E a dk/2.
+def bending_stress(moment: Quantity, width: Quantity, thickness: Quantity) -> Quantity:
+    """Bending stress of the fitted wire, sigma_b = M a/(2 I) = 6 M/(b a**2).
 
     Parameters
     ----------
-    elastic_modulus : scalar, array or symbol
-        E [Pa].
-    thickness : scalar, array or symbol
-        Radial wire thickness a [m].
-    curvature : scalar, array or symbol
-        dk [1/m]; its size.
+    moment : scalar, array or symbol
+        Size of the bending moment M [N m].
+    width, thickness : scalar, array or symbol
+        b and a of the wire [m].
 
     Returns
     -------
@@ -376,14 +373,14 @@ def bending_stress(elastic_modulus: Quantity, thickness: Quantity, curvature: Qu
 
     References
     ----------
-    S2 (Kozma et al.), eq. (8), M a/(2 I).
+    S2 (Kozma et al.), eq. (8), which writes E a dr/(2 r**2) with M of its (4).
 
     Examples
     --------
-    >>> bending_stress(206e9, 0.003, 0.00025 / 0.02**2) / 1e6
+    >>> bending_stress(1.15875, 0.004, 0.003) / 1e6
     193.125
     """
-    return elastic_modulus * thickness * curvature / 2
+    return 6 * moment / (width * thickness**2)
 
 
 def contact_pressure(moment: Quantity, width: Quantity, hub_radius: Quantity, mean_radius: Quantity) -> Quantity:
@@ -407,8 +404,8 @@ def contact_pressure(moment: Quantity, width: Quantity, hub_radius: Quantity, me
     References
     ----------
     S2 (Kozma et al.), eq. (6) for the preload. Its (22), p_max = F/(b r) = p (exp(mu alpha) - 1), is low by exactly p,
-    because F is the tension beyond the preload; at the slip limit p_max = p exp(mu alpha). Derived from the balance of a
-    piece of wire: tension N on the radius r presses with N/(b r), and N r_m = M + T.
+    because F is the tension beyond the preload; at the slip limit p_max = p exp(mu alpha). Derived from the balance of
+    a piece of wire: tension N on the radius r presses with N/(b r), and N r_m = M + T.
 
     Examples
     --------
@@ -475,8 +472,8 @@ def belt_exponent(mu: Quantity, coils: Quantity, radius_ratio: Quantity) -> Quan
 
     References
     ----------
-    S2 (Kozma et al.), mu alpha in (18); the ratio of the radii is derived: friction acts at the hub, tension at the mean
-    radius.
+    S2 (Kozma et al.), mu alpha in (18); the ratio of the radii is derived: friction acts at the hub, tension at the
+    mean radius.
 
     Examples
     --------
@@ -522,20 +519,18 @@ def centrifugal_moment(
 
 
 def liftoff_speed(
-    elastic_modulus: Quantity, thickness: Quantity, curvature: Quantity, density: Quantity, mean_radius: Quantity
+    moment: Quantity, density: Quantity, width: Quantity, thickness: Quantity, mean_radius: Quantity
 ) -> Quantity:
-    """Speed at which the spring lifts off its hub, omega_lift = sqrt(E a**2 dk/(12 rho r_m**3)).
+    """Speed at which the spring lifts off its hub, omega_lift = sqrt(M/(rho a b r_m**3)).
 
     Parameters
     ----------
-    elastic_modulus : scalar, array or symbol
-        E [Pa].
-    thickness : scalar, array or symbol
-        Radial wire thickness a [m].
-    curvature : scalar, array or symbol
-        dk [1/m]; above 0.
+    moment : scalar, array or symbol
+        Bending moment M of the fitted wire [N m]; above 0.
     density : scalar, array or symbol
         rho of the wire [kg/m3].
+    width, thickness : scalar, array or symbol
+        b and a [m].
     mean_radius : scalar, array or symbol
         r_m [m].
 
@@ -546,14 +541,14 @@ def liftoff_speed(
 
     References
     ----------
-    Centrifugal moment equal to the bending moment (derived; not in S2).
+    Centrifugal moment equal to the bending moment, E a**2 dk/(12 rho r_m**3) (derived; not in S2).
 
     Examples
     --------
-    >>> float(liftoff_speed(206e9, 0.003, 0.547188, 7850, 0.0215))
+    >>> float(liftoff_speed(1.0144995, 7850, 0.004, 0.003, 0.0215))
     1040.98
     """
-    return np.sqrt(elastic_modulus * thickness**2 * curvature / (12 * density * mean_radius**3))
+    return np.sqrt(moment / (density * thickness * width * mean_radius**3))
 
 
 def closing_torque(moment: Quantity, belt_exponent: Quantity, actuator_torque: Quantity = 0.0) -> Quantity:
