@@ -412,7 +412,7 @@ def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> F
     d.advise(
         "locks_at_any_peak",
         high > 6,
-        "at the highest friction the belt exponent is above 6: any peak is locked and the preload hardly limits it; "
+        "at the highest friction the belt exponent is above 6: any peak is locked instead of slipping through; "
         "belt_exponent_limit 6 keeps the search to clutches that can slip",
         source=DERIVED,
     )

@@ -194,12 +194,12 @@ def along_the_coils(
     tension, pressure, stress = [], [], []
     hub_radius = clutch.hub_diameter / 2
     for label, (moment, section) in cases.items():
-        tension.append(f"tension, {label} [N]")
+        tension.append(f"{label} tension [N]")
         columns[tension[-1]] = formulas.wire_tension(section, clutch.mean_radius)
-        pressure.append(f"pressure, {label} [N/mm2]")
+        pressure.append(f"{label} pressure [N/mm2]")
         contact = formulas.contact_pressure(section, clutch.width, hub_radius, clutch.mean_radius)
         columns[pressure[-1]] = contact / MEGA
-        stress.append(f"stress, {label} [N/mm2]")
+        stress.append(f"{label} stress [N/mm2]")
         columns[stress[-1]] = clutch.stress(moment, section) / MEGA
     return frame(
         columns,
@@ -237,14 +237,13 @@ def over_belt_exponent(spec: Mapping[str, Any], drag_limit: float | None) -> pd.
     columns: dict[str, Any] = {"belt exponent at the least friction [-]": low}
     drag, slip = [], []
     for spread in FRICTION_SPREADS:
-        label = f"mu_max/mu_min = {spread:g}"
-        drag.append(f"least drag, {label} [N*m]")
+        drag.append(f"spread {spread:g} drag torque [N*m]")
         columns[drag[-1]] = formulas.opening_torque(moment, spread * low)
-        slip.append(f"slip torque, {label} [N*m]")
+        slip.append(f"spread {spread:g} slip torque [N*m]")
         columns[slip[-1]] = formulas.closing_torque(moment, spread * low)
     return frame(
         columns,
-        title="Drag and slip torque that the required torque entails, at the highest friction",
+        title="Least drag and slip torque for the required torque, by the spread of friction mu_max/mu_min",
         panels=[panel("drag torque [N*m]", drag, log=True), panel("slip torque [N*m]", slip, log=True)],
         lines=[*line(0, drag_limit, "drag_torque_limit"), *line(1, spec["peak_torque"], "peak_torque")],
         source="S2 (Kozma et al.), eq. (15), (20); the moment is the least that holds, without tolerance",
@@ -287,15 +286,15 @@ def _torque_over_friction(clutch: Fitted, spec: Mapping[str, Any], low: float, h
     beta = clutch.belt_exponent(mu)
     columns = {
         FRICTION_AXIS: mu,
-        "closing torque, loosest fit at spring_speed [N*m]": formulas.closing_torque(spinning, beta),
-        "closing torque, tightest fit at rest [N*m]": formulas.closing_torque(high, beta),
-        "opening torque, loosest fit at spring_speed [N*m]": formulas.opening_torque(spinning, beta),
-        "opening torque, tightest fit at rest [N*m]": formulas.opening_torque(high, beta),
+        "loosest closing torque [N*m]": formulas.closing_torque(spinning, beta),
+        "tightest closing torque [N*m]": formulas.closing_torque(high, beta),
+        "loosest opening torque [N*m]": formulas.opening_torque(spinning, beta),
+        "tightest opening torque [N*m]": formulas.opening_torque(high, beta),
     }
     names = list(columns)
     return frame(
         columns,
-        title="Closing torque and drag over the friction coefficient",
+        title="Closing and opening torque; loosest fit at spring_speed, tightest fit at rest",
         panels=[panel("closing torque [N*m]", names[1:3], log=True), panel("opening torque [N*m]", names[3:])],
         marks=friction_marks(clutch),
         lines=[*torque_lines(spec), *line(1, spec["drag_torque_limit"], "drag_torque_limit")],
@@ -322,12 +321,14 @@ def _torque_over_interference(clutch: Fitted, spec: Mapping[str, Any], values: M
         columns,
         title="What more or less interference does",
         panels=[
-            panel("closing torque [N*m]", names[1:3]),
-            panel("drag [N*m]", [names[3]]),
-            panel("stress [N/mm2]", [names[4]]),
+            *(panel(name, [name]) for name in names[1:]),
         ],
         marks=[mark(here / MM, "interference")],
-        lines=[*torque_lines(spec), *line(1, spec["drag_torque_limit"], "drag_torque_limit")],
+        lines=[
+            *torque_lines(spec)[:1],
+            *torque_lines(spec, 1)[1:],
+            *line(2, spec["drag_torque_limit"], "drag_torque_limit"),
+        ],
         source="S2 (Kozma et al.), eq. (6), (8), (15), (20)",
     )
 
@@ -339,12 +340,12 @@ def _interference_along(
     from_free_end = 2 * math.pi * coil * clutch.mu_max * clutch.radius_ratio
     overload = section_moments(clutch, values["wire_torque"], high, clutch.mu_max, high, coil)
     cases = {
-        "required_torque, least friction": (
+        "required": (
             low,
             section_moments(clutch, spec["required_torque"], low, clutch.mu_min, low, coil),
         ),
-        "wire_torque, highest friction": (high, overload),
-        "no torque": (high, np.full_like(coil, high)),
+        "overload": (high, overload),
+        "resting": (high, np.full_like(coil, high)),
         "overrunning": (high, high * np.exp(-from_free_end)),
     }
     return along_the_coils(clutch, cases, coil, "S2 (Kozma et al.), eq. (6), (18), (22) corrected; derived")
@@ -352,8 +353,8 @@ def _interference_along(
 
 def _windup(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) -> pd.DataFrame:
     slips = {
-        "least friction, loosest fit": (low, clutch.mu_min),
-        "highest friction, tightest fit": (high, clutch.mu_max),
+        "loosest": (low, clutch.mu_min),
+        "tightest": (high, clutch.mu_max),
     }
     limits = {k: float(formulas.closing_torque(m, clutch.belt_exponent(mu))) for k, (m, mu) in slips.items()}
     end = max(spec["required_torque"], min(spec["peak_torque"], max(limits.values())))
@@ -367,14 +368,14 @@ def _windup(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) ->
         friction = mu * clutch.radius_ratio
         angle = formulas.windup_angle(torque, moment, friction, clutch.mean_radius, stiffness, spec["gap_coils"])
         carried = torque <= limits[label] * (1 + 1e-12)
-        angles.append(f"wind-up, {label} [deg]")
+        angles.append(f"{label} wind-up [deg]")
         columns[angles[-1]] = np.where(carried, np.degrees(angle), np.nan)
-        arcs.append(f"slipping coils of one hub, {label} [-]")
+        arcs.append(f"{label} slipping coils [-]")
         slipping = formulas.slip_arc(torque, moment, friction) / (2 * math.pi)
         columns[arcs[-1]] = np.where(carried, slipping, np.nan)
     return frame(
         columns,
-        title="Wind-up between the hubs until a torque is carried; a curve ends where the clutch slips",
+        title="Wind-up between the hubs; loosest fit with least friction, tightest with highest, until it slips",
         panels=[panel("wind-up [deg]", angles), panel("slipping coils [-]", arcs)],
         marks=[mark(spec["required_torque"], "required_torque")],
         lines=line(1, clutch.coils, "coils_per_hub"),
@@ -477,12 +478,12 @@ def _actuated_over_friction(
     spinning = wide - clutch.centrifugal_moment(spec["spring_speed"])
     columns = {
         FRICTION_AXIS: mu,
-        "closing torque, widest clearance at spring_speed [N*m]": _gripping(spinning, beta, actuator),
-        "closing torque, narrowest clearance at rest [N*m]": _gripping(narrow, beta, actuator),
+        "widest closing torque [N*m]": _gripping(spinning, beta, actuator),
+        "narrowest closing torque [N*m]": _gripping(narrow, beta, actuator),
     }
     return frame(
         columns,
-        title="Closing torque over the friction coefficient",
+        title="Closing torque; widest clearance at spring_speed, narrowest clearance at rest",
         panels=[panel("closing torque [N*m]", list(columns)[1:], log=True)],
         marks=friction_marks(clutch),
         lines=torque_lines(spec),
@@ -498,12 +499,8 @@ def _actuated_over_actuator(
     spinning = wide - clutch.centrifugal_moment(spec["spring_speed"])
     columns = {
         "energising torque [N*m]": actuator,
-        "closing torque, least friction, widest clearance [N*m]": _gripping(
-            spinning, clutch.belt_exponent(clutch.mu_min), actuator
-        ),
-        "closing torque, highest friction, narrowest clearance [N*m]": _gripping(
-            narrow, clutch.belt_exponent(clutch.mu_max), actuator
-        ),
+        "least closing torque [N*m]": _gripping(spinning, clutch.belt_exponent(clutch.mu_min), actuator),
+        "largest closing torque [N*m]": _gripping(narrow, clutch.belt_exponent(clutch.mu_max), actuator),
     }
     return frame(
         columns,
@@ -553,8 +550,8 @@ def _actuated_along(
         return moment, section_moments(clutch, torque, moment, mu, max(actuator + moment, 0.0), coil)
 
     cases = {
-        "required_torque, least friction": carried(spec["required_torque"], wide, clutch.mu_min),
-        "peak_torque, highest friction": carried(values["wire_torque"], narrow, clutch.mu_max),
+        "required": carried(spec["required_torque"], wide, clutch.mu_min),
+        "overload": carried(values["wire_torque"], narrow, clutch.mu_max),
     }
     return along_the_coils(clutch, cases, coil, "S2 (Kozma et al.), eq. (18), with an energising torque; derived")
 
