@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import blocks
+from problems import blocks, pack_curves, startup_hook
 from problems.mechanics import plates
 from synth import DesignProblem
 from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class MultiPlateClutch(DesignProblem):
@@ -25,6 +29,7 @@ class MultiPlateClutch(DesignProblem):
         "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
+    simulation_settings = startup_hook.SETTINGS
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -54,6 +59,23 @@ class MultiPlateClutch(DesignProblem):
         blocks.declare_envelope(d, duty, force, size.diameter, size.length)
         blocks.declare_pack_remarks(d, options, duty, lubrication)
         self._declare_objectives(d)
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the steel plates over repeated engagements."""
+        pair = design.parts["friction_pair"]
+        lining = plates.lining_mass(pair["density"], pair["lining_thickness"], design.values["friction_area"])
+        capacity = (design.values["mass"] - lining) * spec["steel_specific_heat"]
+        return startup_hook.startup_frames(self, spec, design, capacity)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return torque over plates and start-up over torque; with a design also force and pressure along the pack."""
+        frames = {
+            "torque_over_plates": pack_curves.torque_over_plates(self, spec, design),
+            "startup_over_torque": startup_hook.startup_over_torque(self, spec, design),
+        }
+        if design is not None:
+            frames["force_along_pack"] = pack_curves.force_along_pack(self, spec, design)
+        return frames
 
     def _declare_force(self, d: Declaration) -> Any:
         return d.variable(

@@ -14,6 +14,7 @@ from synth.errors import InputError
 if TYPE_CHECKING:
     from synth.analysis import evaluate
     from synth.description import describe
+    from synth.hooks import curves, second_opinion, simulate
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
     from synth.search import synthesize
@@ -23,11 +24,14 @@ __all__ = [
     "DesignProblem",
     "InputError",
     "ParetoFront",
+    "curves",
     "describe",
     "evaluate",
     "families",
     "load",
     "load_front",
+    "second_opinion",
+    "simulate",
     "synthesize",
 ]
 
@@ -36,11 +40,14 @@ _HOME = {
     "Design": "synth.results",
     "DesignProblem": "synth.problem",
     "ParetoFront": "synth.results",
+    "curves": "synth.hooks",
     "describe": "synth.description",
     "evaluate": "synth.analysis",
     "families": "synth.problem",
     "load": "synth.problem",
     "load_front": "synth.results",
+    "second_opinion": "synth.hooks",
+    "simulate": "synth.hooks",
     "synthesize": "synth.search",
 }
 

@@ -64,32 +64,33 @@ def make_design(
     instance: Instance,
     frame: Frame,
     variables: np.ndarray,
-    data: Sequence[Any],
+    result: Evaluation,
+    row: int,
     parts: Mapping[str, PartRow],
     choices: Mapping[str, str],
     **more: Any,
 ) -> Design:
-    """Evaluate one design completely.
+    """Return one design of a batch that has been evaluated.
 
     Parameters
     ----------
     variables : array (variables,)
         SI.
-    data : list of float
-        Data inputs of its combination.
+    result : Evaluation
+    row : int
+        Which of the batch it is.
     parts, choices : mapping
         What fills the slots and choices.
     **more
         Fields of Design that the search knows (gap, elasticity, ...).
     """
     model = instance.model
-    result = model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
-    values = {name: float(v[0]) for name, v in result.values.items()}
-    limits, residuals, used, broken, unchecked = _limits(instance, result, values)
+    values = {name: float(v[row]) for name, v in result.values.items()}
+    limits, residuals, used, broken, unchecked = _limits(instance, result, row, values)
     advice = [
         _message(a.code, a.message, a.source)
         for k, a in enumerate(model.declaration.advices)
-        if bool(result.advice[k][0])
+        if bool(result.advice[k][row])
     ]
     status = more.pop("status", Status.INFEASIBLE if broken else Status.FEASIBLE)
     return Design(
@@ -115,20 +116,20 @@ def _message(code: str, message: str, source: str) -> str:
 
 
 def _limits(
-    instance: Instance, result: Evaluation, values: Mapping[str, float]
+    instance: Instance, result: Evaluation, row: int, values: Mapping[str, float]
 ) -> tuple[dict[str, tuple[float, float]], dict[str, float], dict[str, float | None], list[str], list[str]]:
     model = instance.model
     limits, residuals, used = dict[str, tuple[float, float]](), dict[str, float](), dict[str, float | None]()
     broken, unchecked = list[str](), list[str]()
     for limit in model.limits:
-        value, bound = (float(side[0]) for side in result.limits[limit.name])
-        r = float(result.residuals[limit.name][0])
-        exists = not bool(result.void[limit.name][0]) and not np.isnan(r)
+        value, bound = (float(side[row]) for side in result.limits[limit.name])
+        r = float(result.residuals[limit.name][row])
+        exists = not bool(result.void[limit.name][row]) and not np.isnan(r)
         limits[limit.name], residuals[limit.name] = (value, bound), r
         used[limit.name] = float(utilisation(value, bound, limit.sense)) if exists else None
-        if not bool(result.holds[limit.name][0]):
+        if not bool(result.holds[limit.name][row]):
             broken.append(limit.name)
-        if bool(result.void[limit.name][0]):
+        if bool(result.void[limit.name][row]):
             columns = ", ".join(model.data_inputs[k].label for k in model.void_inputs[limit.name])
             unchecked.append(f"not checked: {limit.name}, no {columns}")
     for extra in instance.extra:
@@ -228,7 +229,8 @@ def _evaluate(
     variables = _complete_variables(model, known, derived, data)
     frame = make_frame(instance, chosen_objectives(model, objectives))
     part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
-    return make_design(instance, frame, variables, data, part_rows, choices, remarks=remarks)
+    result = instance.model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
+    return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks)
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:

@@ -14,9 +14,12 @@ import typer
 from synth.errors import InputError
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from synth.problem import DesignProblem
-    from synth.results import ParetoFront
+    from synth.results import Design, ParetoFront
     from synth.spec import Spec
+    from synth.tables import Catalogs
 
 FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
 REPORTS = "clutchsynth.reports"
@@ -171,38 +174,88 @@ def check(
     folder: Annotated[Path | None, typer.Option("--output", "-o", help="Folder for check.csv.", metavar="DIR")] = None,
 ) -> None:
     """Compute everything about a given design and test every limit; nothing is rounded or searched."""
-    from synth.analysis import evaluate
     from synth.console import output, print_check, write_check
     from synth.description import describe as describe_problem
-    from synth.instance import catalogs_for
     from synth.spec import read_spec
 
     asked = read_spec(design)
-    if asked.values is None:
-        raise InputError(
-            f"{asked.file}: values",
-            None,
-            "the variables, counts and choices of the design (clutchsynth run takes a question)",
-        )
-    if asked.fix:
-        raise InputError(
-            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
-        )
+    _must_be_a_design(asked)
     if folder is not None:
         _check_output(folder)
     with _blamed_on(asked.file):
-        problem = _load(asked.family, asked.options)
-        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-        result = evaluate(
-            problem, asked.requirements, values=asked.values, parts=_one_each(asked),
-            catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
-        )  # fmt: skip
-    details = describe_problem(problem, catalogs).to_dict("records")
+        problem, catalogs, result = _given_design(asked)
+        details = describe_problem(problem, catalogs).to_dict("records")
     print_check(result, details, output())
     if folder is not None:
         print(f"\nwritten: {write_check(result, details, folder)}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def simulate(
+    design: DesignFile,
+    folder: Folder,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="A setting of the simulation, name=value; repeat it.", metavar="NAME=VALUE"),
+    ] = None,
+) -> None:
+    """Simulate a given design in time; draw it, and set what it finds beside the closed forms."""
+    from synth.console import output, print_simulation
+    from synth.hooks import read_settings, second_opinion, simulate_design
+    from synth.spec import read_spec
+
+    asked = read_spec(design)
+    _must_be_a_design(asked)
+    _check_output(folder)
+    pairs = [_pair("--set", text) for text in setting or []]
+    for name, _ in pairs:
+        if [other for other, _ in pairs].count(name) > 1:
+            raise InputError("--set", name, "each setting once")
+    with _blamed_on(asked.file):
+        problem, catalogs, result = _given_design(asked)
+    frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
+    opinion = second_opinion(result, frames)
+    files = _frame_files(frames)
+    if len(opinion):
+        files["second_opinion.csv"] = _as_csv(opinion)
+    _write_all(folder, files)
+    print_simulation(result, frames, opinion, output())
+    print(f"written to {folder}: {', '.join(sorted(files))}")
+
+
+@app.command()
+def curves(
+    family: Annotated[str, typer.Argument(help="Name of a family.", metavar="FAMILY")],
+    spec: Annotated[
+        Path, typer.Argument(help="A spec, or a design: a spec with values and parts.", metavar="SPEC.yaml")
+    ],
+    folder: Folder,
+) -> None:
+    """Draw the curves of a family for a spec, or for a given design."""
+    from synth.hooks import curves as curves_of
+    from synth.instance import catalogs_for
+    from synth.spec import read_spec
+
+    asked = read_spec(spec)
+    if asked.family != family:
+        raise InputError("FAMILY", family, f"{asked.family}, the family of {asked.file}")
+    _check_output(folder)
+    with _blamed_on(asked.file):
+        if asked.values is None:
+            problem = _load(asked.family, asked.options)
+            catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+            frames = curves_of(problem, asked.requirements, catalogs=catalogs)
+        else:
+            _must_be_a_design(asked)
+            problem, catalogs, result = _given_design(asked)
+            frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
+    files = _frame_files(frames)
+    _write_all(folder, files)
+    for frame in frames.values():
+        print(frame.attrs["title"])
+    print(f"written to {folder}: {', '.join(sorted(files))}")
 
 
 @app.command()
@@ -253,6 +306,62 @@ def _objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
             "--objective", unsaid[0], f"{unsaid[0]}=min or {unsaid[0]}=max: all objectives with a sense, or none"
         )
     return dict(pairs)
+
+
+def _must_be_a_design(asked: Spec) -> None:
+    """Refuse a spec without values, or with something left to fix."""
+    if asked.values is None:
+        raise InputError(
+            f"{asked.file}: values",
+            None,
+            "the variables, counts and choices of the design (clutchsynth run takes a question)",
+        )
+    if asked.fix:
+        raise InputError(
+            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
+        )
+
+
+def _given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
+    """Load the problem and evaluate the design that a spec with values describes."""
+    from synth.analysis import evaluate
+    from synth.instance import catalogs_for
+
+    problem = _load(asked.family, asked.options)
+    catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+    design = evaluate(
+        problem, asked.requirements, values=asked.values, parts=_one_each(asked),
+        catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
+    )  # fmt: skip
+    return problem, catalogs, design
+
+
+def _frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
+    """Return what frames are written as: file name -> text, a table and a drawing of each."""
+    draw = _report("figure")
+    files = {}
+    for key, frame in frames.items():
+        files[f"{key}.csv"] = _as_csv(frame)
+        if draw is not None:
+            files[f"{key}.svg"] = draw(frame)
+    return files
+
+
+def _as_csv(frame: pd.DataFrame) -> str:
+    text: str = frame.to_csv(index=False, lineterminator="\n", float_format="%.10g")
+    return text
+
+
+def _write_all(folder: Path, files: Mapping[str, str]) -> None:
+    """Write files that are all complete before the first one is touched."""
+    from synth.results import write_atomically
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            write_atomically(folder / name, text)
+    except OSError as error:
+        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
 
 
 def _one_each(asked: Spec) -> dict[str, str]:
@@ -326,7 +435,7 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
 
     console = output()
     if front.designs:
-        _report("table")(front, console, every)
+        (_report("table") or _plain_table)(front, console, every)
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
@@ -338,18 +447,18 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)
 
 
-def _report(name: str) -> Callable[[ParetoFront, Any, bool], None]:
-    """Return a report by its registered name; the plain table of the front where it is not installed."""
+def _report(name: str) -> Callable[..., Any] | None:
+    """Return a report by its registered name; None where it is not installed."""
     from importlib.metadata import entry_points
 
     for point in entry_points(group=REPORTS):
         if point.name == name:
-            found: Callable[[ParetoFront, Any, bool], None] = point.load()
+            found: Callable[..., Any] = point.load()
             return found
+    return None
 
-    def plain(front: ParetoFront, console: Any, every: bool) -> None:
-        names = list(front.frame.objectives)
-        table = front.to_frame() if every else front.to_frame().head(10)
-        print(table.iloc[:, [0, 1, *range(6, 6 + len(names))]].to_string(index=False))
 
-    return plain
+def _plain_table(front: ParetoFront, console: Any, every: bool) -> None:
+    names = list(front.frame.objectives)
+    table = front.to_frame() if every else front.to_frame().head(10)
+    print(table.iloc[:, [0, 1, *range(6, 6 + len(names))]].to_string(index=False))

@@ -19,7 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from synth.results import Design, ParetoFront, write_atomically
-from synth.units import format_quantity, from_si
+from synth.units import format_quantity, from_si, split_header
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
+SAME = 1e-9  # relative; a second opinion closer than this is the same
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
 
 
@@ -66,6 +67,7 @@ TITLES = {
     "derived": "Derived quantities",
     "limit": "Limits",
     "objective": "Objectives",
+    "setting": "Settings of the simulation (simulate --set)",
     "refusal": "Refused input",
     "advice": "Remarks",
 }
@@ -95,7 +97,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     kind, default = row["kind"], row["default"]
     if kind in ("limit", "objective"):
         return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
-    if kind in ("option", "derived", "column", "slot", "choice"):
+    if kind in ("setting", "option", "derived", "column", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
     bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
@@ -208,6 +210,34 @@ def _limit_states(design: Design) -> dict[str, str]:
         else:
             states[name] = "ok" if design.utilisation.get(name) is not None else "not defined"
     return states
+
+
+def print_simulation(
+    design: Design, frames: Mapping[str, pd.DataFrame], opinion: pd.DataFrame, console: Console
+) -> None:
+    """Print what simulations show: their titles and events, and the second opinion beside the closed forms."""
+    for frame in frames.values():
+        console.print(frame.attrs["title"])
+        unit = split_header(str(frame.attrs.get("x", frame.columns[0])))[1] or ""
+        events = [
+            f"{mark['label']} {mark['x']:.5g} {unit}" for mark in frame.attrs.get("marks", ()) if mark.get("label")
+        ]
+        if events:
+            console.print(f"  {', '.join(events)}")
+    if len(opinion):
+        console.print()
+        table = _table("quantity", "closed form", "simulation", "difference", "", right=(1, 2, 3, 4))
+        for row in opinion.to_dict("records"):
+            relative = row["relative_difference"]
+            if abs(relative) < SAME:
+                relative = row["difference"] = 0.0  # rounding only
+            numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
+            shown = [f"{x:.6g} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]
+            table.add_row(row["quantity"], *shown, f"{100 * relative:.3g} %" if math.isfinite(relative) else "")
+        console.print(table)
+    if design.violated:
+        console.print(f"\nlimits violated: {', '.join(design.violated)} (clutchsynth check lists them)")
+    console.print()
 
 
 def write_check(design: Design, details: Sequence[Mapping[Any, Any]], folder: Path) -> Path:

@@ -140,18 +140,15 @@ class Sweeps:
 
 @dataclass
 class Code:
-    """The generated function of one sign pattern, and how many boxes it has contracted.
+    """The generated function of one sign pattern.
 
-    ``compiled`` is the same in machine code, if there is any; ``looked``: it was looked for; ``hopeless``: there
-    will be none.
+    ``compiled`` is the same in machine code, if there is any; ``hopeless``: there will be none.
     """
 
     contractor: Contractor
     sweeps: Sweeps
     function: Callable[..., Any]
-    contracted: int = 0
     compiled: Any = None
-    looked: bool = False
     hopeless: bool = False
 
 
@@ -388,7 +385,7 @@ class _Writer:
                 self._cut(j)
 
     def _node(self, k: int, later: bool) -> None:
-        low, high = self._natural(k)
+        low, high = self._natural(k, later)
         if later:
             low, high = f"v_fmax(l{k}, {low})", f"v_fmin(h{k}, {high})"
         self._set(f"l{k}", low)
@@ -396,8 +393,12 @@ class _Writer:
         if not later:
             self.out.append(Hold(k, bool(self.root.narrowed[k])))
 
-    def _natural(self, k: int) -> tuple[str, str]:
-        """Return the code of both ends."""
+    def _natural(self, k: int, later: bool) -> tuple[str, str]:
+        """Return the code of both ends.
+
+        Ends that were narrowed may miss the value of a design by rounding. Where large terms cancel that would grow
+        from sweep to sweep, so that later sweeps widen what they find there.
+        """
         node = self.program.nodes[k]
         op, args = node.op, node.args
         if op == OP_SPECIAL:
@@ -410,9 +411,12 @@ class _Writer:
         a = args[0]
         b = args[1] if len(args) > 1 else a
         if op == ca.OP_ADD:
-            return f"l{a} + l{b}", f"h{a} + h{b}"
+            cancels = later and not (self._not_negative(a) and self._not_negative(b))
+            less, more = self._rounding(a) if cancels else ("", "")
+            return f"l{a} + l{b}{less}", f"h{a} + h{b}{more}"
         if op == ca.OP_SUB:
-            return f"l{a} - h{b}", f"h{a} - l{b}"
+            less, more = self._rounding(a) if later else ("", "")
+            return f"l{a} - h{b}{less}", f"h{a} - l{b}{more}"
         if op == ca.OP_NEG:
             return f"-h{a}", f"-l{a}"
         if op == ca.OP_TWICE:
@@ -430,6 +434,11 @@ class _Writer:
         name = f"forward_{op + 100}" if op in FORWARD else "whole"
         self.out.append(Enclose(name, args))
         return "s", "t"
+
+    def _rounding(self, a: int) -> tuple[str, str]:
+        """Return the code of what the ends of a term may have lost by rounding."""
+        low, high = (f"l{a}", f"h{a}") if self._not_negative(a) else (f"v_abs(l{a})", f"v_abs(h{a})")
+        return f" - {CANCELLATION!r} * {low}", f" + {CANCELLATION!r} * {high}"
 
     def _corners(self, k: int) -> tuple[list[str], list[str]]:
         """Return the corners at which a special function is least and largest."""

@@ -232,6 +232,16 @@ class Advice:
     source: str
 
 
+@dataclass(frozen=True)
+class Setting:
+    """Something that a simulation may be told beside the requirements: a number in ``unit``, a word, or a table row."""
+
+    text: str
+    unit: str = ""
+    choices: tuple[str, ...] = ()
+    table: str = ""
+
+
 class Declaration:
     """Collects what a problem declares, for one set of options and of optional requirements given.
 

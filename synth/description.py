@@ -104,6 +104,9 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
         )
         for o in d.objectives.values()
     ]
+    for name, setting in problem.simulation_settings.items():
+        words = f"rows of {setting.table}" if setting.table else ", ".join(setting.choices)
+        rows.append(_row("setting", setting, name=name, choices=words, optional=True))
     rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
     rows += [_row("advice", a, name=a.code, text=a.message) for a in d.advices]
     frame = pd.DataFrame({c: [row[c] for row in rows] for c in COLUMNS if c != "default"})

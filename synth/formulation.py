@@ -10,10 +10,11 @@ import numpy as np
 
 from synth.batch_nlp import BatchNlp, Solutions, Tasks
 from synth.declaration import Refusal
-from synth.feasibility import holds, residual
+from synth.feasibility import TOLERANCE
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.model import Evaluation
+from synth.native import COMPILED_FROM
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
 from synth.program import Program
@@ -26,12 +27,13 @@ TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
 CAP_ROWS = 512
-COMPILED_FROM = 5000
 
 
 @dataclass(frozen=True)
 class Boxes:
     """A batch of boxes: the cell of combinations of each, its ends, and lower bounds of the objectives.
+
+    The bounds are those of all objectives, or of the first ones where the others do not matter.
 
     ``scores`` tell how much each variable and factor still blurs limits and objectives; ``tag`` which of
     several questions a box belongs to, when they share a batch.
@@ -186,6 +188,7 @@ class Formulation:
         positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
         self.log_goals = np.array(positive, dtype=bool)
         self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
+        self._prepare_screen()
 
     def _immovable(self) -> np.ndarray:
         """Return which limits depend on no continuous variable that is free to move."""
@@ -210,6 +213,10 @@ class Formulation:
     def nothing(self) -> Boxes:
         """Return no boxes."""
         return self._boxes(self.cells.whole()).take(slice(0, 0))
+
+    def traded_only(self, boxes: Boxes) -> Boxes:
+        """Return boxes with the bounds of those objectives alone that are traded off."""
+        return replace(boxes, bounds=np.ascontiguousarray(boxes.bounds[:, : self.traded]))
 
     def one(self, box: Boxes) -> Boxes:
         """Return a box with a single combination of its cell (the first)."""
@@ -260,6 +267,10 @@ class Formulation:
         ``caps`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
         that only settle ties.
         """
+        width = boxes.bounds.shape[1]
+        if every_goal and width < len(self.goals):
+            unknown = np.full((len(boxes), len(self.goals) - width), -np.inf)
+            boxes = replace(boxes, bounds=np.concatenate([boxes.bounds, unknown], axis=1))
         if len(boxes) <= CHUNK:
             return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
         kept = []
@@ -373,15 +384,26 @@ class Formulation:
     # -- objectives ----------------------------------------------------------------------------
 
     def values_of(self, phi: np.ndarray) -> np.ndarray:
-        """Return signed objective values for phi."""
+        """Return signed objective values for phi (..., objectives), all or the first ones."""
+        values = np.empty(phi.shape)
         with np.errstate(all="ignore"):
-            return np.where(self.log_goals, np.exp(phi), phi * self.goal_scales)
+            for k in range(phi.shape[-1]):
+                if self.log_goals[k]:
+                    np.exp(phi[..., k], out=values[..., k])
+                else:
+                    np.multiply(phi[..., k], self.goal_scales[k], out=values[..., k])
+        return values
 
     def phi_of(self, values: np.ndarray) -> np.ndarray:
-        """Return phi for signed objective values (batch, objectives)."""
+        """Return phi for signed objective values (batch, objectives), all or the first ones."""
+        phi = np.empty(values.shape)
         with np.errstate(all="ignore"):
-            logs = np.log(np.where(self.log_goals, np.maximum(values, 1e-300), 1.0))
-        return np.where(self.log_goals, logs, values / self.goal_scales)
+            for k in range(values.shape[1]):
+                if self.log_goals[k]:
+                    np.log(np.maximum(values[:, k], 1e-300), out=phi[:, k])
+                else:
+                    np.divide(values[:, k], self.goal_scales[k], out=phi[:, k])
+        return phi
 
     # -- points --------------------------------------------------------------------------------
 
@@ -408,23 +430,53 @@ class Formulation:
         The search keeps limits more closely than feasibility asks for, so that designs do not live off the tolerance;
         ``exact`` points could not be chosen otherwise and need not.
         """
-        if not len(combinations):
+        count = len(combinations)
+        if not count:
             return np.empty(0, dtype=np.int64), np.empty((0, len(self.goals)))
-        result = self.evaluate(variables, combinations)
-        feasible = result.feasible & self.not_refused(combinations)
-        for limit, fixed in zip(self.model.limits, self.immovable, strict=False):
-            if not fixed and not exact:
-                r = result.residuals[limit.name]
-                feasible = feasible & (np.isnan(r) | (r <= SEARCH_TOLERANCE))
-        feasible = feasible & np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
-        for extra in self.instance.extra:
-            r = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
-            feasible = feasible & holds(r, guard=False)
-        signed = np.stack(
-            [g.sign * result.values[name] for g, name in zip(self.goals, self.names, strict=True)], axis=1
+        data = self.instance.data(np.asarray(combinations))
+        with np.errstate(all="ignore"):
+            raw = self._screen([variables[:, k] for k in range(self.n)] + list(data))
+            sides = np.empty((len(raw), count))
+            for row, x in zip(sides, raw, strict=True):
+                row[:] = x
+            limits = len(self.cuts)
+            phi = self.phi_of((sides[2 * limits :] * self._goal_signs[:, None]).T)
+            r = self._residuals(sides[:limits], sides[limits : 2 * limits])
+            held = np.where(self._guards[:, None], r < 0.0, r <= np.where(exact, TOLERANCE, self._tolerances)[:, None])
+        held |= self.void(data, count).T
+        feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & self.not_refused(combinations)
+        feasible &= np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
+        return np.flatnonzero(feasible), phi
+
+    def _residuals(self, value: np.ndarray, limit: np.ndarray) -> np.ndarray:
+        """Return what ``synth.feasibility.residual`` does, for all limits (rows) at once."""
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), self._scales[:, None])
+        difference = value - limit
+        result: np.ndarray = (
+            np.where(self._equal[:, None], np.abs(difference), difference * self._senses[:, None]) / size
         )
-        phi = self.phi_of(signed)
-        return np.flatnonzero(feasible & np.all(np.isfinite(phi), axis=1)), phi
+        return result
+
+    def _prepare_screen(self) -> None:
+        """Prepare what tells which of many points are feasible: both sides of all limits, and the objectives."""
+        values = [c.value for c in self.cuts]
+        bounds = [c.value if c.limit is None else c.limit for c in self.cuts]
+        nodes = (*values, *bounds, *(g.node for g in self.goals))
+        evaluate = self.model.function(("screen", nodes), lambda: self.model.program.compile(nodes))
+        constant = {len(values) + k: c.bound for k, c in enumerate(self.cuts) if c.limit is None}
+
+        def screen(inputs: Sequence[Any]) -> list[Any]:
+            return [constant.get(k, x) for k, x in enumerate(evaluate(inputs))]
+
+        self._screen = screen
+        self._goal_signs = np.array([float(g.sign) for g in self.goals])
+        self._equal = np.array([c.sense == "equal" for c in self.cuts], dtype=bool)
+        self._senses = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.cuts])
+        self._scales = np.array([c.scale for c in self.cuts], dtype=float)
+        self._guards = np.array([c.guard for c in self.cuts], dtype=bool)
+        # The user's own limits, and those that nothing continuous moves, are kept as closely as feasibility asks for.
+        loose = [*self.immovable[: len(self.model.limits)], *(True for _ in self.instance.extra)]
+        self._tolerances = np.where(loose, TOLERANCE, SEARCH_TOLERANCE)
 
     def sample(self, boxes: Boxes, rng: np.random.Generator) -> None:
         """Evaluate a random makeable point of a random combination of every box; what is feasible is archived."""
@@ -501,8 +553,6 @@ class Formulation:
     def batch_nlp(self) -> BatchNlp:
         """Return the NLP of this question for many designs at once; built once per model and set of rows."""
         rows = self.rows()
-        # Compiling pays for large questions only. What decides is the question, not what happens to be compiled
-        # already: the same question always goes the same way, to the last digit.
         native = None if self.instance.combinations >= COMPILED_FROM else False
         made: BatchNlp = self.model.function(
             ("batch", rows, native), lambda: BatchNlp(self.model.program, self.n, rows, native)

@@ -43,6 +43,7 @@ def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) ->
         return catalogs
     d = problem.model(frozenset(), catalogs).declaration
     used = {part.table for part in [*d.slots.values(), *d.rows.values()]}
+    used |= {setting.table for setting in problem.simulation_settings.values() if setting.table}
     for name in catalogs.added:
         if name not in used:
             close = difflib.get_close_matches(name, used, n=2, cutoff=0.4)

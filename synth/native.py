@@ -26,6 +26,9 @@ from synth.native_source import source
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
 COMPILE_SECONDS = 300
+# Compiling takes seconds, so that it pays for large questions only. What decides is the question, never what happens
+# to be compiled already: the last digits of the two ways differ, and the same question must go the same way.
+COMPILED_FROM = 5000  # combinations
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 INTEGERS = ctypes.POINTER(ctypes.c_longlong)
 
@@ -103,7 +106,7 @@ def switched_on() -> bool:
     return os.environ.get("CLUTCHSYNTH_NATIVE") != "0"
 
 
-def library(name: str, text: str, flags: Sequence[str] = FLAGS, make: bool = True) -> ctypes.CDLL | None:
+def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
     """Return a C source as loaded code; None where it cannot be compiled, kept or loaded.
 
     Parameters
@@ -114,8 +117,6 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS, make: bool = Tru
         The translation unit.
     flags : list of str
         For the compiler.
-    make : bool
-        Whether to compile what the cache folder does not hold.
     """
     compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
     if compiler is None or folder is None:
@@ -124,8 +125,6 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS, make: bool = Tru
     path = folder / f"{name}_{key}.so"
     try:
         if not path.exists():
-            if not make:
-                return None
             _compile(compiler[0], text, path, flags)
         return ctypes.CDLL(str(path))
     except (OSError, subprocess.SubprocessError):

@@ -26,8 +26,6 @@ from synth.special import SpecialFunction
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
 BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
-# Compiling takes a second or two, a hundred thousand boxes in NumPy; what is compiled is kept for other questions.
-COMPILE_AFTER = 20_000
 # Threads take the next so many boxes when they are free: a core that is busy with something else holds nobody up.
 PART = 512
 SCORE_WIDTH = 16
@@ -123,7 +121,6 @@ class Prepared:
 
     def __init__(self, contractor: Contractor, question: Question) -> None:
         self.n, self.factors = len(question.lower), len(question.spreads)
-        self.goals = question.steep.shape[0] - len(contractor.cuts)
         width = -(-question.steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
@@ -144,7 +141,7 @@ class Prepared:
         for name, arrays in self._lists.items():
             self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
         self.numbers = {
-            "factors": self.factors, "goals": self.goals, "score_width": width,
+            "factors": self.factors, "score_width": width,
             "snap": question.margins[0], "pinned": question.margins[1],
         }  # fmt: skip
 
@@ -200,14 +197,14 @@ class BoxCode:
             "high": np.ascontiguousarray(high, dtype=float),
             "bounds": np.ascontiguousarray(bounds, dtype=float),
             "tag": np.ascontiguousarray(tag, dtype=np.int32),
-            "caps": np.ascontiguousarray(np.zeros(prepared.goals) if caps is None else caps, dtype=float),
+            "caps": np.ascontiguousarray(np.zeros(1) if caps is None else caps, dtype=float),
         }
         step = given["caps"].shape[1] if given["caps"].ndim == 2 else 0
         taken: dict[str, np.ndarray] = {
             "out_cell": np.empty((count, factors), dtype=np.int32),
             "out_low": np.empty((count, n)),
             "out_high": np.empty((count, n)),
-            "out_bounds": np.empty((count, prepared.goals)),
+            "out_bounds": np.empty(bounds.shape),
             "out_tag": np.empty(count, dtype=np.int32),
             "out_scores": np.empty((count, n + factors), dtype=np.float32),
             "alive": np.empty(count, dtype=bool),
@@ -220,7 +217,15 @@ class BoxCode:
         def part(first: int, last: int) -> _Batch:
             # Every array has a row per box, so that a part begins so many rows further on.
             places = {name: place + first * stride for name, (place, stride) in moving.items()}
-            return _Batch(count=last - first, passes=passes, caps_step=step, **prepared.numbers, **still, **places)
+            return _Batch(
+                count=last - first,
+                goals=bounds.shape[1],
+                passes=passes,
+                caps_step=step,
+                **prepared.numbers,
+                **still,
+                **places,
+            )
 
         parts = max(1, count // PART) if workers > 1 else 1
         ends = [count * k // parts for k in range(parts + 1)]
@@ -253,22 +258,16 @@ class BoxCode:
         return kept
 
 
-def compiled(code: Code, boxes: int) -> BoxCode | None:
-    """Return the compiled form of generated code that is to contract so many boxes more, if there is one.
-
-    It is looked for at once, and made when the code has contracted many boxes.
-    """
+def compiled(code: Code) -> BoxCode | None:
+    """Return the compiled form of generated code; None where it cannot be had."""
     if not switched_on():
         return None
-    code.contracted += boxes
-    make = code.contracted > COMPILE_AFTER
-    if code.compiled is None and not code.hopeless and (make or not code.looked):
-        code.looked = True
+    if code.compiled is None and not code.hopeless:
         text = source(code)
-        loaded = None if text is None else library("boxes", text, BOX_FLAGS, make)
+        loaded = None if text is None else library("boxes", text, BOX_FLAGS)
         if loaded is not None:
             code.compiled = BoxCode(loaded, code.sweeps.limits)
-        code.hopeless = loaded is None and (make or text is None)
+        code.hopeless = loaded is None
     found: BoxCode | None = code.compiled
     return found
 

@@ -19,9 +19,11 @@ from pathlib import Path
 import numpy as np
 
 from synth.batch_nlp import Tasks
-from synth.cover import Clock, Purpose, roundings
+from synth.clock import Clock
 from synth.formulation import Boxes, Formulation
 from synth.instance import Instance
+from synth.purposes import Purpose
+from synth.seeker import roundings
 
 BATCH = 48
 DIRECTIONS = 5

@@ -5,13 +5,18 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from importlib.metadata import entry_points
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from synth.declaration import Declaration, DeclarationError
+from synth.declaration import Declaration, DeclarationError, Setting
 from synth.errors import InputError
 from synth.model import Model
 from synth.special import recorded
 from synth.tables import Catalogs
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.results import Design
 
 ENTRY_POINT_GROUP = "clutchsynth.problems"
 
@@ -47,6 +52,7 @@ class DesignProblem:
     name: str = ""
     title: str = ""
     sources: tuple[str, ...] = ()
+    simulation_settings: Mapping[str, Setting] = {}
 
     def __init__(self, /, **options: str) -> None:
         if not self.name:
@@ -58,13 +64,45 @@ class DesignProblem:
         """Declare requirements, unknowns, parts, limits and objectives on ``d``."""
         raise DeclarationError(f"{type(self).__name__} does not define declare(self, d)")
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> Any:
-        """Return curves for reports as DataFrames by name, or None where a family has none."""
+    def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> Mapping[str, pd.DataFrame] | None:
+        """Return curves as DataFrames by file name, or None where a family has none.
+
+        Every column is headed ``name [unit]``, in units that people read. ``DataFrame.attrs`` says how to draw a frame:
+        ``title``; ``x``, a column, by default the first; ``panels``, each with ``label`` (``torque [N*m]``),
+        ``columns``, ``log``, ``points`` (True marks every row) and ``height`` (over an ordinary panel); ``marks``
+        (vertical lines: ``x``, ``label``); ``spans`` (``from``, ``to``, ``label``); ``lines`` (horizontal lines:
+        ``panel``, ``y``, ``label``); ``source``. Only the title is needed. Lines are drawn in row order, and
+        not-a-number breaks them. pandas is imported inside, as it is costly.
+
+        Parameters
+        ----------
+        spec : mapping
+            Every declared requirement by name in SI; None where an optional one is not given. Options: :meth:`option`.
+        design : Design, optional
+            The design; without one the hook returns what the requirement alone allows.
+        """
         return None
 
-    def simulate(self, spec: Mapping[str, Any], design: Any) -> Any:
-        """Return a simulation in time as DataFrame, or None where a family has none."""
+    def simulate(self, spec: Mapping[str, Any], design: Design) -> Mapping[str, pd.DataFrame] | None:
+        """Return simulations in time as DataFrames by file name, or None where a family has none.
+
+        Frames are those of :meth:`curves`. ``attrs["quantities"]`` maps names of derived quantities to what the
+        simulation found for them in SI: the second opinion beside the closed form.
+
+        Parameters
+        ----------
+        spec : mapping
+            As for :meth:`curves`, and what the user set of ``simulation_settings``: SI floats, words, rows of tables.
+        design : Design
+            The design.
+        """
         return None
+
+    def option(self, name: str) -> str:
+        """Return an option that is in force: the one given, or the default."""
+        model = next(iter(self._models.values()))[0] if self._models else self.model(frozenset(), Catalogs())
+        chosen: str = model.declaration.options[name].chosen
+        return chosen
 
     def model(self, given: frozenset[str], catalogs: Catalogs) -> Model:
         """Trace the problem once for the set of requirements given and the catalogues in force."""

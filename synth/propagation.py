@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +14,7 @@ from synth.clusters import Cells, ClusterTree, Factor
 from synth.contractor import Code, Contractor, Layout, Root
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
+from synth.native import COMPILED_FROM
 from synth.native_boxes import Packed, Prepared, Question, compiled
 from synth.special import expanded
 
@@ -23,6 +25,7 @@ LEAST_INFLUENCE = 0.01
 LEAST_WEIGHT = 0.005
 # Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
 PARTS_FIRST = 3.0
+COMPILE_AFTER = 20_000  # boxes of a question; as many as NumPy does in about a tenth of a second
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,7 @@ class Propagation:
         self._range = np.maximum(self.high - self.low, 1e-300)
         self._codes: dict[tuple[bool, bool], Code] = {}
         self._prepared: dict[bool, Prepared] = {}
+        self._contracted: Counter[tuple[bool, bool]] = Counter()
 
     def _inputs(self, owner: Sequence[int]) -> list[Any]:
         """Return what the program reads where only requirements are known."""
@@ -312,12 +316,22 @@ class Propagation:
         workers : int
             Threads.
         """
-        code = compiled(self._code(every, caps is not None), len(cell))
+        code = (
+            compiled(self._code(every, caps is not None))
+            if self._to_compile(every, caps is not None, len(cell))
+            else None
+        )
         if code is None:
             return None
         if every not in self._prepared:
             self._prepared[every] = Prepared(self._contractors[every], self._question(every, margins))
         return code.contract(self._prepared[every], cell, low, high, bounds, tag, caps, self.weights, passes, workers)
+
+    def _to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
+        """Tell whether code is to be compiled for so many boxes more: by the question alone, see ``COMPILED_FROM``."""
+        self._contracted[every, capped] += boxes
+        large = self.instance.combinations >= COMPILED_FROM and capped and not every
+        return large or self._contracted[every, capped] > COMPILE_AFTER
 
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
         instance = self.instance

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from synth.analysis import chosen_objectives, make_design, make_frame, part_row
+from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
-from synth.cover import Clock, Cover, Covered, Staircase, Stopped, best, cover, proven_slack
+from synth.cover import Covered, best, cover
 from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
@@ -20,14 +21,17 @@ from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
 from synth.problem import DesignProblem, load
+from synth.purposes import Cover, Staircase, proven_slack
 from synth.results import Certificate, Design, Frame, ParetoFront
+from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_variables, solve_everywhere
 
-EFFORT = 6_000_000
+EFFORT = 20_000_000
 FILL_EFFORT = 20_000
 TIE_EFFORT = 40_000
 COARSE = 0.1
 COARSE_EFFORT = 20_000
+FINE = 2.0  # every design is covered within so many times the mean distance of the points asked for
 ROUNDS = 4
 POLISHINGS = 3
 ROUNDED = 2e-9
@@ -367,14 +371,14 @@ class _FrontSearch:
 
     def _cover(self) -> None:
         """Cover everything: coarsely first, then as finely as the points asked for need, at most as the gap."""
-        form, m = self.form, self.m
+        form = self.form
         coarse = self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0))
         outcome = self._covered(coarse, COARSE_EFFORT)
         if outcome.closed and not len(form.archive):
             self.open_combinations = 0.0
             return
-        span = np.ptp(form.archive.phi[:, :m], axis=0) if len(form.archive) else np.zeros(m)
-        fine = self._with_slack(np.maximum(span / self.points, self.purpose.slack))
+        self._seek(self._fine())
+        fine = self._fine()
         outcome = self._covered(fine, EFFORT)
         left = outcome.open
         if len(left):
@@ -384,6 +388,16 @@ class _FrontSearch:
             if not self.closed:
                 self.proven = self._gap_of(max(self._multiple(fine), proven_slack(form, self.purpose, left)))
         self.open_combinations = float(form.cells.size(left.cell).sum())
+
+    def _fine(self) -> Cover:
+        """Return the cover that is as fine as the points asked for need, at most as the gap."""
+        phi = self.form.archive.phi[:, : self.m]
+        span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.m)
+        return self._with_slack(np.maximum(FINE * span / self.points, self.purpose.slack))
+
+    def _seek(self, purpose: Cover) -> None:
+        """Look for designs beside those that are known."""
+        Seeker(self.form, purpose, self.rng, False).beside(self.clock)
 
     def _with_slack(self, slack: np.ndarray) -> Cover:
         return Cover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
@@ -485,8 +499,9 @@ class _FrontSearch:
             settled, alternatives = self._settled()
             self._say("report", 0.5)
         costs = elasticities(self.form, settled if settle else [], self.m) or [{}] * len(settled)
-        results = [self.form.evaluate(c.variables[None, :], np.array([c.combination])) for c in settled]
-        values = np.array([[float(r.values[name][0]) for name in self.chosen] for r in results])
+        points = np.array([c.variables for c in settled]).reshape(len(settled), self.form.n)
+        result = self.form.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
+        values = np.stack([result.values[name] for name in self.chosen], axis=1)
         ranking = rank(self.chosen, values, weights)
         designs = []
         for position, k in enumerate(ranking.order):
@@ -498,7 +513,8 @@ class _FrontSearch:
                     self.instance,
                     frame,
                     c.variables,
-                    self.instance.data(np.array([c.combination])),
+                    result,
+                    k,
                     {slot: part_row(table, row) for slot, (table, row) in parts.items()},
                     choices,
                     status=Status.OPTIMAL if proven else Status.FEASIBLE,
@@ -587,4 +603,5 @@ class _FrontSearch:
             explanation=explanation,
             settings=settings,
             interrupted=interrupted,
+            question=self.instance,
         )

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from synth.batch_nlp import Tasks
-from synth.cover import Clock, Purpose
+from synth.clock import Clock
 from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.purposes import Purpose
 
 STARTS = 6
 DIRECTIONS = 5

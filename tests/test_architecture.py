@@ -73,9 +73,9 @@ MAY_IMPORT = {
     "problems": {
         "problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special",
     },
-    "problems/mechanics": {"problems.mechanics", "numpy", "scipy", "synth.special", "synth.errors"},
+    "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
-    "reports": {"reports", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},
+    "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},
 }  # fmt: skip
 
 

@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
 COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
-HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna")
+HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib")
 
 # One ring, three plate numbers: the force is all that is left to find.
 SMALL = """
@@ -316,3 +316,13 @@ def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
     assert done.returncode == 4
     assert "stopped: time limit" in done.stdout
     assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "time limit"
+
+
+def test_the_same_question_gives_the_same_bytes_whether_code_was_compiled_before_or_not(tmp_path):
+    words = ("run", HOIST, "--points", "3", "--gap", "0.02", "--quiet", "-o")
+    cache = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    saved = []
+    for name in ("first", "second"):
+        assert clutchsynth(*words, tmp_path / name, **cache).returncode == 0
+        saved.append((tmp_path / name / "designs.csv").read_bytes())
+    assert saved[0] == saved[1]

@@ -6,7 +6,7 @@ from functools import partial, wraps
 import pytest
 from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 
-from problems.mechanics import guide_friction, heat, plates, ring, startup
+from problems.mechanics import guide_friction, heat, motors, plates, ring, startup
 
 RANGES = {
     "ring_ratio": (0.05, 0.3),
@@ -16,6 +16,7 @@ RANGES = {
     "surfaces": (2, 30),
     "surface": (1, 9),
     "waves": (3, 12),
+    "pullout_torque_ratio": (1.5, 4),
 }
 # Above the load torque, and sizes that meet every regime of the start-up.
 START_RANGES = {"torque": (2.2, 6.0), "load_torque": (0.5, 2.0), "ramp_time": (0.2, 6.0), "driven_inertia": (0.3, 3.0)}
@@ -156,6 +157,12 @@ CASES = [
         },
         "J",
     ),
+    (
+        motors.kloss_torque,
+        {"speed": "1/s", "synchronous_speed": "1/s", "breakdown_torque": "N m", "breakdown_slip": "-"},
+        "N m",
+    ),
+    (motors.breakdown_slip, {"rated_slip": "-", "pullout_torque_ratio": "-"}, "-"),
     (heat.cycle_time, {"switching_rate": "1/s"}, "s"),
     (heat.hourly_heat, HEAT, "W"),
     (heat.specific_hourly_heat, {**HEAT, "area": "m2"}, "W/m2"),
@@ -285,7 +292,7 @@ def test_no_formula_is_left_out():
     covered = {_name(case[0]) for case in CASES} | OTHERWISE_TESTED
     # Lambdas stand for functions with several results or a free number of arguments.
     covered |= {"plate_torque", "first_phase_push_force", "constant_torque_slip"}
-    for module in (ring, guide_friction, startup, heat, plates):
+    for module in (ring, guide_friction, startup, heat, plates, motors):
         public = {
             name
             for name, member in inspect.getmembers(module, inspect.isfunction)

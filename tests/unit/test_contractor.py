@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import synth
 from problems.mechanics.guide_friction import sum_geometric
-from synth import native, native_boxes
+from synth import native, propagation
 from synth.clusters import ClusterTree, Factor
 from synth.contractor import Contracted, Contractor, Layout
 from synth.formulation import TIE, Formulation
@@ -434,7 +434,7 @@ def test_halves_of_boxes_hold_what_the_box_held():
 
 def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     plain, machine = strut_form(), strut_form()
     rng = np.random.default_rng(4)
     points, combinations, phi = designs_of(plain, rng, 2000)

@@ -9,10 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.cover import Clock, Cover, Staircase, Stopped, best, cover, proven_slack, spread_choice
+from synth.clock import Clock, Stopped
+from synth.cover import best, cover
 from synth.formulation import TIE, Archive, Candidate, Formulation
 from synth.instance import Instance, catalogs_for
+from synth.purposes import Cover, Staircase, proven_slack
 from synth.search import ROUNDED, distinct
+from synth.seeker import spread_choice
 from tests.unit.strut import NEEDED, RODS, Strut
 
 WIDTH = 4  # objectives; the first ones are traded off

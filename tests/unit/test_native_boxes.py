@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
-from synth import native, native_boxes
+from synth import native, native_boxes, propagation
 from synth.contractor import Contractor, Layout
 from synth.formulation import PINNED, SNAP, Formulation
 from synth.instance import Instance, as_catalogs
@@ -365,7 +365,7 @@ def compare(form, boxes, caps, passes, every, monkeypatch):
 @pytest.mark.parametrize("grid", [False, True])
 @pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_the_family_agrees(options, grid, monkeypatch):
-    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     form = formulation(options, grid)
     for boxes, caps in batches(form):
         compare(form, boxes, caps, 2, False, monkeypatch)
@@ -378,23 +378,30 @@ def test_the_family_agrees(options, grid, monkeypatch):
 # -- when code is compiled ---------------------------------------------------------------------------
 
 
-def test_code_is_compiled_only_once_it_pays(monkeypatch):
+def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
     asked = []
-
-    def library(name, text, flags, make):
-        asked.append(make)
-
-    monkeypatch.setattr(native_boxes, "library", library)
+    monkeypatch.setattr(native_boxes, "library", lambda *given: asked.append(given))
     case = random_case(5, ARITHMETIC, boxes=8)
     code = case.contractor.code(case.root, False)
-    for boxes in (10, native_boxes.COMPILE_AFTER - 10, 1, 10):
-        assert native_boxes.compiled(code, boxes) is None
-    assert asked == [False, True]  # looked for in the cache folder once, then made once
+    assert native_boxes.compiled(code) is None
+    assert native_boxes.compiled(code) is None
+    assert len(asked) == 1
+
+
+def test_the_question_alone_decides_what_is_compiled(monkeypatch):
+    small, large = formulation({}).propagation, formulation({}).propagation
+    many = propagation.COMPILE_AFTER
+    monkeypatch.setattr(propagation, "COMPILED_FROM", small.instance.combinations + 1)
+    assert [small._to_compile(False, True, boxes) for boxes in (10, many - 10, 1)] == [False, False, True]
+    assert not small._to_compile(True, True, 1)  # each pattern counts for itself
+    monkeypatch.setattr(propagation, "COMPILED_FROM", large.instance.combinations)
+    assert large._to_compile(False, True, 1)
+    assert not large._to_compile(False, False, 1)  # without caps only the first box is contracted
 
 
 def test_it_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     form = formulation({})
     assert len(form.root()) == 1
     assert form.propagation._code(True, False).compiled is None
@@ -410,7 +417,7 @@ def test_requirements_do_not_enter_the_source():
 
 
 def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
-    monkeypatch.setattr(native_boxes, "COMPILE_AFTER", 0)
+    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     monkeypatch.delitem(native_boxes.rules.FORWARD, ca.OP_FLOOR)
     x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
     program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
@@ -418,5 +425,5 @@ def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
     case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
     assert native_boxes.source(code) is None
-    assert native_boxes.compiled(code, 1) is None
+    assert native_boxes.compiled(code) is None
     assert code.hopeless

@@ -5,10 +5,11 @@ import pytest
 
 import synth
 from synth import outer, search
-from synth.cover import Clock, Cover, Stopped
+from synth.clock import Clock, Stopped
 from synth.formulation import Archive, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.outer import search_parts, study_file
+from synth.purposes import Cover
 from tests.unit.strut import NEEDED, RODS, Strut
 
 TRIALS = 16

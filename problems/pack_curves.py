@@ -1,0 +1,175 @@
+"""Curves of a multi-plate pack: torque over the number of surfaces, contact force and pressure along the pack."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.mechanics import guide_friction
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth import DesignProblem
+
+SERIES = {"eq. (5)": "geometric", "eq. (10)": "exponential_K", "eq. (5'')": "lipka", "exact": "exact"}
+SOURCE = "S0 (Szoke 1966), eq. (5), (10), (14) to (16), appendix by I. Lipka (5''); exact: balance of every plate."
+MOST_SURFACES = 120
+FRICTIONS = (0.05, 0.10, 0.15)  # where no design says which lining it is
+
+
+def _limits(guide_number: float, threshold: float) -> list[dict[str, Any]]:
+    """Return the plate-count limits as marks."""
+    functions = (
+        ("(14)", guide_friction.surface_limit_exponential(guide_number, threshold)),
+        ("(15)", guide_friction.legacy_plate_limit(guide_number)),
+        ("(16)", guide_friction.surface_limit_geometric(guide_number, threshold)),
+    )
+    return [{"x": float(x), "label": f"{label} {float(x):.1f}"} for label, x in functions]
+
+
+def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
+    """Torque over the number of friction surfaces by every series, exact and ideal, with the limits (14) to (16).
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements of the blocks duty and pack in SI.
+    design : Design, optional
+        Without one the torque is that of unit mu F0 r on a narrow ring (spline radii equal to the friction radius), for
+        a few coefficients of friction.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Whole numbers of surfaces, in newton metres with a design.
+    """
+    import pandas as pd
+
+    if design is None:
+        return _sum_factor_over_plates(problem, spec)
+    values = design.values
+    mu, inner, outer, force = _friction(problem, spec, design)
+    guide_number = inner + outer
+    unit = mu * force * values["friction_radius"]
+    built = int(values["friction_surfaces"])
+    marks: list[dict[str, Any]] = [{"x": built, "label": f"built z = {built}"}]
+    reach = 1.5 * built
+    if guide_number > 0:
+        marks += _limits(guide_number, spec["plate_effectiveness_min"])
+        reach = max(1.15 * float(mark["x"]) for mark in marks)
+        reach = max(reach, 1.3 * built)
+    surfaces = np.arange(0.0, min(math.ceil(reach), max(MOST_SURFACES, 2 * built)) + 1)
+    data = {"friction_surfaces [-]": surfaces, "ideal [N*m]": unit * surfaces}
+    for heading, series in SERIES.items():
+        data[f"{heading} [N*m]"] = unit * guide_friction.torque_sum_factor(series, surfaces, inner, outer)
+    lines = [{"panel": 0, "y": values["required_torque"], "label": "required torque"}]
+    if guide_number > 0:
+        lines.append({"panel": 0, "y": unit / guide_number, "label": "never more: mu F0 r/S"})
+    torques = list(data)[1:]
+    others = []
+    for heading in list(SERIES)[1:]:
+        others.append(f"{heading} excess [%]")
+        with np.errstate(invalid="ignore"):  # nothing over nothing where there is no plate
+            data[others[-1]] = 100 * (data[f"{heading} [N*m]"] / data["eq. (5) [N*m]"] - 1)
+    frame = pd.DataFrame(data)
+    note = f" Excess: torque over that of (5), less 1. S = {guide_number:.4g}, mu F0 r = {unit:.4g} N m."
+    if problem.option("guide_model") == "cz":
+        note += " This design is sized with the factor c_z: its torque is the ideal one."
+    frame.attrs = {
+        "title": f"{problem.title}: torque over the number of friction surfaces",
+        "x": "friction_surfaces [-]",
+        "panels": [
+            {"label": "torque [N*m]", "columns": torques, "height": 2.2},
+            {"label": "excess [%]", "columns": others},
+        ],
+        "marks": marks,
+        "lines": lines,
+        "source": SOURCE + note,
+    }
+    return frame
+
+
+def _sum_factor_over_plates(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.DataFrame:
+    import pandas as pd
+
+    guide = spec["guide_friction"]
+    marks: list[dict[str, Any]] = []
+    series = problem.option("guide_series")
+    surfaces = np.arange(0.0, 61.0)
+    data = {"friction_surfaces [-]": surfaces, "ideal [-]": surfaces}
+    for mu in FRICTIONS:
+        data[f"friction_{mu:g} [-]"] = guide_friction.torque_sum_factor(series, surfaces, mu * guide, mu * guide)
+        limit = float(guide_friction.surface_limit_geometric(2 * mu * guide, spec["plate_effectiveness_min"]))
+        if 0 < limit <= surfaces[-1]:
+            marks.append({"x": limit, "label": f"(16) at {mu:g}"})
+    frame = pd.DataFrame(data)
+    frame.attrs = {
+        "title": f"{problem.title}: torque over mu F0 r, over the number of friction surfaces",
+        "x": "friction_surfaces [-]",
+        "panels": [{"label": "torque_sum_factor [-]", "columns": list(frame.columns[1:])}],
+        "marks": marks,
+        "source": f"Narrow ring, S = 2 mu mu1 with mu1 = {guide:g}; series {series}. {SOURCE}",
+    }
+    return frame
+
+
+def _friction(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> tuple[float, float, float, float]:
+    """Return the friction counted on, both guide ratios and the force that a release aid leaves."""
+    pair, values = design.parts["friction_pair"], design.values
+    mu = pair["mu_min"] if problem.option("friction_basis") == "worst_case" else pair["mu_dynamic"]
+    radii = (values["inner_spline_radius"], values["outer_spline_radius"])
+    ratios = (guide_friction.guide_ratio(mu, spec["guide_friction"], values["friction_radius"], x) for x in radii)
+    inner, outer = (float(x) for x in ratios)
+    return float(mu), inner, outer, values["torque"] / (mu * values["friction_radius"] * values["torque_sum_factor"])
+
+
+def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Contact force and pressure on every friction surface, counted from the actuator.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements of the blocks duty and pack in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per surface.
+    """
+    import pandas as pd
+
+    values = design.values
+    _, inner, outer, force = _friction(problem, spec, design)
+    surfaces = np.arange(1.0, values["friction_surfaces"] + 1)
+    # A release aid takes force and area; the pressure of the design tells both.
+    series_used = problem.option("guide_series") if problem.option("guide_model") == "series" else None
+    first = force if series_used is None else guide_friction.contact_force(series_used, force, 1, inner, outer)
+    area = first / values["surface_pressure"]
+    data = {"surface [-]": surfaces, "ideal [N]": np.full(len(surfaces), force)}
+    for heading, series in SERIES.items():
+        data[f"{heading} [N]"] = guide_friction.contact_force(series, force, surfaces, inner, outer)
+    forces = list(data)[1:]
+    for heading in forces:
+        data[heading.replace(" [N]", "_pressure [N/mm2]")] = data[heading] / area / 1e6
+    frame = pd.DataFrame(data)
+    frame.attrs = {
+        "title": f"{problem.title}: contact force and pressure along the pack",
+        "x": "surface [-]",
+        "panels": [
+            {"label": "contact_force [N]", "columns": forces, "points": True},
+            {"label": "pressure [N/mm2]", "columns": list(frame.columns[len(forces) + 1 :]), "points": True},
+        ],
+        "lines": [{"panel": 1, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"}],
+        "source": f"Surfaces counted from the actuator. {SOURCE} S = {inner + outer:.4g}.",
+    }
+    return frame

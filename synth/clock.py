@@ -1,0 +1,35 @@
+"""The time a search may take, and how it tells how far it has come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from synth.formulation import Boxes
+
+
+class Stopped(Exception):
+    """The time limit is reached, or the user interrupted."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+        super().__init__(reason)
+
+
+@dataclass
+class Clock:
+    """The time that is left, the boxes that are open, and the way to say how far the search has come."""
+
+    deadline: float = np.inf
+    report: Callable[[int], None] = lambda open_boxes: None
+    open: list[Boxes] = field(default_factory=list)
+
+    def check(self, boxes: Sequence[Boxes] = ()) -> None:
+        """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""
+        self.open = list(boxes)
+        self.report(sum(len(b) for b in boxes))
+        if time.monotonic() > self.deadline:
+            raise Stopped("time limit")

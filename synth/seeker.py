@@ -1,0 +1,295 @@
+"""Looks for designs: in boxes that nothing known covers, and beside designs that are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from synth.batch_nlp import MISSED, Tasks
+from synth.clock import Clock
+from synth.formulation import SNAP, Boxes, Candidate, Formulation
+from synth.pareto import spread_subset
+from synth.purposes import Purpose
+
+PROBES = 256
+MOST_NLPS = 128
+LEAST_NLPS = 8
+PATIENCE = 3
+EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
+REACH = 2
+TIE_WEIGHT = 1e-6
+PARENTS = 16  # known designs whose parts are exchanged in one round
+ROUNDS = 12
+TARGETS = 24  # places along the front at which each known combination is tried
+FAMILIES = 48  # known combinations that are tried at all places
+# Problems in a round: some tens of milliseconds, compiled or not.
+MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
+ROUNDED_OFF = 48
+
+
+class Seeker:
+    """Looks for designs in boxes that nothing known covers."""
+
+    def __init__(self, form: Formulation, purpose: Purpose, rng: np.random.Generator, every: bool) -> None:
+        self.form, self.purpose, self.rng, self.every = form, purpose, rng, every
+        self.nlps = MOST_NLPS // 4
+        self.rounds = self.failures = 0
+
+    def look(self, batch: Boxes) -> None:
+        """Try the boxes with most room, all along the front; after rounds without success, only now and then."""
+        self.rounds += 1
+        if self.failures >= PATIENCE and self.rounds % (self.failures - PATIENCE + 2):
+            return
+        form = self.form
+        phi = form.phi_of(batch.bounds)
+        space, along = self.purpose.room(phi), phi[:, self.purpose.columns[0]]
+        found = self._probe(batch.take(spread_choice(along, space, PROBES)))
+        if form.n:
+            most = MOST_NLPS if len(self.purpose.columns) > 1 else LEAST_NLPS
+            chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
+            chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds)) > 0)
+            good = self._solve(chosen)
+            self.nlps = min(2 * self.nlps, MOST_NLPS) if 4 * good > len(chosen) else max(self.nlps // 2, LEAST_NLPS)
+            found += good
+        self.failures = 0 if found else self.failures + 1
+
+    def settle(self, small: Boxes) -> Boxes:
+        """Look into boxes too small to split; return those that may still hold something nothing known covers."""
+        form = self.form
+        point = np.all(small.high - small.low <= 1e-12 * np.abs(small.high), axis=1)
+        # A single point is settled by its evaluation; a small box only nearly so.
+        self.offer(small.low[point], form.combination(small.take(point)), exact=True)
+        rest = small.take(~point)
+        self.offer(0.5 * (rest.low + rest.high), form.combination(rest))
+        rest = rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
+        # What is left is feasible by the tolerance alone, or nearly so.
+        self.offer(0.5 * (rest.low + rest.high), form.combination(rest), exact=True)
+        return rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
+
+    def _tightened(self, boxes: Boxes) -> Boxes:
+        return self.form.contract(boxes, self.purpose.caps(self.form.phi_of(boxes.bounds)), every_goal=self.every)
+
+    def _probe(self, boxes: Boxes) -> int:
+        """Evaluate points of a random combination of each box; gridded variables are fixed in its middle first."""
+        form = self.form
+        single = form.cells.single(boxes.cell).all()
+        if not single:
+            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+        if form.gridded.any():
+            middle = form.makeable(form.inside(boxes, 0.5))
+            boxes = replace(
+                boxes,
+                low=np.where(form.gridded, middle, boxes.low),
+                high=np.where(form.gridded, middle, boxes.high),
+            )
+        if form.gridded.any() or not single:
+            boxes = self._tightened(boxes)
+        return self._keep(boxes)
+
+    def _keep(self, boxes: Boxes) -> int:
+        """Evaluate two points of each box; return how many were new."""
+        found = 0
+        for share in (EDGE, 0.5) if len(boxes) else ():
+            points = self.form.makeable(self.form.inside(boxes, share))
+            found += self.offer(points, self.form.combination(boxes))
+        return found
+
+    def offer(self, points: np.ndarray, combinations: np.ndarray, exact: bool = False) -> int:
+        """Take what is feasible; return how many designs no known one covered."""
+        form = self.form
+        rows, phi = form.feasible_rows(points, combinations, exact)
+        if not len(rows):
+            return 0
+        used = self.purpose.take(combinations[rows], points[rows], phi[rows])
+        form.archive.add(combinations[rows], points[rows], phi[rows])
+        return used
+
+    def beside(self, clock: Clock) -> None:
+        """Exchange one part at a time of the designs known, and try known parts elsewhere on the front.
+
+        The continuous problems of whole neighbourhoods are solved at once, round by round until nothing new comes.
+        It proves nothing: the better the designs known, the less is left for boxes to cover.
+        """
+        form, archive = self.form, self.form.archive
+        if not form.n or form.instance.combinations == 1 or not len(archive):
+            return
+        expanded: set[int] = set()
+        placed: set[tuple[int, bytes]] = set()
+        for _ in range(ROUNDS):
+            clock.check(clock.open)
+            # Every part of a design that nobody asked about yet, one at a time ...
+            fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
+            fresh = [fresh[int(k)] for k in spread_subset(archive.phi[fresh][:, self.purpose.columns], PARENTS)]
+            parents = [archive[k] for k in fresh]
+            expanded.update(c.combination for c in parents)
+            found = self._reach(*self._exchanged(parents)) if parents else 0
+            # ... and all parts known to be good at all places of the front.
+            if len(self.purpose.columns) > 1:
+                found += self._reach(*self._elsewhere(placed)) + self._ends(placed)
+            if not found:
+                return
+
+    def _most_solved(self) -> int:
+        return MOST_SOLVED if self.form.batch_nlp().native else MOST_SOLVED_PLAIN
+
+    def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return combinations that differ from a parent in one part, with its variables and phi."""
+        form, radix = self.form, self.form.instance.radix
+        own = np.array([c.combination for c in parents], dtype=np.int64)
+        digits, step = form.instance.digits(own), 1
+        made, source = [], []
+        for f in reversed(range(len(radix))):
+            others = own[:, None] + (np.arange(radix[f])[None, :] - digits[f][:, None]) * step
+            step *= radix[f]
+            keep = others != own[:, None]
+            made.append(others[keep])
+            source.append(np.nonzero(keep)[0])
+        combinations, rows = np.concatenate(made), np.concatenate(source)
+        _, first = np.unique(combinations, return_index=True)
+        first = first[form.not_refused(combinations[first])]
+        if len(first) > self._most_solved():
+            first = self.rng.choice(first, self._most_solved(), replace=False)
+        rows = rows[first]
+        variables, phi = np.array([c.variables for c in parents]), np.array([c.phi for c in parents])
+        base: np.ndarray = phi[rows][:, self.purpose.columns]
+        return combinations[first], variables[rows], base
+
+    def _elsewhere(self, placed: set[tuple[int, bytes]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return known combinations with places of the front to try them at."""
+        archive, columns = self.form.archive, self.purpose.columns
+        phi = archive.phi[:, columns]
+        places = corners(phi, TARGETS)
+        chosen = spread_subset(phi, FAMILIES)
+        tried = [
+            (int(k), place)
+            for k in chosen
+            for place in places
+            if (int(archive.combination[k]), place.tobytes()) not in placed
+        ][: self._most_solved()]
+        placed.update((int(archive.combination[k]), place.tobytes()) for k, place in tried)
+        rows = np.array([k for k, _ in tried], dtype=np.int64)
+        bases = np.array([place for _, place in tried]).reshape(len(tried), len(columns))
+        return archive.combination[rows], archive.variables[rows], bases
+
+    def _ends(self, placed: set[tuple[int, bytes]]) -> int:
+        """Try what is one part away from the design that is best in an objective, for that objective alone."""
+        archive, found = self.form.archive, 0
+        for k in self.purpose.columns:
+            parent = archive[int(np.argmin(archive.phi[:, k]))]
+            key = (parent.combination, bytes([k]))
+            if key not in placed:
+                placed.add(key)
+                combinations, start, base = self._exchanged([parent])
+                own = np.append(combinations, parent.combination)
+                nearly = np.full((len(own), len(self.form.goals)), 0.0)
+                nearly[:, self.purpose.columns] = TIE_WEIGHT
+                nearly[:, k] = 1.0
+                tasks = replace(self._upwards(np.full((len(own), base.shape[1]), np.nan)), weights=nearly, t_weight=0.0)
+                found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
+        return found
+
+    def _reach(self, combinations: np.ndarray, start: np.ndarray, base: np.ndarray) -> int:
+        """Solve from each base straight up, or for the one objective; return how many designs are new."""
+        if not len(combinations):
+            return 0
+        return self._solved(self._upwards(base), combinations, start)
+
+    def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
+        """Solve many problems over the whole range of the variables; return how many designs are new."""
+        form, columns = self.form, self.purpose.columns
+        found = form.solve_many(tasks, combinations, start)
+        if not form.gridded.any():
+            return self.offer(found.variables, combinations)
+        phi = found.phi[:, : form.traded] if max(columns) < form.traded else found.phi
+        good = np.flatnonzero((found.violation <= MISSED) & np.all(np.isfinite(phi), axis=1))
+        space, along = self.purpose.room(phi[good]), phi[good][:, columns[0]]
+        good = good[space > 0][spread_choice(along[space > 0], space[space > 0], ROUNDED_OFF)]
+        return self._round(form.leaves(combinations[good]), found.variables[good]) if len(good) else 0
+
+    def _upwards(self, base: np.ndarray) -> Tasks:
+        """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
+        form, columns = self.form, self.purpose.columns
+        count, goals = len(base), len(form.goals)
+        slopes, weights = np.zeros((count, goals)), np.zeros((count, goals))
+        caps = np.tile(self.purpose.plain, (count, 1))
+        if len(columns) == 1:
+            weights[:, columns] = 1.0
+        else:
+            slope = self.purpose.slack / self.purpose.slack.max()
+            known = np.isfinite(base)
+            caps[:, columns] = np.where(known, base, np.inf)
+            slopes[:, columns] = np.where(known, slope, 0.0)
+            weights[:, columns] = np.where(known, TIE_WEIGHT / slope, 1.0)
+        return Tasks(weights, slopes, caps, form.goal_scales, 1.0 if len(columns) > 1 else 0.0)
+
+    def _solve(self, boxes: Boxes) -> int:
+        """Solve the continuous problems of a random combination of each box: straight up from its lower bounds."""
+        form, columns = self.form, self.purpose.columns
+        if not len(boxes):
+            return 0
+        if not form.cells.single(boxes.cell).all():
+            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+            boxes = self._tightened(boxes)
+            if not len(boxes):
+                return 0
+        tasks = self._upwards(form.phi_of(boxes.bounds)[:, columns])
+        combinations = form.combination(boxes)
+        settled = form.gridded & (boxes.low == boxes.high)
+        low, high = np.where(settled, boxes.low, form.lower), np.where(settled, boxes.high, form.upper)
+        answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
+        whole = np.all(settled == form.gridded, axis=1)
+        found = self.offer(answer.variables[whole], combinations[whole])
+        rest = np.flatnonzero(~whole)
+        return found + (self._round(boxes.take(rest), answer.variables[rest]) if len(rest) else 0)
+
+    def _round(self, boxes: Boxes, variables: np.ndarray) -> int:
+        """Try the makeable points around continuous optima."""
+        form = self.form
+        low, high, source = roundings(form, variables)
+        around = replace(
+            boxes.take(source), low=low, high=high, bounds=np.full((len(low), boxes.bounds.shape[1]), -np.inf)
+        )
+        return self._keep(self._tightened(around))
+
+
+def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
+    steps = np.array(np.meshgrid(*[np.arange(-REACH, REACH) if g else [0] for g in form.gridded], indexing="ij"))
+    steps = steps.reshape(form.n, -1).T
+    count = len(steps)
+    low = np.tile(form.propagation.low, (len(variables) * count, 1))
+    high = np.tile(form.propagation.high, (len(variables) * count, 1))
+    for k, grid in enumerate(form.grids):
+        if len(grid):
+            place = np.searchsorted(grid, variables[:, k] * (1 - SNAP))[:, None] + steps[None, :, k]
+            low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()
+    return low, high, np.repeat(np.arange(len(variables)), count)
+
+
+def corners(phi: np.ndarray, count: int) -> np.ndarray:
+    """Return ends from which to look for designs between known ones, at most so many.
+
+    Two objectives: the lower corners of the widest steps between neighbours. More: known designs, well spread.
+    """
+    if phi.shape[1] != 2 or len(phi) < 2:
+        spread: np.ndarray = phi[spread_subset(phi, count)]
+        return spread
+    steps = phi[np.argsort(phi[:, 0], kind="stable")]
+    low = np.stack([steps[:-1, 0], steps[1:, 1]], axis=1)
+    width = np.max((steps[1:, 0] - steps[:-1, 0], steps[:-1, 1] - steps[1:, 1]), axis=0)
+    chosen: np.ndarray = low[np.sort(np.argsort(-width, kind="stable")[:count])]
+    return chosen
+
+
+def spread_choice(along: np.ndarray, space: np.ndarray, count: int) -> np.ndarray:
+    """Return positions of boxes with much room, spread along an objective."""
+    if len(space) <= count:
+        return np.arange(len(space))
+    order = np.argsort(along, kind="stable")
+    group = np.arange(len(order)) * count // len(order)
+    by_space = np.lexsort((-space[order], group))
+    first = np.searchsorted(group[by_space], np.arange(count))
+    chosen: np.ndarray = order[by_space[first]]
+    return chosen

@@ -1,0 +1,62 @@
+"""The hooks of every registered family: frames that keep to the convention, drawings that can be read."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from cases import CASES
+
+import synth
+from reports.figure import figure_svg
+from synth.units import parse_unit, split_header
+
+
+def overrides(family, hook):
+    return getattr(type(synth.load(family)), hook) is not getattr(synth.DesignProblem, hook)
+
+
+def small_front(family):
+    case = next(iter(CASES[family].feasible.values()))
+    problem = synth.load(family, **case.options)
+    settings = {**case.settings, "points": 2, "gap": 0.05}
+    return problem, case.requirements, synth.synthesize(problem, case.requirements, **settings)
+
+
+@pytest.fixture(scope="module", params=[f for f in CASES if overrides(f, "simulate") or overrides(f, "curves")])
+def answered(request):
+    return request.param, *small_front(request.param)
+
+
+def assert_sound(frames):
+    for frame in frames.values():
+        assert len(frame) > 1
+        for column in frame.columns:
+            name, unit = split_header(column)
+            parse_unit(unit)
+            assert name
+        assert np.isfinite(frame.to_numpy(dtype=float)).any(axis=0).all()
+        ET.fromstring(figure_svg(frame))
+
+
+def test_designs_are_simulated_and_the_second_opinion_agrees(answered):
+    family, problem, requirements, front = answered
+    if not overrides(family, "simulate"):
+        return
+    for design in front.designs:
+        frames = synth.simulate(problem, requirements, design)
+        assert_sound(frames)
+        opinion = synth.second_opinion(design, frames).set_index("quantity")
+        for name in ("slip_time", "friction_work", "peak_slip_power"):
+            if name in design.values:
+                assert opinion.loc[name, "relative_difference"] == pytest.approx(0, abs=1e-6), name
+
+
+def test_curves_with_and_without_a_design(answered):
+    family, problem, requirements, front = answered
+    if not overrides(family, "curves"):
+        return
+    assert_sound(synth.curves(problem, requirements))
+    for design in front.designs:
+        assert_sound(synth.curves(problem, requirements, design))
