@@ -73,15 +73,19 @@ class WrapSpringClutch(DesignProblem):
             self._refuse_drag(d, duty, wants, friction)
 
         self._declare_fit(d, duty, wants, coils, interference)
-        low = blocks.fitted_moment(options, wire, coils, interference - duty.interference_tolerance)
-        high = blocks.fitted_moment(options, wire, coils, interference + duty.interference_tolerance)
+        tolerance = duty.interference_tolerance
+        loosest = interference - tolerance
+        low = blocks.fitted_moment(options, wire, coils, loosest)
+        high = formulas.tightened_moment(low, loosest, 2 * tolerance, coils.mean_radius, options.model)
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
         closing = formulas.closing_torque(effective, friction.exponent_low)
         blocks.declare_closing(d, duty, closing)
         self._declare_liftoff(d, duty, wants, wire, coils, low)
         load = self._declare_overload(d, duty, overload, friction, high)
         bending = formulas.bending_stress(high, wire.width, wire.thickness)
-        stress, pressure = blocks.declare_load(d, wire, coils, friction, bending, high, load)
+        stress, pressure = blocks.declare_load(
+            d, wire, coils, friction, bending, high, load, needs="interference_positive"
+        )
         self._declare_fatigue(d, duty, wants, wire, coils, bending, high)
         self._declare_hub(d, duty, wants, coils, load)
         size = blocks.declare_size(d, duty, wire, coils)

@@ -463,6 +463,7 @@ def declare_load(
     bending_stress: Any,
     moment: Any,
     load: Any,
+    needs: str | tuple[str, ...] = (),
 ) -> tuple[Any, Any]:
     """Declare moment, stress and pressure of the loaded wire with their limits.
 
@@ -482,6 +483,8 @@ def declare_load(
         Largest bending moment of the fitted wire [N m].
     load : symbol
         Torque that the wire sees [N m].
+    needs : str or tuple of str
+        Guards without which the moment does not exist.
 
     Returns
     -------
@@ -489,7 +492,7 @@ def declare_load(
         Stress of the wire and peak pressure [Pa].
     """
     d.derive(
-        "bending_moment", "N*m", moment, symbol="M_b",
+        "bending_moment", "N*m", moment, symbol="M_b", needs=needs,
         text="Bending moment of the fitted wire, at the tightest fit; below 0 for a clearance", source=f"{S2}, eq. (4)",
     )  # fmt: skip
     stress = d.derive(

@@ -356,6 +356,45 @@ def bending_moment(elastic_modulus: Quantity, width: Quantity, thickness: Quanti
     return elastic_modulus * second_moment(width, thickness) * curvature
 
 
+def tightened_moment(
+    moment: Quantity, interference: Quantity, growth: Quantity, mean_radius: Quantity, model: str = "refined"
+) -> Quantity:
+    """Bending moment after the interference has grown, M (dr + g)/dr r_free(dr)/r_free(dr + g).
+
+    It says what `bending_moment` says, but in terms of the smaller moment: a bound on that one is a bound on this one,
+    whatever wire and hub, and the search needs that.
+
+    Parameters
+    ----------
+    moment : scalar, array or symbol
+        M with the smaller interference [N m].
+    interference : scalar, array or symbol
+        The smaller interference dr [m]; above 0.
+    growth : scalar, array or symbol
+        g [m].
+    mean_radius : scalar, array or symbol
+        r_m of the fitted coils [m].
+    model : {"refined", "seed"}
+        Model.
+
+    Returns
+    -------
+    scalar, array or symbol
+        M with the larger interference [N m].
+
+    References
+    ----------
+    Quotient of S2 (Kozma et al.), eq. (4), at both interferences; the free radii only in model refined.
+
+    Examples
+    --------
+    >>> tightened_moment(1.15875, 0.00025, 0.00005, 0.02, "seed")
+    1.3905
+    """
+    grown = moment * (1 + growth / interference)
+    return grown if model == "seed" else grown * (1 + growth / free_radius(interference + growth, mean_radius))
+
+
 def bending_stress(moment: Quantity, width: Quantity, thickness: Quantity) -> Quantity:
     """Bending stress of the fitted wire, sigma_b = M a/(2 I) = 6 M/(b a**2).
 

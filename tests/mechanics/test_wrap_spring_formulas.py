@@ -265,6 +265,16 @@ def test_interference_is_the_inverse_of_the_curvature(model, interference, mean)
         assert curvature == pytest.approx(1 / (mean - interference) - 1 / mean, rel=1e-6)
 
 
+@given(st.floats(1e-5, 1e-3), st.floats(1e-6, 2e-4), st.floats(0.004, 0.1))
+@pytest.mark.parametrize("model", ws.MODELS)
+def test_tightened_moment_is_that_of_the_larger_interference(model, interference, growth, mean):
+    def moment(dr):
+        return ws.bending_moment(E, B, A, ws.curvature_change(dr, mean, ws.free_radius(dr, mean, model)))
+
+    tightened = ws.tightened_moment(moment(interference), interference, growth, mean, model)
+    assert tightened == pytest.approx(moment(interference + growth), rel=1e-9)
+
+
 @given(st.floats(1e-12, 1e-7))
 def test_small_friction_loses_no_digits(beta):
     assert float(ws.closing_torque(2.0, beta, 1.0)) - 1 == pytest.approx(3 * beta, rel=1e-6, abs=1e-15)
@@ -291,6 +301,14 @@ CASES = [
     (ws.curvature_change, {"interference": "m", "mean_radius": "m", "free_radius": "m"}, "1/m"),
     *((partial(ws.interference_for, model=m), {"curvature": "1/m", "mean_radius": "m"}, "m") for m in ws.MODELS),
     (ws.bending_moment, {"elastic_modulus": "Pa", **WIRE, "curvature": "1/m"}, "N m"),
+    *(
+        (
+            partial(ws.tightened_moment, model=m),
+            {"moment": "N m", "interference": "m", "growth": "m", "mean_radius": "m"},
+            "N m",
+        )
+        for m in ws.MODELS
+    ),
     (ws.bending_stress, {"moment": "N m", **WIRE}, "Pa"),
     (ws.contact_pressure, {"moment": "N m", "width": "m", "hub_radius": "m", "mean_radius": "m"}, "Pa"),
     (
@@ -349,7 +367,7 @@ CASES = [
     (ws.curved_bar_factor, {"spring_index": "-"}, "-"),
     (ws.keystone_growth, {"poisson_ratio": "-", **WIRE, "mean_radius": "m"}, "m"),
 ]
-RANGES = {"interference": (0.01, 0.4), "bore_diameter": (0.2, 0.4), "spring_index": (4, 12)}
+RANGES = {"growth": (0.01, 0.05), "interference": (0.01, 0.4), "bore_diameter": (0.2, 0.4), "spring_index": (4, 12)}
 NO_FORMULA_OF_ARGUMENTS = {"tip_coil_loss"}
 
 
