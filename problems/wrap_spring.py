@@ -73,10 +73,7 @@ class WrapSpringClutch(DesignProblem):
             self._refuse_drag(d, duty, wants, friction)
 
         self._declare_fit(d, duty, wants, coils, interference)
-        tolerance = duty.interference_tolerance
-        loosest = interference - tolerance
-        low = blocks.fitted_moment(options, wire, coils, loosest)
-        high = formulas.tightened_moment(low, loosest, 2 * tolerance, coils.mean_radius, options.model)
+        low, high = self._fitted_moments(options, duty, wire, coils, interference)
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
         closing = formulas.closing_torque(effective, friction.exponent_low)
         blocks.declare_closing(d, duty, closing)
@@ -162,6 +159,18 @@ class WrapSpringClutch(DesignProblem):
             "at least slip_safety required_torque (1 - exp(-beta_max))/(exp(beta_min) - 1): raise it or choose a pair "
             "with more friction",
         )
+
+    def _fitted_moments(
+        self, options: blocks.Options, duty: blocks.Duty, wire: blocks.Wire, coils: blocks.Coils, interference: Any
+    ) -> tuple[Any, Any]:
+        """Return the bending moments of the loosest and the tightest fit [N m]."""
+        tolerance, mean = duty.interference_tolerance, coils.mean_radius
+        loosest = interference - tolerance
+        # The tightest fit is bounded by interference_range; what is built on it is known to be positive.
+        small = formulas.free_radius(interference + tolerance, mean, options.model)
+        large = small if options.model == "seed" else small + 2 * tolerance
+        low = blocks.fitted_moment(wire, coils, loosest, large)
+        return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
 
     def _declare_fit(
         self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any

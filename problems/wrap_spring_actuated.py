@@ -58,8 +58,12 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
         tolerance = duty.interference_tolerance
         widest, narrowest = clearance + tolerance, clearance - tolerance
-        loose = blocks.fitted_moment(options, wire, coils, -widest)
-        tight = blocks.fitted_moment(options, wire, coils, -narrowest)
+
+        def moment(fit: Any) -> Any:
+            free = formulas.free_radius(-fit, coils.mean_radius, options.model)
+            return blocks.fitted_moment(wire, coils, -fit, free)
+
+        loose, tight = moment(widest), moment(narrowest)
         effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
         d.at_least(
             "grip", actuator, -effective, "N*m", guard=True,

@@ -428,10 +428,9 @@ def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> F
 # -- torque and stress -----------------------------------------------------------------------------
 
 
-def fitted_moment(options: Options, wire: Wire, coils: Coils, interference: Any) -> Any:
+def fitted_moment(wire: Wire, coils: Coils, interference: Any, free_radius: Any) -> Any:
     """Return the bending moment of the fitted wire for one end of the tolerance [N m]."""
-    free = formulas.free_radius(interference, coils.mean_radius, options.model)
-    curvature = formulas.curvature_change(interference, coils.mean_radius, free)
+    curvature = formulas.curvature_change(interference, coils.mean_radius, free_radius)
     return formulas.bending_moment(wire.modulus, wire.width, wire.thickness, curvature)
 
 

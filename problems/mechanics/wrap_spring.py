@@ -357,9 +357,9 @@ def bending_moment(elastic_modulus: Quantity, width: Quantity, thickness: Quanti
 
 
 def tightened_moment(
-    moment: Quantity, interference: Quantity, growth: Quantity, mean_radius: Quantity, model: str = "refined"
+    moment: Quantity, interference: Quantity, growth: Quantity, free_radius: Quantity, tightened_radius: Quantity
 ) -> Quantity:
-    """Bending moment after the interference has grown, M (dr + g)/dr r_free(dr)/r_free(dr + g).
+    """Bending moment after the interference has grown by g, M (dr + g)/dr r_free/r_free'.
 
     It says what `bending_moment` says, but in terms of the smaller moment: a bound on that one is a bound on this one,
     whatever wire and hub, and the search needs that.
@@ -372,10 +372,8 @@ def tightened_moment(
         The smaller interference dr [m]; above 0.
     growth : scalar, array or symbol
         g [m].
-    mean_radius : scalar, array or symbol
-        r_m of the fitted coils [m].
-    model : {"refined", "seed"}
-        Model.
+    free_radius, tightened_radius : scalar, array or symbol
+        Free radius before and after, as `free_radius` gives it [m].
 
     Returns
     -------
@@ -384,15 +382,14 @@ def tightened_moment(
 
     References
     ----------
-    Quotient of S2 (Kozma et al.), eq. (4), at both interferences; the free radii only in model refined.
+    Quotient of S2 (Kozma et al.), eq. (4), at both interferences.
 
     Examples
     --------
-    >>> tightened_moment(1.15875, 0.00025, 0.00005, 0.02, "seed")
+    >>> tightened_moment(1.15875, 0.00025, 0.00005, 0.02, 0.02)
     1.3905
     """
-    grown = moment * (1 + growth / interference)
-    return grown if model == "seed" else grown * (1 + growth / free_radius(interference + growth, mean_radius))
+    return moment * (1 + growth / interference) * (free_radius / tightened_radius)
 
 
 def bending_stress(moment: Quantity, width: Quantity, thickness: Quantity) -> Quantity:
