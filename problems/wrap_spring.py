@@ -99,7 +99,7 @@ class WrapSpringClutch(DesignProblem):
         """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
         if design is None:
             return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
-        return curves.interference_curves(curves.fitted(self.options, spec, design), spec, design.values)
+        return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
 
     def _declare_wants(self, d: Declaration) -> Wants:
         model_value = f"{TYPICAL} of the reference model"

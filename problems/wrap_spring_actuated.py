@@ -105,7 +105,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
         """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
-        return curves.clearance_curves(curves.fitted(self.options, spec, design), spec, design.values)
+        return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
 
     def _declare_wants(self, d: Declaration) -> Wants:
         return Wants(

@@ -14,6 +14,8 @@ from problems.mechanics import wrap_spring as formulas
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth import DesignProblem
+
 POINTS = 161
 MM, MEGA, RPM = 1e-3, 1e6, 2 * math.pi / 60
 # Largest over least friction of a pair: no scatter, and as much as greased and oiled pairs have.
@@ -72,27 +74,22 @@ class Fitted:
         return formulas.wire_stress(bending, tension, self.width, self.thickness)
 
 
-def option(options: Mapping[str, str], name: str, symbol: str, default: str) -> str:
-    """Return an option that may have been given by name or symbol."""
-    return options.get(name, options.get(symbol, default))
-
-
-def fitted(options: Mapping[str, str], spec: Mapping[str, Any], design: Any) -> Fitted:
+def fitted(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> Fitted:
     """Return the figures of a design that both fits need.
 
     Parameters
     ----------
-    options : mapping
-        Options of the problem as the user gave them.
+    problem : DesignProblem
+        The family with its options.
     spec : mapping
         Requirements in SI.
     design : Design
         Values and parts in SI.
     """
-    custom = option(options, "wire_choice", "wc", "catalogue") == "custom"
+    custom = problem.option("wire_choice") == "custom"
     wire, pair = {} if custom else design.parts["wire"], design.parts["friction_pair"]
     return Fitted(
-        model=option(options, "model", "mdl", "refined"),
+        model=problem.option("model"),
         thickness=design.values["wire_thickness"] if custom else wire["radial_thickness_a"],
         width=design.values["wire_width"] if custom else wire["axial_width_b"],
         modulus=spec["wire_modulus"] if custom else wire["E"],
