@@ -875,7 +875,14 @@ class Encloser(Ranges):
             yield node.args[0], self.divide((1.0, 1.0), y) if found[k].sign else None
         elif op in (ca.OP_EXP, ca.OP_LOG, ca.OP_LOG1P, ca.OP_EXPM1):
             inverse = {ca.OP_EXP: "log", ca.OP_LOG: "exp", ca.OP_LOG1P: "expm1", ca.OP_EXPM1: "log1p"}[op]
+            if op in (ca.OP_EXP, ca.OP_EXPM1):
+                y = self._blurred(y, -1.0 if op == ca.OP_EXPM1 else 0.0)
             yield node.args[0], self.rising(inverse, y) if op != ca.OP_EXP or found[k].sign > 0 else None
+
+    def _blurred(self, y: Pair, least: float) -> Pair:
+        """Return ends widened by their rounding, which a logarithm magnifies close to its border ``least``."""
+        low, high = (self.do("multiply", ROUNDING, self.do("absolute", end)) for end in y)
+        return self.do("fmax", least, self.do("subtract", y[0], low)), self.do("add", y[1], high)
 
     def _widened(self, result: Pair, *terms: Pair) -> Pair:
         """Return a sum widened by what rounding may have taken where its terms cancel."""

@@ -291,6 +291,21 @@ def _widened(result: Interval, *terms: Interval) -> Interval:
     return result[0] - blur, result[1] + blur
 
 
+def _blurred(r: Interval) -> Interval:
+    """Widen by what the rounding of a result may have cost, where an inverse magnifies it (exp(a) - 1 close to -1)."""
+    return r[0] - CANCELLATION * np.abs(r[0]), r[1] + CANCELLATION * np.abs(r[1])
+
+
+def _back_exp(r: Interval, a: Interval) -> tuple[Interval]:
+    low, high = _blurred(r)
+    return ((np.log(np.maximum(low, 0.0)), np.log(np.maximum(high, 0.0))),)
+
+
+def _back_expm1(r: Interval, a: Interval) -> tuple[Interval]:
+    low, high = _blurred(r)
+    return ((np.log1p(np.maximum(low, -1.0)), np.log1p(np.maximum(high, -1.0))),)
+
+
 def _back_sq(r: Interval, a: Interval) -> tuple[Interval]:
     root = np.sqrt(np.maximum(r[1], 0.0)), np.sqrt(np.maximum(r[0], 0.0))
     low = np.where(a[0] >= 0, root[1], -root[0])
@@ -328,10 +343,10 @@ BACKWARD: dict[int, Callable[..., tuple[Interval | None, ...]]] = {
     ca.OP_TWICE: lambda r, a: ((0.5 * r[0], 0.5 * r[1]),),
     ca.OP_SQ: _back_sq,
     ca.OP_INV: lambda r, a: (_quotient((1.0, 1.0), r),),
-    ca.OP_EXP: lambda r, a: ((np.log(np.maximum(r[0], 0.0)), np.log(np.maximum(r[1], 0.0))),),
+    ca.OP_EXP: _back_exp,
     ca.OP_LOG: lambda r, a: ((np.exp(r[0]), np.exp(r[1])),),
     ca.OP_LOG1P: lambda r, a: ((np.expm1(r[0]), np.expm1(r[1])),),
-    ca.OP_EXPM1: lambda r, a: ((np.log1p(np.maximum(r[0], -1.0)), np.log1p(np.maximum(r[1], -1.0))),),
+    ca.OP_EXPM1: _back_expm1,
     ca.OP_SQRT: lambda r, a: ((np.where(r[0] > 0, r[0] * r[0], 0.0), r[1] * r[1]),),
     ca.OP_FABS: lambda r, a: ((np.where(a[0] >= 0, r[0], -r[1]), np.where(a[1] <= 0, -r[0], r[1])),),
     ca.OP_POW: _back_pow,

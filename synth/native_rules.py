@@ -78,6 +78,9 @@ RULE i_quotient(Interval a, Interval b) {{
     return where((b.low > 0.0) | (b.high < 0.0), i_mul(a, i_inv(b)), unknown());
 }}
 INLINE vd extent(Interval a) {{ return v_max(v_abs(a.low), v_abs(a.high)); }}
+INLINE Interval blurred(Interval r) {{
+    return both(r.low - {CANCELLATION!r} * v_abs(r.low), r.high + {CANCELLATION!r} * v_abs(r.high));
+}}
 INLINE Interval widened(Interval r, Interval a, Interval b) {{
     const vd size = extent(a) + extent(b);
     const vd blur = keep(is_finite(size), {CANCELLATION!r} * size);
@@ -201,10 +204,10 @@ BACKWARD: dict[int, tuple[str, ...]] = {
         "choose(a.high <= 0.0, -v_sqrt(v_max(r.low, all(0.0))), v_sqrt(v_max(r.high, all(0.0)))))",
     ),
     ca.OP_INV: ("i_quotient(both(all(1.0), all(1.0)), r)",),
-    ca.OP_EXP: ("both(v_log(v_max(r.low, all(0.0))), v_log(v_max(r.high, all(0.0))))",),
+    ca.OP_EXP: ("both(v_log(v_max(blurred(r).low, all(0.0))), v_log(v_max(blurred(r).high, all(0.0))))",),
     ca.OP_LOG: ("both(v_exp(r.low), v_exp(r.high))",),
     ca.OP_LOG1P: ("both(v_expm1(r.low), v_expm1(r.high))",),
-    ca.OP_EXPM1: ("both(v_log1p(v_max(r.low, all(-1.0))), v_log1p(v_max(r.high, all(-1.0))))",),
+    ca.OP_EXPM1: ("both(v_log1p(v_max(blurred(r).low, all(-1.0))), v_log1p(v_max(blurred(r).high, all(-1.0))))",),
     ca.OP_SQRT: ("both(keep(r.low > 0.0, r.low * r.low), r.high * r.high)",),
     ca.OP_FABS: ("both(choose(a.low >= 0.0, r.low, -r.high), choose(a.high <= 0.0, -r.low, r.high))",),
     ca.OP_FMAX: ("both(all(-INFINITY), r.high)", "both(all(-INFINITY), r.high)"),

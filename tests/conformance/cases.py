@@ -39,6 +39,7 @@ class Family:
     infeasible: Case
     culprits: frozenset[str]
     sound: Any
+    needed: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by "option=value": what it must be told
 
 
 def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
@@ -94,11 +95,35 @@ def sound_couplings(rng: np.random.Generator, instance: Instance, count: int) ->
     return np.stack([found[name] for name in names], axis=1)
 
 
+def sound_springs(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with hubs above the bore, wires to suit, and fits that survive the tolerance."""
+    ranges = {
+        "interference": (0.05e-3, 0.8e-3),
+        "clearance": (0.06e-3, 0.3e-3),
+        "actuator_torque": (0.5, 20.0),
+        "hub_diameter": (0.02, 0.05),
+        "wire_thickness": (1.5e-3, 3.5e-3),
+        "wire_width": (2.5e-3, 8e-3),
+    }
+    low, high = np.array([ranges[v.name] for v in instance.model.variables]).T
+    x: np.ndarray = low * (high / low) ** rng.random((count, len(low)))
+    return x
+
+
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 
 CAR = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
 CONE = {"load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2"}
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
+INDEXER = {"required_torque": "20 N*m", "bore_diameter": "12 mm"}
+WIRE = {
+    "wire_modulus": "206 GPa",
+    "wire_density": "7850 kg/m3",
+    "wire_bending_allow": "1000 N/mm2",
+    "wire_tensile_strength": "1430 N/mm2",
+    "wire_endurance_amplitude": "430 N/mm2",
+}
+HARDENED = ["hardened_steel_oil", "hardened_steel_greased", "hardened_steel_dry"]
 
 CASES: dict[str, Family] = {
     "disc_clutch": Family(
@@ -324,6 +349,108 @@ CASES: dict[str, Family] = {
         culprits=frozenset({"outer_diameter", "pin_shear", "hertz", "roller_gap", "run_in"}),
         sound=sound_couplings,
     ),
+    "wrap_spring": Family(
+        option_sets={
+            "default": {},
+            "seed": {"model": "seed"},
+            "torque_limited": {"overload": "torque_limited", "hub_ladder": "R40"},
+            "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+        },
+        requirements=INDEXER,
+        optional={
+            **WIRE,
+            "drag_torque_limit": "8 N*m",
+            "outer_diameter_limit": "90 mm",
+            "length_limit": "300 mm",
+            "belt_exponent_limit": "20",
+        },
+        needed={"wire_choice=custom": WIRE},
+        feasible={
+            "indexer": Case(
+                requirements={"required_torque": "50 N*m", "bore_diameter": "20 mm", "belt_exponent_limit": "6"},
+                settings={
+                    "parts": {"wire": ["rect 4x3", "rect 5x3", "square 4x4"], "friction_pair": HARDENED},
+                    "limits": {"coils_per_hub": "3 .. 8"},
+                },
+                tighten={
+                    "required_torque": "55 N*m",
+                    "hub_shear_limit": "60 N/mm2",
+                    "interference_tolerance": "0.06 mm",
+                },
+            ),
+            "freewheel": Case(
+                requirements={
+                    "required_torque": "30 N*m",
+                    "bore_diameter": "16 mm",
+                    "spring_speed": "1400 1/min",
+                    "overrun_speed": "300 1/min",
+                    "overrun_duty": 0.2,
+                    "peak_torque": "45 N*m",
+                },
+                options={"overload": "torque_limited", "hub_ladder": "R20"},
+                settings={
+                    "parts": {"wire": ["rect 3x2", "rect 4x2", "square 2.5x2.5"], "friction_pair": HARDENED},
+                    "limits": {"coils_per_hub": "4 .. 12"},
+                },
+                tighten={"overrun_speed": "500 1/min"},
+            ),
+        },
+        infeasible=Case(
+            requirements={"required_torque": "200 N*m", "bore_diameter": "20 mm", "outer_diameter_limit": "32 mm"},
+            settings={"parts": {"wire": ["rect 4x3", "square 4x4"], "friction_pair": ["hardened_steel_greased"]}},
+        ),
+        culprits=frozenset({"wire_stress", "contact_pressure", "fatigue", "hub_shear", "outer_diameter"}),
+        sound=sound_springs,
+    ),
+    "wrap_spring_actuated": Family(
+        option_sets={
+            "default": {},
+            "seed": {"model": "seed", "hub_ladder": "R40"},
+            "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+        },
+        requirements={**INDEXER, "relative_speed": "500 1/min"},
+        optional={
+            **WIRE,
+            "actuator_torque_limit": "30 N*m",
+            "wrap_angle_limit": "3 rad",
+            "outer_diameter_limit": "90 mm",
+            "length_limit": "300 mm",
+            "belt_exponent_limit": "20",
+        },
+        needed={"wire_choice=custom": WIRE},
+        feasible={
+            "indexer": Case(
+                requirements={
+                    "required_torque": "50 N*m",
+                    "bore_diameter": "20 mm",
+                    "relative_speed": "500 1/min",
+                    "spring_speed": "3000 1/min",
+                    "actuator_torque_limit": "15 N*m",
+                },
+                settings={
+                    "parts": {"wire": ["rect 4x3", "rect 5x3", "rect 4x2"], "friction_pair": HARDENED},
+                    "limits": {"coils_per_hub": "3 .. 8"},
+                },
+                tighten={
+                    "required_torque": "55 N*m",
+                    "clearance_min": "0.15 mm",
+                    "hub_wall_min": "5 mm",
+                    "actuator_torque_limit": "5 N*m",
+                },
+            ),
+        },
+        infeasible=Case(
+            requirements={
+                "required_torque": "200 N*m",
+                "bore_diameter": "20 mm",
+                "relative_speed": "500 1/min",
+                "outer_diameter_limit": "34 mm",
+            },
+            settings={"parts": {"wire": ["rect 4x3", "square 4x4"], "friction_pair": ["hardened_steel_greased"]}},
+        ),
+        culprits=frozenset({"wire_stress", "contact_pressure", "hub_bore", "outer_diameter"}),
+        sound=sound_springs,
+    ),
 }
 
 
@@ -331,6 +458,8 @@ def question(family: str, options: Mapping[str, str], optional: bool) -> Instanc
     """Return a question to the whole catalogue, with or without the optional requirements."""
     data = CASES[family]
     requirements = {**data.requirements, **(data.optional if optional else {})}
+    for option, value in options.items():
+        requirements |= data.needed.get(f"{option}={value}", {})
     return Instance(synth.load(family, **options), requirements, as_catalogs(None))
 
 

@@ -163,7 +163,8 @@ def test_claims_hold_in_every_family(traced, ranges):
     assert claims.check_curvature(first, second) > 20
     near = first**0.9 * second**0.1
     assert claims.check_curvature(first, near) > 20
-    assert claims.check_elasticities(first, np.exp(rng.uniform(-0.3, 0.3, POINTS)), low, high) > 1000
+    judged = claims.check_elasticities(first, np.exp(rng.uniform(-0.3, 0.3, POINTS)), low, high)
+    assert judged > 5 * len(found.nodes)
 
 
 def test_narrower_ranges_tell_no_less(traced):

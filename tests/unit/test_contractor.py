@@ -318,6 +318,19 @@ def test_a_pinned_variable_survives_a_subtraction_that_magnifies_rounding(value,
     assert np.all(result.low <= result.high)
 
 
+@pytest.mark.parametrize("value", [18.0, 25.0, 33.0])
+def test_a_point_survives_the_inverse_of_a_saturated_exponential(value):
+    # 1 - exp(-18) has eight digits of the exponent left: backward through it, rounding is magnified ten million times.
+    def expressions(x, y):
+        return [-np.expm1(-x / (1 + y)) * (2 + y), x - 5 * y]
+
+    low = [value, 0.1]
+    result = contract(expressions, [("at_least", 1, None, 0.0)], [(0, 1)], low, low, caps=[1e3], passes=6)
+    assert result.alive[0]
+    assert result.low[0] == pytest.approx(low, rel=1e-12)
+    assert result.high[0] == pytest.approx(low, rel=1e-12)
+
+
 # -- limits that are void in some rows ---------------------------------------------------------------
 
 LEVELS = pd.DataFrame({

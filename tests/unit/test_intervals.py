@@ -126,6 +126,23 @@ def test_backward_rules_cut_off_no_argument(op):
                 assert not np.any(wrong & exists)
 
 
+@pytest.mark.parametrize(
+    ("op", "formula", "points"),
+    [
+        (ca.OP_EXPM1, np.expm1, -np.linspace(5, 36, 200)),
+        (ca.OP_EXPM1, np.expm1, np.geomspace(1e-12, 5, 200)),
+        (ca.OP_EXP, np.exp, np.geomspace(1e-15, 1e-3, 200)),
+        (ca.OP_EXP, np.exp, -np.geomspace(1e-15, 50, 200)),
+    ],
+)
+def test_inverses_keep_arguments_that_rounding_has_nearly_lost(op, formula, points):
+    value = formula(points)
+    for rounded in (value, np.nextafter(value, -np.inf), np.nextafter(value, np.inf)):
+        with np.errstate(divide="ignore"):  # where nothing is left of the argument it may be anything
+            ((low, high),) = BACKWARD[op]((rounded, rounded), (points, points))
+        assert np.all((low <= points) & (points <= high))
+
+
 def test_limits_are_loosened_outward():
     assert loosened(np.array(10.0), 1e-9, +1) == pytest.approx(10.0 * (1 + SLACK), rel=1e-15)
     assert loosened(np.array(-10.0), 1e-9, +1) == pytest.approx(-10.0 * (1 - SLACK), rel=1e-15)
