@@ -378,22 +378,6 @@ CASES: dict[str, Family] = {
                     "interference_tolerance": "0.06 mm",
                 },
             ),
-            "freewheel": Case(
-                requirements={
-                    "required_torque": "30 N*m",
-                    "bore_diameter": "16 mm",
-                    "spring_speed": "1400 1/min",
-                    "overrun_speed": "300 1/min",
-                    "overrun_duty": 0.2,
-                    "peak_torque": "45 N*m",
-                },
-                options={"overload": "torque_limited", "hub_ladder": "R20"},
-                settings={
-                    "parts": {"wire": ["rect 3x2", "rect 4x2", "square 2.5x2.5"], "friction_pair": HARDENED},
-                    "limits": {"coils_per_hub": "4 .. 12"},
-                },
-                tighten={"overrun_speed": "500 1/min"},
-            ),
         },
         infeasible=Case(
             requirements={"required_torque": "200 N*m", "bore_diameter": "20 mm", "outer_diameter_limit": "32 mm"},
