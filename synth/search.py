@@ -35,6 +35,7 @@ FINE = 2.0  # every design is covered within so many times the mean distance of 
 ROUNDS = 4
 POLISHINGS = 3
 ROUNDED = 2e-9
+SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
 OUTER_TRIALS = 576
 
@@ -334,10 +335,17 @@ class _FrontSearch:
         """Return the design that is best in one objective, the others capped."""
         self.scalar_problems += 1
         form = self.form
-        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), 1e-6)
+        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), SMALLEST_SIZE)
         slack = float(self._slack(sizes)[k])
         before = len(form.archive)
         found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
+        while self.m == 1 and found is not None and outcome.closed and not form.log_goals[k]:
+            # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
+            finer = float(self._slack(np.maximum(np.abs(found.phi), SMALLEST_SIZE))[k])
+            if finer >= slack:
+                break
+            slack = finer
+            found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, found, effort)
         if not outcome.closed and effort == EFFORT:
             purpose = Cover([k], np.array([slack]), plain, Archive([k], form.n, len(form.goals)))
             if found is not None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+import pandas as pd
 import pytest
 from strut import NEEDED, RODS, Strut
 
+import synth
 from synth.clock import Clock
 from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
@@ -107,3 +109,25 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     boxes = form.root()
     seeker(form).look(boxes)
     assert form.propagation._lessons.sum() > 0
+
+
+class Clearance(synth.DesignProblem):
+    """The smallest clearance of a pair: no bound knows it to be positive, and the best is far below the usual."""
+
+    name, title = "clearance", "Clearance"
+
+    def declare(self, d):
+        hole, pin = d.part("hole", "rows"), d.part("pin", "rows")
+        d.at_least("fits", hole.size, pin.size, "-")
+        d.derive("clearance", "-", hole.size - 1.01 * pin.size + 0.0101)
+        d.objective("clearance")
+
+
+def test_the_gap_of_one_objective_is_a_share_of_its_best_value():
+    size = np.random.default_rng(2).random(80)
+    rows = pd.DataFrame({"designation": [f"r{k}" for k in range(80)], "size [-]": size})
+    front = synth.synthesize(Clearance(), {}, catalogs={"rows": rows}, gap=0.1)
+    pairs = size[:, None] - 1.01 * size[None, :] + 0.0101
+    least = pairs[size[:, None] >= size[None, :]].min()
+    assert front.certificate.kind == "global"
+    assert 0 < least <= front.designs[0].values["clearance"] <= least / 0.9
