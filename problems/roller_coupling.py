@@ -622,14 +622,16 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
 
     # -- curves and motion -------------------------------------------------------------------------
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame] | None:
-        """Return the pin force over the arm radius (with a design), and the course of angled shafts."""
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the force on a pin over the arm radius, of the torque alone or of a design, and of angled shafts."""
         found: dict[str, pd.DataFrame] = {}
         if design is not None:
             found["pin_force"] = _pin_force_curve(spec, design)
+        else:
+            found["torque_force"] = _torque_force_curve(spec)
         if spec["shaft_angle"] > 0:
             found["angled_shafts"] = _angled_shafts_curve(spec)
-        return found or None
+        return found
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return positions of the float, roller gaps and forces over one turn, from exact kinematics."""
@@ -706,6 +708,21 @@ def _pin_force_curve(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
         "panels": [{"label": "force [N]", "columns": list(frame.columns[1:])}],
         "marks": marks,
         "source": f"{S3}, eq. (15), with the float: {EXT}",
+    }
+    return frame
+
+
+def _torque_force_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Return what the torque alone puts on a pin over the arm radius; float and rollers add to it."""
+    import pandas as pd
+
+    radius = np.geomspace(ARM_RADIUS_MIN / 1000, ARM_RADIUS_MAX / 1000, 241)
+    tangential = formulas.tangential_force(spec["required_torque"], radius, radius)
+    frame = pd.DataFrame({"arm radius [mm]": 1000 * radius, "from the torque [N]": tangential})
+    frame.attrs = {
+        "title": f"Pin force of {spec['required_torque']:.4g} N*m over the arm radius",
+        "panels": [{"label": "force [N]", "columns": ["from the torque [N]"], "log": True}],
+        "source": f"{S3}, eq. (15)",
     }
     return frame
 

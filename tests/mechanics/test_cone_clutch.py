@@ -272,7 +272,7 @@ def spec_of(options=None, requirements=None):
 def test_curves_without_a_design_cross_zero_where_the_cones_lock():
     problem, spec = spec_of()
     curves = problem.curves(spec)
-    assert set(curves) == {"force_ratio_over_angle"}
+    assert set(curves) == {"force_ratio_over_angle", "startup_over_torque"}
     frame = curves["force_ratio_over_angle"]
     angle = frame["half angle [deg]"]
     for mark, mu in zip(frame.attrs["marks"], (0.1, 0.2, 0.3, 0.4, 0.5), strict=True):

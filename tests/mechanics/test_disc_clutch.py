@@ -264,7 +264,7 @@ def spec_of(options=None, requirements=None):
 def test_curves_of_a_requirement_are_the_sizing():
     problem, spec = spec_of(requirements={"outer_diameter_limit": "300 mm"})
     curves = problem.curves(spec)
-    assert set(curves) == {"diameter_over_lining"}
+    assert set(curves) == {"diameter_over_lining", "startup_over_torque"}
     frame = curves["diameter_over_lining"]
     row = frame.iloc[40]
     grip = row["friction times allowed pressure [N/mm2]"] * 1e6
@@ -282,7 +282,9 @@ def test_curves_of_a_design_meet_it():
     problem, spec = spec_of(requirements=OPTIONAL)
     found = design(requirements=OPTIONAL)
     curves = problem.curves(spec, found)
-    assert set(curves) == {"diameter_over_lining", "pressure_over_radius", "torque_over_force"}
+    assert set(curves) == {
+        "diameter_over_lining", "startup_over_torque", "pressure_over_radius", "torque_over_force",
+    }  # fmt: skip
     pressure = curves["pressure_over_radius"]
     radius, worn = pressure["radius [mm]"] / 1e3, pressure["worn-in lining [N/mm2]"] * 1e6
     carried = np.trapezoid(worn * 2 * np.pi * radius, radius)

@@ -425,5 +425,8 @@ def test_curves_show_the_least_pin_force():
     assert marks["design"] == pytest.approx(50)
     lowest_row = frame["resultant [N]"].idxmin()
     assert frame["arm radius [mm]"][lowest_row] == pytest.approx(marks.get("least pin force", 150), rel=0.01)
-    assert family().curves(spec) is None
-    assert set(family().curves(spec_of(requirements=ANGLED))) == {"angled_shafts"}
+    alone = family().curves(spec)["torque_force"]
+    assert alone["from the torque [N]"].to_numpy() == pytest.approx(
+        spec["required_torque"] / (2 * alone["arm radius [mm]"].to_numpy() / 1000)
+    )
+    assert set(family().curves(spec_of(requirements=ANGLED))) == {"torque_force", "angled_shafts"}
