@@ -69,6 +69,7 @@ class ConeClutch(DesignProblem):
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
     simulation_settings = startup_hook.SETTINGS
+    understands = (*blocks.COMMON, "steel_specific_heat", "temperature_rise_limit")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -333,8 +334,7 @@ class ConeClutch(DesignProblem):
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the conical shell over repeated engagements."""
-        capacity = SHELL_SHARE * design.values["friction_work"] / design.values["temperature_rise"]
-        return startup_hook.startup_frames(self, spec, design, capacity)
+        return startup_hook.startup_frames(self, spec, design, startup_hook.heated_capacity(design, SHELL_SHARE))
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return axial forces over the half angle, for some friction values and of a design, and the start-up.

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from problems import blocks, startup_hook
+from problems import blocks, disc_curves, startup_hook
 from problems.mechanics import disc
 from problems.mechanics import ring as ring_formulas
 from synth import DesignProblem
@@ -15,8 +13,6 @@ from synth.declaration import Declaration
 
 if TYPE_CHECKING:
     import pandas as pd
-
-LININGS_SHOWN = (0.02, 0.4)  # friction times allowed pressure [N/mm2], about from wet to ceramic linings
 
 
 class DiscClutch(DesignProblem):
@@ -33,6 +29,7 @@ class DiscClutch(DesignProblem):
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
     simulation_settings = startup_hook.SETTINGS
+    understands = (*blocks.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -72,8 +69,7 @@ class DiscClutch(DesignProblem):
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""
-        # The hottest plate takes its share of the work at the rise of one engagement.
-        hottest = disc.HOTTEST_PLATE_SHARE * design.values["friction_work"] / design.values["temperature_rise"]
+        hottest = startup_hook.heated_capacity(design, disc.HOTTEST_PLATE_SHARE)
         return startup_hook.startup_frames(self, spec, design, hottest * design.values["discs"])
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
@@ -93,89 +89,10 @@ class DiscClutch(DesignProblem):
             ``torque_over_force``.
         """
         curves = {
-            "diameter_over_lining": self._diameter_over_lining(spec),
+            "diameter_over_lining": disc_curves.diameter_over_lining(self, spec),
             "startup_over_torque": startup_hook.startup_over_torque(self, spec, design),
         }
         if design is not None:
-            curves["pressure_over_radius"] = self._pressure_over_radius(design)
-            curves["torque_over_force"] = self._torque_over_force(spec, design)
+            curves["pressure_over_radius"] = disc_curves.pressure_over_radius(self, design)
+            curves["torque_over_force"] = disc_curves.torque_over_force(self, spec, design)
         return curves
-
-    def _diameter_over_lining(self, spec: Mapping[str, Any]) -> pd.DataFrame:
-        import pandas as pd
-
-        grip = np.geomspace(*LININGS_SHOWN, 121) * 1e6
-        required = blocks.sizing_torque_of(spec)
-        columns = {"friction times allowed pressure [N/mm2]": grip / 1e6}
-        lines: list[dict[str, Any]] = []
-        for discs, words in ((1, "one disc"), (2, "two discs")):
-            for name, short in (("ring_ratio_min", "narrow"), ("ring_ratio_max", "wide")):
-                ratio = spec[name]
-                mean = ring_formulas.sizing_mean_diameter(required, disc.surface_count(discs), 1.0, grip, ratio)
-                columns[f"{words}, {short} ring [mm]"] = ring_formulas.outer_diameter(mean, ratio) * 1e3
-        names = [name for name in columns if name.endswith("[mm]")]
-        if spec["outer_diameter_limit"] is not None:
-            room = (spec["outer_diameter_limit"] - 2 * spec["cover_gap"]) * 1e3
-            lines.append({"panel": 0, "y": room, "label": "outer_diameter_limit less cover_gap"})
-        frame = pd.DataFrame(columns)
-        frame.attrs = {
-            "title": f"Disc clutch: outer diameter of the friction ring for {required:.4g} N*m",
-            "panels": [{"label": "ring outer diameter [mm]", "columns": names}],
-            "lines": lines,
-            "source": "S1 (lecture on friction clutches), sizing for pressure",
-        }
-        return frame
-
-    def _pressure_over_radius(self, design: Any) -> pd.DataFrame:
-        import pandas as pd
-
-        value = design.values
-        mean, ratio = value["mean_diameter"], value["ring_ratio"]
-        radius = np.linspace(value["ring_inner_diameter"], value["ring_outer_diameter"], 101) / 2
-        worn = disc.worn_pressure(value["actuation_force"], mean, ratio, radius)
-        frame = pd.DataFrame({
-            "radius [mm]": radius * 1e3,
-            "new lining [N/mm2]": np.full_like(radius, value["surface_pressure"]) / 1e6,
-            "worn-in lining [N/mm2]": worn / 1e6,
-        })  # fmt: skip
-        frame.attrs = {
-            "title": "Disc clutch: pressure on the lining",
-            "panels": [{"label": "pressure [N/mm2]", "columns": list(frame.columns[1:])}],
-            "marks": [
-                {"x": value["friction_radius"] * 1e3, "label": "friction radius, new"},
-                {"x": mean / 2 * 1e3, "label": "friction radius, worn in"},
-            ],
-            "lines": [{"panel": 0, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"}],
-            "source": "uniform pressure; Shigley, Mechanical Engineering Design, uniform wear",
-        }
-        return frame
-
-    def _torque_over_force(self, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-        import pandas as pd
-
-        value = design.values
-        share = np.linspace(0.0, 1.4, 141)
-        frame = pd.DataFrame({
-            "axial force [N]": share * value["actuation_force"],
-            "new lining [N*m]": share * value["torque"],
-            "worn-in lining [N*m]": share * value["worn_torque"],
-            "pressure, new lining [N/mm2]": share * value["surface_pressure"] / 1e6,
-        })  # fmt: skip
-        lines: list[dict[str, Any]] = [
-            {"panel": 0, "y": value["required_torque"], "label": "sizing torque"},
-            {"panel": 0, "y": spec["load_torque"], "label": "load torque"},
-            {"panel": 1, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"},
-        ]
-        given = [name for name in ("startup_torque", "overload_torque") if spec[name] is not None]
-        lines += [{"panel": 0, "y": spec[name], "label": name} for name in given]
-        frame.attrs = {
-            "title": "Disc clutch: torque over the force on the pressure plate",
-            "panels": [
-                {"label": "torque [N*m]", "columns": ["new lining [N*m]", "worn-in lining [N*m]"]},
-                {"label": "pressure [N/mm2]", "columns": ["pressure, new lining [N/mm2]"]},
-            ],
-            "marks": [{"x": value["actuation_force"], "label": "F0"}],
-            "lines": lines,
-            "source": "S1 (lecture on friction clutches); Shigley, Mechanical Engineering Design, uniform wear",
-        }
-        return frame

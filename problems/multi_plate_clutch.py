@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from problems import blocks, pack_curves, startup_hook
 from problems.mechanics import plates
 from synth import DesignProblem
@@ -30,6 +28,14 @@ class MultiPlateClutch(DesignProblem):
         "Neale, Tribology Handbook, Tables 7.4 and 7.5",
     )
     simulation_settings = startup_hook.SETTINGS
+    understands = (
+        *blocks.COMMON,
+        "ambient_temperature",
+        "heat_transfer",
+        "steel_specific_heat",
+        "plate_gap",
+        "drag_torque_limit",
+    )
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -44,7 +50,7 @@ class MultiPlateClutch(DesignProblem):
         pack = blocks.declare_pack(d, options, wants, ring)
 
         required = blocks.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        self._refuse_impossible(d, duty, options, wants, ring, pack, required)
+        blocks.refuse_impossible_pack(d, duty, options, wants, ring, pack, required)
         torque = blocks.declare_pack_torque(d, options, wants, ring, pair, pack, force)
         torques = blocks.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=("guide_jams",))
         start = blocks.declare_startup(d, duty, torques, ramp_time)
@@ -85,47 +91,6 @@ class MultiPlateClutch(DesignProblem):
             "actuation_force", "N", 50, 200000, symbol="F0",
             text="Axial force of the actuator on the first plate", source="S0 (Szoke 1966), F0",
         )  # fmt: skip
-
-    def _refuse_impossible(
-        self,
-        d: Declaration,
-        duty: blocks.Duty,
-        options: blocks.PackOptions,
-        wants: blocks.PackRequirements,
-        ring: blocks.Ring,
-        pack: blocks.Pack,
-        required: Any,
-    ) -> None:
-        """Refuse requirements that no design can meet, whatever the unknowns."""
-        if wants.hub_bore_diameter is not None and duty.outer_diameter_limit is not None:
-            least_inner = wants.hub_bore_diameter + 2 * wants.lug_clearance
-            least_outer = least_inner * (1 + ring.ratio_min) / (1 - ring.ratio_min)
-            d.refuse(
-                "no_room_for_ring",
-                least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
-                "room for a friction ring of at least ring_ratio_min between hub_bore_diameter and "
-                "outer_diameter_limit, besides lug_clearance and drum_wall",
-            )
-        # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
-        saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
-        if duty.actuation_force_limit is not None and saturates:
-            outer_spline = blocks.RING_OUTER_DIAMETER_MAX / 2000 + wants.lug_clearance
-            if duty.outer_diameter_limit is not None:
-                outer_spline = np.minimum(outer_spline, duty.outer_diameter_limit / 2 - wants.drum_wall)
-            outer_radius = outer_spline - wants.lug_clearance
-            inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - wants.lug_clearance
-            net_force = duty.actuation_force_limit * (1 - pack.aid.force_fraction)
-            d.refuse(
-                "torque_above_guide_limit",
-                np.logical_and(
-                    inner_spline > 0,
-                    required * wants.guide_friction * (inner_spline + outer_spline)
-                    > net_force * inner_spline * outer_spline,
-                ),
-                "a sizing torque that the friction in the guides lets pass at actuation_force_limit with the largest "
-                "splines that fit; more plates do not help: raise actuation_force_limit or outer_diameter_limit, or "
-                "lower guide_friction",
-            )
 
     def _declare_objectives(self, d: Declaration) -> None:
         d.objective("mass")

@@ -126,6 +126,16 @@ class RollerCoupling(DesignProblem):
         "B. J. Hamrock, D. Brewe, Journal of Lubrication Technology 105 (1983) 171-177",
         "ISO 76, static load ratings of rolling bearings",
     )
+    understands = (
+        "required_torque",
+        "driver_speed",
+        "offset",
+        "shaft_angle",
+        "outer_diameter_limit",
+        "mass_limit",
+        "vibration_limit",
+        "steel_density",
+    )
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -38,8 +38,17 @@ SETTINGS: Mapping[str, Setting] = {
 WORST = "worst_case"
 
 
+def heated_capacity(design: Any, share: float) -> float:
+    """Return the heat capacity [J/K] of the body that takes ``share`` of the friction work at the rise of one start."""
+    return float(share * design.values["friction_work"] / design.values["temperature_rise"])
+
+
 def startup_frames(
-    problem: DesignProblem, spec: Mapping[str, Any], design: Any, heat_capacity: float | None = None
+    problem: DesignProblem,
+    spec: Mapping[str, Any],
+    design: Any,
+    heat_capacity: float | None = None,
+    cooled_area: float | None = None,
 ) -> dict[str, pd.DataFrame]:
     """Simulate the start-up of a friction clutch of any family.
 
@@ -53,6 +62,8 @@ def startup_frames(
         With ramp_torque, ramp_time, jerk, outer_diameter, length and slot friction_pair.
     heat_capacity : float, optional
         Of the body that the friction work heats [J/K]; with it the temperature over repeated engagements is added.
+    cooled_area : float, optional
+        Surface that gives off that heat [m2]; by default that of the whole clutch.
 
     Returns
     -------
@@ -85,7 +96,9 @@ def startup_frames(
             del frames["startup_high_friction"].attrs["quantities"][name]
     fits = run.outcome == "locked" and run.slip_time < heat.cycle_time(spec["engagements_per_hour"])
     if heat_capacity is not None and fits:
-        frames["temperature"] = _temperature(problem, spec, design, run, heat_capacity)
+        if cooled_area is None:
+            cooled_area = plates.cylinder_surface(design.values["outer_diameter"], design.values["length"])
+        frames["temperature"] = _temperature(problem, spec, design, run, (heat_capacity, cooled_area))
     return frames
 
 
@@ -183,12 +196,12 @@ def _frame(problem: DesignProblem, spec: Mapping[str, Any], run: StartupRun, mor
 
 
 def _temperature(
-    problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun, heat_capacity: float
+    problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun, body: tuple[float, float]
 ) -> pd.DataFrame:
     from problems.mechanics.startup_simulation import simulate_switching
 
-    cooled = plates.cylinder_surface(design.values["outer_diameter"], design.values["length"])
-    switching = simulate_switching(run, spec["engagements_per_hour"], heat_capacity, spec["heat_transfer"], cooled)
+    capacity, surface = body
+    switching = simulate_switching(run, spec["engagements_per_hour"], capacity, spec["heat_transfer"], surface)
     highest = design.parts["friction_pair"].get("temp_max")
     frame = switching.frame(None if highest is None else highest - spec["ambient_temperature"])
     frame.attrs["title"] = f"{problem.title}, r{frame.attrs['title'][1:]}"

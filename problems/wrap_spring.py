@@ -46,6 +46,7 @@ class WrapSpringClutch(DesignProblem):
     name = "wrap_spring"
     title = "Wrap spring clutch, interference fit"
     sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "drag_torque_limit")
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

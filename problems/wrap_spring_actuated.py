@@ -38,6 +38,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     name = "wrap_spring_actuated"
     title = "Wrap spring clutch, clearance fit"
     sources = blocks.SOURCES
+    understands = blocks.COMMON
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""

@@ -23,6 +23,22 @@ SOURCES = (
     "A. M. Wahl, Mechanical Springs",
 )
 
+# What a sheet for several families may state.
+COMMON = (
+    "required_torque",
+    "slip_safety",
+    "peak_torque",
+    "spring_speed",
+    "bore_diameter",
+    "outer_diameter_limit",
+    "length_limit",
+    "gap_coils",
+    "coil_gap",
+    "spring_index_min",
+    "hub_density",
+    "belt_exponent_limit",
+)
+
 WIRE_CHOICES = ("catalogue", "custom")
 HUB_LADDERS = ("hub_diameters", "R20", "R40")
 HUB_TABLE = "hub_diameters"

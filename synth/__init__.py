@@ -13,42 +13,77 @@ from synth.errors import InputError
 
 if TYPE_CHECKING:
     from synth.analysis import evaluate
+    from synth.comparison import Comparison, FamilyOutcome, compare
     from synth.description import describe
+    from synth.explanation import Explanation, Relaxation, explain
     from synth.hooks import curves, second_opinion, simulate
+    from synth.jobs.run import BatchResult, batch
+    from synth.near import NearEquals, near_equals
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
     from synth.search import synthesize
+    from synth.study import Study
+    from synth.variants.run import SizeRange, size_range
+    from synth.what_if import whatif
 
 __all__ = [
+    "BatchResult",
+    "Comparison",
     "Design",
     "DesignProblem",
+    "Explanation",
+    "FamilyOutcome",
     "InputError",
+    "NearEquals",
     "ParetoFront",
+    "Relaxation",
+    "SizeRange",
+    "Study",
+    "batch",
+    "compare",
     "curves",
     "describe",
     "evaluate",
+    "explain",
     "families",
     "load",
     "load_front",
+    "near_equals",
     "second_opinion",
     "simulate",
+    "size_range",
     "synthesize",
+    "whatif",
 ]
 
 # CasADi and pandas are costly to import; the command line must answer --help without them.
 _HOME = {
+    "BatchResult": "synth.jobs.run",
+    "Comparison": "synth.comparison",
     "Design": "synth.results",
     "DesignProblem": "synth.problem",
+    "Explanation": "synth.explanation",
+    "FamilyOutcome": "synth.comparison",
+    "NearEquals": "synth.near",
     "ParetoFront": "synth.results",
+    "Relaxation": "synth.explanation",
+    "SizeRange": "synth.variants.run",
+    "Study": "synth.study",
+    "batch": "synth.jobs.run",
+    "compare": "synth.comparison",
     "curves": "synth.hooks",
     "describe": "synth.description",
     "evaluate": "synth.analysis",
+    "explain": "synth.explanation",
     "families": "synth.problem",
     "load": "synth.problem",
     "load_front": "synth.results",
+    "near_equals": "synth.near",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
+    "size_range": "synth.variants.run",
     "synthesize": "synth.search",
+    "whatif": "synth.what_if",
 }
 
 

@@ -271,6 +271,18 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
     return result
 
 
+def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
+    """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
+    result = dict(chosen)
+    for default in (True, False):
+        for objective in model.declaration.objectives.values():
+            if objective.default == default and objective.name not in result:
+                result[objective.name] = objective.sense
+    for variable in model.variables:
+        result.setdefault(variable.name, "min")
+    return result
+
+
 def _chosen_rows(instance: Instance, parts: Mapping[str, str]) -> dict[str, tuple[Any, int]]:
     model = instance.model
     slots = model.declaration.slots

@@ -81,6 +81,15 @@ class Solutions:
     goal_multipliers: np.ndarray
     converged: np.ndarray
 
+    def replaced(self, rows: np.ndarray, other: Solutions) -> Solutions:
+        """Return solutions of which some rows are those of another solve of the same problems."""
+        mixed = {}
+        for field in fields(self):
+            own = getattr(self, field.name).copy()
+            own[rows] = getattr(other, field.name)[rows]
+            mixed[field.name] = own
+        return Solutions(**mixed)
+
 
 class BatchNlp:
     """The solver of one program and set of rows; derivatives and code are made once.
@@ -92,11 +101,15 @@ class BatchNlp:
     rows : Rows
     native : bool, optional
         Whether to use compiled code; by default where a compiler is at hand.
+    edge : float
+        By which share the edge of max and min is rounded off; 0: not at all.
     """
 
-    def __init__(self, program: Program, n_variables: int, rows: Rows, native: bool | None = None) -> None:
+    def __init__(
+        self, program: Program, n_variables: int, rows: Rows, native: bool | None = None, edge: float = 0.0
+    ) -> None:
         self.rows = rows
-        self.functions = RowFunctions(program, n_variables, rows)
+        self.functions = RowFunctions(program, n_variables, rows, edge)
         self.log_variables = np.array(rows.log_variables, dtype=bool)
         self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
         self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)

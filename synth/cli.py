@@ -4,25 +4,41 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from synth import choice_commands
+from synth import study_commands as studies
 from synth.errors import InputError
+from synth.jobs import commands as batches
+from synth.terminal import (
+    BAD_INPUT,
+    DOES_NOT_HOLD,
+    INFEASIBLE,
+    INTERNAL,
+    STOPPED,
+    as_csv,
+    blamed_on,
+    check_output,
+    frame_files,
+    objectives,
+    pair,
+    report,
+    tell,
+    write_all,
+)
+from synth.variants import commands as size_ranges
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from synth.problem import DesignProblem
     from synth.results import Design, ParetoFront
     from synth.spec import Spec
     from synth.tables import Catalogs
 
-FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
-REPORTS = "clutchsynth.reports"
+EXPLAINED = ("parts", "limits", "fix", "grid", "seed", "time_limit")  # what counts when a question is explained
 
 app = typer.Typer(
     name="clutchsynth",
@@ -49,7 +65,7 @@ def main() -> None:
     try:
         app()
     except InputError as error:
-        _tell(" ".join(str(error).split()))
+        tell(" ".join(str(error).split()))
         sys.exit(BAD_INPUT)
     except BrokenPipeError:
         # Whoever read the output has gone (``| head``); there is nobody left to tell.
@@ -59,13 +75,9 @@ def main() -> None:
         if os.environ.get("CLUTCHSYNTH_DEBUG") == "1":
             raise
         first = next(iter(str(error).splitlines()), "")
-        _tell(f"internal error, {type(error).__name__}: {first}")
-        _tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
+        tell(f"internal error, {type(error).__name__}: {first}")
+        tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
         sys.exit(INTERNAL)
-
-
-def _tell(sentence: str) -> None:
-    print(f"clutchsynth: {sentence}", file=sys.stderr)
 
 
 # ---- commands -------------------------------------------------------------------------------------------------------
@@ -89,11 +101,16 @@ def _entry(
 
 
 @app.command()
-def families() -> None:
+def families(
+    common: Annotated[bool, typer.Option("--common", help="List the requirements that several understand.")] = False,
+) -> None:
     """List the design families."""
     from synth.problem import families as names
     from synth.problem import load
 
+    if common:
+        choice_commands.show_common()
+        return
     listed = names()
     width = max((len(name) for name in listed), default=0)
     for name in listed:
@@ -112,7 +129,7 @@ def describe(
     from synth.console import output, print_description
     from synth.description import describe as describe_problem
 
-    problem = _load(family, dict(_pair("--option", text) for text in option or []))
+    problem = _load(family, dict(pair("--option", text) for text in option or []))
     table = describe_problem(problem)
     if as_csv:
         table.to_csv(sys.stdout, index=False, lineterminator="\n")
@@ -148,15 +165,13 @@ def run(
 
     asked = read_spec(spec).merged(
         points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
-        objectives=_objectives(objective or []),
+        objectives=objectives(objective or []),
     )  # fmt: skip
-    if asked.values is not None:
-        raise InputError(
-            f"{asked.file}: values",
-            ", ".join(asked.values),
-            "a question without values; clutchsynth check reads a given design",
-        )
-    _check_output(folder)
+    _must_be_a_question(asked)
+    check_output(folder)
+    if asked.compares:
+        choice_commands.compare_families(asked, folder, every, quiet)
+        return
     front = _synthesize(asked, quiet)
     front.save(folder)
     explanation = _write_explanation(front, folder)
@@ -165,6 +180,42 @@ def run(
     if front.interrupted:
         raise typer.Exit(STOPPED)
     if not front.designs:
+        raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def explain(
+    spec: SpecFile,
+    folder: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder for explanation.csv and .json.", metavar="DIR")
+    ] = None,
+    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+) -> None:
+    """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
+    from synth.console import output, print_explanation, progress_display
+    from synth.explanation import explain as explain_question
+    from synth.instance import catalogs_for
+    from synth.spec import read_spec
+
+    asked = read_spec(spec).merged(time_limit=time_limit)
+    _must_be_a_question(asked)
+    if folder is not None:
+        check_output(folder)
+    with blamed_on(asked.file), progress_display(quiet) as progress:
+        problem = _load(asked.family, asked.options)
+        settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
+        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+        found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
+    if not quiet:
+        print_explanation(found, problem.title, output())
+    if folder is not None:
+        files = found.save(folder)
+        if not quiet:
+            print(f"written to {folder}: {', '.join(file.name for file in files)}")
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.feasible:
         raise typer.Exit(INFEASIBLE)
 
 
@@ -181,8 +232,8 @@ def check(
     asked = read_spec(design)
     _must_be_a_design(asked)
     if folder is not None:
-        _check_output(folder)
-    with _blamed_on(asked.file):
+        check_output(folder)
+    with blamed_on(asked.file):
         problem, catalogs, result = _given_design(asked)
         details = describe_problem(problem, catalogs).to_dict("records")
     print_check(result, details, output())
@@ -208,19 +259,19 @@ def simulate(
 
     asked = read_spec(design)
     _must_be_a_design(asked)
-    _check_output(folder)
-    pairs = [_pair("--set", text) for text in setting or []]
+    check_output(folder)
+    pairs = [pair("--set", text) for text in setting or []]
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise InputError("--set", name, "each setting once")
-    with _blamed_on(asked.file):
+    with blamed_on(asked.file):
         problem, catalogs, result = _given_design(asked)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
-    files = _frame_files(frames)
+    files = frame_files(frames)
     if len(opinion):
-        files["second_opinion.csv"] = _as_csv(opinion)
-    _write_all(folder, files)
+        files["second_opinion.csv"] = as_csv(opinion)
+    write_all(folder, files)
     print_simulation(result, frames, opinion, output())
     print(f"written to {folder}: {', '.join(sorted(files))}")
 
@@ -241,8 +292,8 @@ def curves(
     asked = read_spec(spec)
     if asked.family != family:
         raise InputError("FAMILY", family, f"{asked.family}, the family of {asked.file}")
-    _check_output(folder)
-    with _blamed_on(asked.file):
+    check_output(folder)
+    with blamed_on(asked.file):
         if asked.values is None:
             problem = _load(asked.family, asked.options)
             catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
@@ -251,8 +302,8 @@ def curves(
             _must_be_a_design(asked)
             problem, catalogs, result = _given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
-    files = _frame_files(frames)
-    _write_all(folder, files)
+    files = frame_files(frames)
+    write_all(folder, files)
     for frame in frames.values():
         print(frame.attrs["title"])
     print(f"written to {folder}: {', '.join(sorted(files))}")
@@ -269,13 +320,22 @@ def verify(
     from synth.console import output, print_verification
     from synth.results import load_front
     from synth.units import parse_quantity
+    from synth.verify_comparison import is_comparison, verify_comparison
 
-    front = load_front(folder)
     limit = {} if time_limit is None else {"time_limit": parse_quantity(time_limit, "s", "--time-limit")}
-    verification = front.verify(**limit)
+    if is_comparison(folder):
+        verification = verify_comparison(folder, **limit)
+    else:
+        verification = load_front(folder).verify(**limit)
     print_verification(verification, output())
     if not verification.holds:
         raise typer.Exit(DOES_NOT_HOLD)
+
+
+batches.register(app)
+size_ranges.register(app)
+choice_commands.register(app)
+studies.register(app)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------
@@ -287,29 +347,22 @@ def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
     return load(family, **options)
 
 
-def _pair(flag: str, text: str) -> tuple[str, str]:
-    name, sign, value = text.partition("=")
-    if not sign or not name.strip() or not value.strip():
-        raise InputError(flag, text, "name=value")
-    return name.strip(), value.strip()
-
-
-def _objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
-    if not texts:
-        return None
-    if not any("=" in text for text in texts):
-        return texts
-    pairs = [_pair("--objective", text) if "=" in text else (text, "") for text in texts]
-    unsaid = [name for name, sense in pairs if not sense]
-    if unsaid:
+def _must_be_a_question(asked: Spec) -> None:
+    """Refuse a spec with values."""
+    if asked.values is not None:
         raise InputError(
-            "--objective", unsaid[0], f"{unsaid[0]}=min or {unsaid[0]}=max: all objectives with a sense, or none"
+            f"{asked.file}: values",
+            ", ".join(asked.values),
+            "a question without values; clutchsynth check reads a given design",
         )
-    return dict(pairs)
 
 
 def _must_be_a_design(asked: Spec) -> None:
-    """Refuse a spec without values, or with something left to fix."""
+    """Refuse a spec of several families, without values, or with something left to fix."""
+    if asked.compares:
+        raise InputError(
+            f"{asked.file}: family", "several", "one family: a design is of one (clutchsynth run compares)"
+        )
     if asked.values is None:
         raise InputError(
             f"{asked.file}: values",
@@ -336,34 +389,6 @@ def _given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
     return problem, catalogs, design
 
 
-def _frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
-    """Return what frames are written as: file name -> text, a table and a drawing of each."""
-    draw = _report("figure")
-    files = {}
-    for key, frame in frames.items():
-        files[f"{key}.csv"] = _as_csv(frame)
-        if draw is not None:
-            files[f"{key}.svg"] = draw(frame)
-    return files
-
-
-def _as_csv(frame: pd.DataFrame) -> str:
-    text: str = frame.to_csv(index=False, lineterminator="\n", float_format="%.10g")
-    return text
-
-
-def _write_all(folder: Path, files: Mapping[str, str]) -> None:
-    """Write files that are all complete before the first one is touched."""
-    from synth.results import write_atomically
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in files.items():
-            write_atomically(folder / name, text)
-    except OSError as error:
-        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
-
-
 def _one_each(asked: Spec) -> dict[str, str]:
     """Return the designation per slot; a list of one counts as that one."""
     result = {}
@@ -377,34 +402,12 @@ def _one_each(asked: Spec) -> dict[str, str]:
     return result
 
 
-@contextmanager
-def _blamed_on(file: str) -> Iterator[None]:
-    """Put the name of the file in front of what is wrong in it."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{file}: {error.field}", error.value, error.expected) from error
-
-
-def _check_output(folder: Path) -> None:
-    """Refuse a folder that cannot be written before the search, not after it."""
-    if str(folder) in ("", "."):
-        raise InputError("--output", str(folder), "the name of a folder for the results, for example out/")
-    place = folder
-    while not place.exists() and place != place.parent:
-        place = place.parent
-    if not place.is_dir():
-        raise InputError("--output", str(folder), f"a folder; {place} is a file")
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise InputError("--output", str(folder), f"a folder that can be written; {place} is read-only for you")
-
-
 def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
     from synth.console import progress_display
     from synth.instance import catalogs_for
     from synth.search import synthesize
 
-    with _blamed_on(asked.file), progress_display(quiet) as progress:
+    with blamed_on(asked.file), progress_display(quiet) as progress:
         problem = _load(asked.family, asked.options)
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         try:
@@ -412,7 +415,7 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
                 problem, asked.requirements, catalogs=catalogs, progress=progress, **asked.search_settings()
             )
         except KeyboardInterrupt:
-            _tell("stopped before the search began; nothing is written")
+            tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None
 
 
@@ -435,7 +438,7 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
 
     console = output()
     if front.designs:
-        (_report("table") or _plain_table)(front, console, every)
+        (report("table") or _plain_table)(front, console, every)
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
@@ -445,17 +448,6 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     if designs:
         shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
     console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)
-
-
-def _report(name: str) -> Callable[..., Any] | None:
-    """Return a report by its registered name; None where it is not installed."""
-    from importlib.metadata import entry_points
-
-    for point in entry_points(group=REPORTS):
-        if point.name == name:
-            found: Callable[..., Any] = point.load()
-            return found
-    return None
 
 
 def _plain_table(front: ParetoFront, console: Any, every: bool) -> None:

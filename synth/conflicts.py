@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from synth.batch_nlp import Tasks
 from synth.feasibility import holds, residual
 from synth.formulation import Formulation
-from synth.nlp import Task
 from synth.units import format_quantity
 
-TRIES = 60
-STARTS = 200
+TRIES = 400
+ROUNDS = 4  # of exchanging one part of the nearest designs
+PARENTS = 3
 
 
 def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
@@ -23,63 +24,49 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
     """
     instance = form.instance
     total = instance.combinations
-    numbers = rng.choice(total, size=min(TRIES, total), replace=False) if total > TRIES else np.arange(total)
-    task = Task(
-        weights=np.zeros(len(form.goals)),
-        slopes=np.zeros(len(form.goals)),
-        caps=np.full(len(form.goals), np.inf),
-        goal_scales=form.goal_scales,
-        t_weight=1.0,
-        elastic=1.0,
-    )
-    best: tuple[float, int, np.ndarray] | None = None
-    queue = [int(c) for c in numbers]
-    tried: set[int] = set()
-    while queue:
-        combination = queue.pop(0)
-        if combination in tried:
-            continue
-        tried.add(combination)
-        start = form.good_start(form.whole(combination), rng, STARTS)
-        solution = form.solve(task, combination, start, form.lower, form.upper)
-        if solution is None:
-            continue
-        worst = _worst(form, solution.variables, combination)
-        if best is None or worst < best[0] - 1e-9:
-            best = (worst, combination, solution.variables)
-            if len(tried) < 4 * TRIES:
-                queue += [c for c in _neighbours(form, combination) if c not in tried]
-    if best is None:
+    numbers = rng.choice(total, size=TRIES, replace=False) if total > TRIES else np.arange(total)
+    tried = np.empty(0, dtype=np.int64)
+    found: list[tuple[float, int, np.ndarray]] = []
+    for _ in range(ROUNDS):
+        numbers = np.setdiff1d(numbers, tried)
+        if not len(numbers):
+            break
+        tried = np.concatenate([tried, numbers])
+        found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[:PARENTS]
+        near = [instance.neighbours(combination) for _, combination, _ in found]
+        numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
+        numbers = numbers if len(numbers) <= TRIES else rng.choice(numbers, size=TRIES, replace=False)
+    if not found:
         return {"message": "no design could be evaluated; check the requirements for values far from each other"}
-    return _told(form, best[1], best[2])
+    _, combination, variables = found[0]
+    return _told(form, combination, variables)
 
 
-def _neighbours(form: Formulation, combination: int) -> list[int]:
-    """Return combinations that differ in one part, count or choice by one step."""
-    radix = form.instance.radix
-    digits = [int(x[0]) for x in form.instance.digits(np.array([combination]))]
-    result = []
-    for k, size in enumerate(radix):
-        for step in (-1, 1):
-            if 0 <= digits[k] + step < size:
-                moved = [*digits[:k], digits[k] + step, *digits[k + 1 :]]
-                number = 0
-                for digit, base in zip(moved, radix, strict=True):
-                    number = number * base + digit
-                result.append(number)
-    return result
+def _least_missed(
+    form: Formulation, combinations: np.ndarray, rng: np.random.Generator
+) -> list[tuple[float, int, np.ndarray]]:
+    """Return how far each combination stays from feasible, where that could be found, with the design."""
+    count, goals = len(combinations), len(form.goals)
+    nothing = np.zeros((count, goals))
+    tasks = Tasks(nothing, nothing, np.full((count, goals), np.inf), form.goal_scales, elastic=1.0)
+    boxes = form.leaves(combinations)
+    start = form.inside(boxes, rng.random((count, form.n)))
+    points = form.solve_many(tasks, combinations, start).variables if form.n else start
+    misses = _misses(form, points, combinations)
+    return [(float(misses[k]), int(combinations[k]), points[k]) for k in np.flatnonzero(np.isfinite(misses))]
 
 
-def _worst(form: Formulation, variables: np.ndarray, combination: int) -> float:
-    result = form.evaluate(variables[None, :], np.array([combination]))
-    worst = 0.0
+def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
+    """Return the largest violation of each design; a guard that fails, or a limit that does not exist, counts as 10."""
+    result = form.evaluate(variables, combinations)
+    rows = []
     for limit in form.model.limits:
-        r = float(result.residuals[limit.name][0])
-        if not bool(result.holds[limit.name][0]):
-            worst = max(worst, 10.0 if limit.guard or np.isnan(r) else r)
+        missed = np.where(limit.guard | np.isnan(result.residuals[limit.name]), 10.0, result.residuals[limit.name])
+        rows.append(np.where(result.holds[limit.name], 0.0, missed))
     for extra in form.instance.extra:
-        r = float(residual(result.values[extra.quantity][0], extra.limit, extra.sense, 1e-9))
-        worst = max(worst, r if np.isfinite(r) else 10.0)
+        missed = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
+        rows.append(np.where(np.isnan(missed), 10.0, np.maximum(missed, 0.0)))
+    worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
     return worst
 
 

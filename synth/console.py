@@ -24,6 +24,7 @@ from synth.units import format_quantity, from_si, split_header
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.explanation import Explanation
     from synth.verify import Verification
 
 WIDTH = 100  # where the output goes to a file or a pipe
@@ -34,16 +35,17 @@ SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
 
 def output() -> Console:
     """Return the console on standard output; text is shown as it is, brackets mean nothing."""
-    return _console(sys.stdout)
+    return console_on(sys.stdout)
 
 
-def _console(stream: Any, width: int | None = None) -> Console:
+def console_on(stream: Any, width: int | None = None) -> Console:
+    """Return a console that shows text as it is; where no terminal is, lines end at a fixed width."""
     if width is None and not stream.isatty():
         width = WIDTH
     return Console(file=stream, width=width, markup=False, highlight=False, emoji=False)
 
 
-def _table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
+def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
     """Return a table with one rule under its headings; column ``wide`` takes what room there is, and wraps."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="")
     for k, heading in enumerate(headings):
@@ -52,6 +54,27 @@ def _table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -
             ratio=1 if k == wide else None,
         )  # fmt: skip
     return table
+
+
+# ---- explain --------------------------------------------------------------------------------------------------------
+
+
+def print_explanation(found: Explanation, title: str, console: Console) -> None:
+    """Print why nothing is feasible, and every way out with the smallest change first."""
+    console.print(f"{title}: {found.message}")
+    titles = {"requirement": "One requirement alone", "limit": "One limit alone", "joint": "All limits together",
+              "part": "Another part"}  # fmt: skip
+    for kind, heading in titles.items():
+        ways = [way for way in found.ways if way.kind == kind]
+        if not ways:
+            continue
+        console.print(f"\n{heading}")
+        for way in ways:
+            console.print(f"  {way.sentence}" + ("" if way.proven else " (less may do: not proven)"), soft_wrap=True)
+    if found.conflict and not found.minimal:
+        console.print("\nFewer limits may exclude each other as well: not proven to be minimal.")
+    for sentence in found.not_settled:
+        console.print(f"not settled: {sentence}")
 
 
 # ---- describe -------------------------------------------------------------------------------------------------------
@@ -81,11 +104,11 @@ def print_description(table: pd.DataFrame, console: Console) -> None:
             continue
         console.print(f"\n{title}")
         if kind in ("refusal", "advice"):
-            shown = _table("code", "meaning", wide=1)
+            shown = plain_table("code", "meaning", wide=1)
             for row in rows:
                 shown.add_row(row["name"], row["text"])
         else:
-            shown = _table("name", "unit", "value", "meaning", wide=3)
+            shown = plain_table("name", "unit", "value", "meaning", wide=3)
             for row in rows:
                 short = str(row["symbol"]).rsplit(".", 1)[-1]  # the slot stands in the name already
                 symbol = f" ({short})" if short not in ("", str(row["name"]).rsplit(".", 1)[-1]) else ""
@@ -147,7 +170,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
 
     console.print("\nRequirements")
-    table = _table("name", "symbol", "value", "", "meaning", right=(2,), wide=4)
+    table = plain_table("name", "symbol", "value", "", "meaning", right=(2,), wide=4)
     for name, si in frame.requirement_values.items():
         row = known[name]
         stated = "" if name in frame.requirements else "default"
@@ -155,13 +178,13 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console.print(table)
 
     console.print("\nParts")
-    table = _table("slot", "designation", "table", "source", wide=3)
+    table = plain_table("slot", "designation", "table", "source", wide=3)
     for slot, part in design.parts.items():
         table.add_row(slot, str(part), str(part["table"]), str(part.get("source") or ""))
     console.print(table)
 
     console.print("\nQuantities")
-    table = _table("name", "symbol", "value", "meaning", right=(2,), wide=3)
+    table = plain_table("name", "symbol", "value", "meaning", right=(2,), wide=3)
     for name, label in design.choices.items():
         table.add_row(name, known[name]["symbol"], label, known[name]["text"])
     for name, si in design.values.items():
@@ -170,7 +193,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console.print(table)
 
     console.print("\nLimits")
-    table = _table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4))
+    table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4))
     for name, state in _limit_states(design).items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
@@ -226,7 +249,7 @@ def print_simulation(
             console.print(f"  {', '.join(events)}")
     if len(opinion):
         console.print()
-        table = _table("quantity", "closed form", "simulation", "difference", "", right=(1, 2, 3, 4))
+        table = plain_table("quantity", "closed form", "simulation", "difference", "", right=(1, 2, 3, 4))
         for row in opinion.to_dict("records"):
             relative = row["relative_difference"]
             if abs(relative) < SAME:
@@ -280,11 +303,11 @@ def explanation_text(front: ParetoFront) -> str:
     """Return in words and one table why nothing is feasible."""
     explanation = front.explanation or {}
     buffer = io.StringIO()
-    console = _console(buffer, WIDTH)
+    console = console_on(buffer, WIDTH)
     console.print(explanation.get("message", "No design is feasible."))
     conflicts = explanation.get("conflicts") or []
     if conflicts:
-        table = _table("limit", "value", "limit value", "missed by", right=(1, 2, 3))
+        table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3))
         for row in conflicts:
             shown = [format_quantity(row[key], row["unit"]) for key in ("value", "limit_value")]
             table.add_row(row["limit"], *shown, f"{100 * row['missed_by']:.3g} %")
@@ -379,7 +402,7 @@ def progress_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None
     elif not sys.stderr.isatty():
         yield _occasional_lines()
     else:
-        console = _console(sys.stderr)
+        console = console_on(sys.stderr)
         columns = (TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn())
         with Progress(*columns, TextColumn("{task.fields[figures]}"), console=console, transient=True) as bar:
             task = bar.add_task("starting", total=1.0, figures="")

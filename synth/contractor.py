@@ -508,9 +508,11 @@ class _Writer:
         for k in [*self._variables(), *self.owner.tables, *self.owner.pivots]:
             size = f"h{k}" if self._positive(k) else f"v_abs(h{k})"
             self.out.append(Kill(f"l{k} > h{k} + {ROUNDING!r} * {size}"))
-        # Ends that meet by rounding stay together: were they to cross, later sweeps would pull them apart.
+        # Ends that cross by rounding change places: either may be the right one, and sweeps would pull them apart.
         for k in [*self._variables(), *self.owner.tables, *self.owner.inner]:
-            self._set(f"l{k}", f"choose(l{k} > h{k}, h{k}, l{k})")
+            self._set("m", f"choose(l{k} > h{k}, h{k}, l{k})")
+            self._set(f"h{k}", f"choose(l{k} > h{k}, l{k}, h{k})")
+            self._set(f"l{k}", "m")
 
     def _narrow(self, k: int, low: str, high: str) -> None:
         if self._moves(k):

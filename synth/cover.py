@@ -65,9 +65,9 @@ def cover(
     -------
     Covered
     """
-    every = reaches_beyond(purpose, form.traded)
+    every = reaches_beyond(purpose, form.bounded)
     seeker, looked = Seeker(form, purpose, rng, every), 0
-    boxes = boxes if every else form.traded_only(boxes)
+    boxes = boxes if every else form.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck = nothing, [boxes], nothing
     while (len(queue) or fresh) and looked <= effort:

@@ -34,6 +34,8 @@ class RowFunctions:
     program : Program
     n_variables : int
     rows : Rows
+    edge : float
+        By which share the edge of max and min is rounded off.
 
     Attributes
     ----------
@@ -45,8 +47,9 @@ class RowFunctions:
         Nodes that depend on neither y nor weights and that the others read.
     """
 
-    def __init__(self, program: Program, n_variables: int, rows: Rows) -> None:
+    def __init__(self, program: Program, n_variables: int, rows: Rows, edge: float = 0.0) -> None:
         self.n = n = n_variables
+        self._edge = edge
         self.rows = rows
         self.n_cuts, self.n_goals = len(rows.cuts), len(rows.goals)
         self.n_rows = self.n_cuts + self.n_goals
@@ -89,6 +92,9 @@ class RowFunctions:
                 values[k] = ca.SX(node.constant)
             elif node.op == ca.OP_INPUT:
                 values[k] = inputs[int(node.constant)]
+            elif self._edge and node.op in (ca.OP_FMAX, ca.OP_FMIN):
+                first, second = (values[a] for a in node.args)
+                values[k] = _rounded_edge(node.op, first, second, self._edge)
             else:
                 values[k] = program.apply(node, [values[a] for a in node.args])
         sides = []
@@ -168,6 +174,12 @@ def _continued_logarithm(sweeps: Sweeps, ratio: int) -> int:
     second = graph.negative(graph.choice(usual, zero, share))
     sweeps.define(form, Rule([((LOG, ratio), first)], [(second, sweeps.log_gradient(ratio), None)]))
     return form
+
+
+def _rounded_edge(op: int, a: Any, b: Any, edge: float) -> Any:
+    """Return the larger or smaller of two with a round edge: where both are equal, Newton steps need a curvature."""
+    apart = ca.sqrt((a - b) ** 2 + edge**2 * (a**2 + b**2))
+    return 0.5 * (a + b + (apart if op == ca.OP_FMAX else -apart))
 
 
 def _scalars(vector: Any) -> list[Any]:

@@ -11,6 +11,8 @@ import numpy as np
 from synth.batch_nlp import Tasks
 from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
+from synth.instance import Instance, number
+from synth.special import expanded
 
 NOISE = 1e-6
 TIGHT = 1e-5
@@ -20,8 +22,9 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     """Return, per design, the elasticity of each chosen objective to every limit and requirement.
 
     The other chosen objectives are held at their values, parts and counts are fixed, gridded
-    variables are taken as continuous. Objectives that are not positive, and designs where the solver
-    does not confirm the optimum, have none.
+    variables are taken as continuous. What a default makes of a requirement moves with it.
+    Objectives that are not positive, and designs where the solver does not confirm the optimum,
+    have none.
 
     Parameters
     ----------
@@ -42,7 +45,9 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
     gradient = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
     tight, sizes = _tight(form, start, combinations)
-    spoken = {position: _speaking_of(form, position) for position in requirements.values()}
+    moved = followers(form.instance)
+    speaking = {name: _speaking_of(form, position) for name, position in requirements.items()}
+    spoken = {name: np.any([speaking[other] for other in moved[name]], axis=0) for name in requirements}
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
@@ -63,14 +68,35 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
             slopes = gradient(
                 answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
             )
-            for name, position in requirements.items():
-                if np.any(tight[i] & spoken[position]):
+            for name in requirements:
+                if np.any(tight[i] & spoken[name]):
                     continue  # the least change breaks a limit that no variable can restore
-                value = float(slopes[position]) * form.instance.requirements[name]
+                slope = sum(share * float(slopes[requirements[other]]) for other, share in moved[name].items())
+                value = slope * form.instance.requirements[name]
                 if abs(value) > NOISE:
                     own[name] = value
             results[i][form.names[k]] = own
     return results
+
+
+def followers(instance: Instance) -> dict[str, dict[str, float]]:
+    """Return, per requirement, what moves with it and by how much: itself, and those whose default is made of it."""
+    model, declared = instance.model, instance.model.declaration.requirements
+    active = {name: r for name, r in declared.items() if r.sx is not None}
+    moved: dict[str, dict[str, float]] = {name: {name: 1.0} for name in active}
+    values = {**{str(active[n].sx): v for n, v in instance.requirements.items()}, **instance.row_values}
+    for name, r in active.items():
+        if name in instance.given or r.default is None or isinstance(r.default, float):
+            continue
+        expression = expanded(r.default, model.calls)
+        for other, earlier in active.items():
+            slope = number(ca.gradient(expression, earlier.sx), values)
+            if slope:
+                for origin in moved:
+                    share = moved[origin].get(other, 0.0)
+                    if share:
+                        moved[origin][name] = moved[origin].get(name, 0.0) + share * slope
+    return moved
 
 
 def _gradient(form: Formulation) -> Any:

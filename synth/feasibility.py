@@ -20,7 +20,7 @@ class Status(StrEnum):
     FAILED = "failed"  # numerical failure
 
 
-def residual(value: Any, limit: Any, sense: str, scale: float) -> Any:
+def residual(value: Any, limit: Any, sense: str, scale: Any) -> Any:
     """Return the signed, scaled violation of a limit; positive = violated.
 
     Parameters
@@ -41,9 +41,9 @@ def residual(value: Any, limit: Any, sense: str, scale: float) -> Any:
     return difference / size
 
 
-def holds(residuals: Any, guard: bool) -> Any:
+def holds(residuals: Any, guard: bool, tolerance: Any = TOLERANCE) -> Any:
     """Tell whether a limit holds: within the tolerance, for a guard strictly."""
-    return residuals < 0.0 if guard else residuals <= TOLERANCE
+    return residuals < 0.0 if guard else residuals <= tolerance
 
 
 def utilisation(value: Any, limit: Any, sense: str) -> Any:

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from synth.batch_nlp import BatchNlp, Solutions, Tasks
 from synth.declaration import Refusal
-from synth.feasibility import TOLERANCE
+from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.model import Evaluation
@@ -27,6 +28,7 @@ TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
 CAP_ROWS = 512
+EDGE = 1e-3  # share of max and min by which their edge is rounded off for a first solve
 
 
 @dataclass(frozen=True)
@@ -54,10 +56,6 @@ class Boxes:
         return Boxes(
             self.cell[rows], self.low[rows], self.high[rows], self.bounds[rows], self.scores[rows], self.tag[rows]
         )
-
-    def tagged(self, tag: int) -> Boxes:
-        """Return the same boxes with another tag."""
-        return replace(self, tag=np.full(len(self), tag, dtype=np.int32))
 
     @staticmethod
     def joined(batches: Sequence[Boxes]) -> Boxes:
@@ -160,9 +158,21 @@ class Formulation:
         How many, from the first, are traded off against each other.
     conflict : bool
         Whether to prepare for proving that limits exclude each other.
+    compiled : bool
+        Whether code may be compiled for this question.
+    alike : int
+        How many questions of its kind are asked: code that is compiled serves them all.
     """
 
-    def __init__(self, instance: Instance, objectives: Mapping[str, str], traded: int, conflict: bool = False) -> None:
+    def __init__(
+        self,
+        instance: Instance,
+        objectives: Mapping[str, str],
+        traded: int,
+        conflict: bool = False,
+        compiled: bool = True,
+        alike: int = 1,
+    ) -> None:
         self.instance = instance
         self.model = model = instance.model
         self.n = len(model.variables)
@@ -174,10 +184,12 @@ class Formulation:
         cuts += [Cut(x.sense, model.quantity_node[x.quantity], None, 1e-9, x.limit) for x in instance.extra]
         self.cuts = cuts
         self.bounds = [cut.bound for cut in cuts]
-        self.traded = traded
+        # A single objective needs bounds of the next one as well, which settles ties.
+        self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
         self.lower, self.upper = instance.lower, instance.upper
         self.grids = instance.grids()
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
+        self.conflict, self.compiled, self.alike = conflict, compiled, alike
         self.immovable = self._immovable()
         self.contracted = 0
         self.workers = 1
@@ -185,7 +197,7 @@ class Formulation:
         self.solved_combinations: set[int] = set()
         self.archive = Archive(range(traded), self.n, len(self.goals))
         self._rows: Rows | None = None
-        self.propagation = Propagation(instance, cuts, self.goals, traded, conflict)
+        self.propagation = Propagation(instance, cuts, self.goals, self.bounded, conflict, compiled, alike)
         self.cells = self.propagation.cells
         self.width = self.propagation.width
         carried = np.zeros(self.width - self.n, dtype=bool)
@@ -194,6 +206,7 @@ class Formulation:
         positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
         self.log_goals = np.array(positive, dtype=bool)
         self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
+        self._edged = self._has_edges()
         self._prepare_screen()
 
     def _immovable(self) -> np.ndarray:
@@ -220,9 +233,9 @@ class Formulation:
         """Return no boxes."""
         return self._boxes(self.cells.whole()).take(slice(0, 0))
 
-    def traded_only(self, boxes: Boxes) -> Boxes:
-        """Return boxes with the bounds of those objectives alone that are traded off."""
-        return replace(boxes, bounds=np.ascontiguousarray(boxes.bounds[:, : self.traded]))
+    def lean(self, boxes: Boxes) -> Boxes:
+        """Return boxes with the bounds of the first objectives alone, which are all that most searches need."""
+        return replace(boxes, bounds=np.ascontiguousarray(boxes.bounds[:, : self.bounded]))
 
     def one(self, box: Boxes) -> Boxes:
         """Return a box with a single combination of its cell (the first)."""
@@ -440,7 +453,7 @@ class Formulation:
         return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
 
     def feasible_rows(
-        self, variables: np.ndarray, combinations: np.ndarray, exact: bool = False
+        self, variables: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of the feasible points, and phi of all points.
 
@@ -458,21 +471,13 @@ class Formulation:
                 row[:] = x
             limits = len(self.cuts)
             phi = self.phi_of((sides[2 * limits :] * self._goal_signs[:, None]).T)
-            r = self._residuals(sides[:limits], sides[limits : 2 * limits])
-            held = np.where(self._guards[:, None], r < 0.0, r <= np.where(exact, TOLERANCE, self._tolerances)[:, None])
-        held |= self.void(data, count).T
+            held = self.void(data, count).T
+            for (sense, guard), rows in self._alike.items():
+                r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
+                held[rows] |= holds(r, guard, np.where(exact, TOLERANCE, self._tolerances[rows, None]))
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & self.not_refused(combinations)
         feasible &= np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
         return np.flatnonzero(feasible), phi
-
-    def _residuals(self, value: np.ndarray, limit: np.ndarray) -> np.ndarray:
-        """Return what ``synth.feasibility.residual`` does, for all limits (rows) at once."""
-        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), self._scales[:, None])
-        difference = value - limit
-        result: np.ndarray = (
-            np.where(self._equal[:, None], np.abs(difference), difference * self._senses[:, None]) / size
-        )
-        return result
 
     def _prepare_screen(self) -> None:
         """Prepare what tells which of many points are feasible: both sides of all limits, and the objectives."""
@@ -487,10 +492,9 @@ class Formulation:
 
         self._screen = screen
         self._goal_signs = np.array([float(g.sign) for g in self.goals])
-        self._equal = np.array([c.sense == "equal" for c in self.cuts], dtype=bool)
-        self._senses = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.cuts])
+        kinds = [(c.sense, c.guard) for c in self.cuts]
+        self._alike = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
         self._scales = np.array([c.scale for c in self.cuts], dtype=float)
-        self._guards = np.array([c.guard for c in self.cuts], dtype=bool)
         # The user's own limits, and those that nothing continuous moves, are kept as closely as feasibility asks for.
         loose = [*self.immovable[: len(self.model.limits)], *(True for _ in self.instance.extra)]
         self._tolerances = np.where(loose, TOLERANCE, SEARCH_TOLERANCE)
@@ -527,23 +531,6 @@ class Formulation:
                 result[:, k] = np.where(nearer, grid[after], grid[before])
         return result
 
-    def good_start(self, box: Boxes, rng: np.random.Generator, count: int = 48) -> np.ndarray:
-        """Return the random point of a box that breaks its worst limit least."""
-        many = box.take(np.zeros(count, dtype=np.int64))
-        share = rng.random((count, self.n))
-        share[0] = 0.5
-        points = self.inside(many, share)
-        result = self.evaluate(points, self.combination(many))
-        worst = np.zeros(count)
-        for limit in self.model.limits:
-            r = result.residuals[limit.name]
-            # Behind a guard that fails nothing else is known, so it counts most.
-            guard = limit.guard & ~result.holds[limit.name]
-            worst = np.fmax(worst, np.where(guard, 1e3, np.where(np.isinf(r), 1e2, r)))
-        broken = np.any([~h for h in result.holds.values()], axis=0) if result.holds else np.zeros(count, dtype=bool)
-        best: np.ndarray = points[int(np.argmin(np.where(broken, np.maximum(worst, 1e-9), 0.0)))]
-        return best
-
     # -- the continuous problem ----------------------------------------------------------------
 
     def _both_positive(self, cut: Cut) -> bool:
@@ -572,14 +559,25 @@ class Formulation:
         )
         return made
 
-    def batch_nlp(self) -> BatchNlp:
-        """Return the NLP of this question for many designs at once; built once per model and set of rows."""
+    def batch_nlp(self, edge: float = 0.0) -> BatchNlp:
+        """Return the NLP of this question for many designs at once; built once per model and set of rows.
+
+        ``edge``: with the edges of max and min rounded off.
+        """
         rows = self.rows()
-        native = None if self.instance.combinations >= COMPILED_FROM else False
+        native = None if self.compiled and self.instance.combinations * self.alike >= COMPILED_FROM else False
         made: BatchNlp = self.model.function(
-            ("batch", rows, native), lambda: BatchNlp(self.model.program, self.n, rows, native)
+            ("batch", rows, native, edge), lambda: BatchNlp(self.model.program, self.n, rows, native, edge)
         )
         return made
+
+    def _has_edges(self) -> bool:
+        """Tell whether limits or objectives read the larger or smaller of two things that move."""
+        program = self.model.program
+        moving = program.dependence(range(self.n))
+        wanted = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
+        nodes = [program.nodes[k] for k in program.needed(wanted)]
+        return any(x.op in (ca.OP_FMAX, ca.OP_FMIN) and all(moving[a] for a in x.args) for x in nodes)
 
     def solve_many(
         self,
@@ -601,10 +599,18 @@ class Formulation:
         low = np.broadcast_to(self.lower, (count, self.n)) if low is None else low
         high = np.broadcast_to(self.upper, (count, self.n)) if high is None else high
         void = self.void(data, count) if skipped is None else self.void(data, count) | skipped
-        found = self.batch_nlp().solve(tasks, data, np.clip(start, low, high), low, high, self.bounds, void)
+        start = np.clip(start, low, high)
+        if not self._edged:
+            return self.batch_nlp().solve(tasks, data, start, low, high, self.bounds, void)
+        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
+        rounded = self.batch_nlp(EDGE).solve(tasks, data, start, low, high, self.bounds, void)
+        sharp = self.batch_nlp().solve(tasks, data, rounded.variables, low, high, self.bounds, void)
+        return sharp.replaced(~sharp.converged, rounded)
+
+    def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
+        """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
         prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
-        self.propagation.learn(prices[found.converged])
-        return found
+        self.propagation.learn(prices[found.converged], importance[found.converged])
 
     def void(self, data: Sequence[Any], count: int) -> np.ndarray:
         """Return which limits do not count for which designs (designs, limits): a column has no value."""
@@ -621,7 +627,6 @@ class Formulation:
         start: np.ndarray,
         low: np.ndarray,
         high: np.ndarray,
-        gradient: bool = False,
         skipped: np.ndarray | None = None,
     ) -> Solution | None:
         """Solve the continuous problem of one combination inside a box, from one start; leave some limits out."""
@@ -629,4 +634,4 @@ class Formulation:
         self.solved_combinations.add(combination)
         self.nlp_solves += 1
         void = self.void(data, 1)[0] if skipped is None else skipped | self.void(data, 1)[0]
-        return self.nlp().solve(task, data, start, low, high, self.bounds, void, gradient)
+        return self.nlp().solve(task, data, start, low, high, self.bounds, void)

@@ -23,6 +23,7 @@ from synth.tables import Catalogs, Table
 from synth.units import format_quantity, from_si, parse_quantity, parse_unit
 
 SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
+SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
 CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*(.+)$", re.DOTALL)
 
 _shipped: dict[str, Catalogs] = {}
@@ -209,7 +210,7 @@ class Instance:
                 values[r.name] = r.default
             else:
                 known = {**{str(model.declaration.requirements[n].sx): v for n, v in values.items()}, **row_values}
-                values[r.name] = number(expanded(r.default, model.calls), known)
+                values[r.name] = self._number(r.default, known)
         return values
 
     @staticmethod
@@ -250,8 +251,17 @@ class Instance:
         model = self.model
         known = self._symbol_values()
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
-            if not kinds and number(expanded(refusal.when, model.calls), known) > 0.5:
+            if not kinds and self._number(refusal.when, known) > 0.5:
                 raise InputError(refusal.code, self._involved(refusal.when) or self._chosen_options(), refusal.message)
+
+    def _number(self, expression: Any, values: Mapping[str, float]) -> float:
+        """Evaluate an expression of the declaration; what evaluates it is built once per model, not per question."""
+        model = self.model
+        made: tuple[Any, list[str]] = model.function(
+            ("number", id(expression)), lambda: numeric(expanded(expression, model.calls))
+        )
+        function, names = made
+        return float(function.call([values[name] for name in names])[0])
 
     def _symbol_values(self) -> dict[str, float]:
         requirements = self.model.declaration.requirements
@@ -279,6 +289,16 @@ class Instance:
         for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
             for sense, bound in self._read_limit(name, unit, text):
                 self._apply_limit(name, unit, sense, bound)
+
+    def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
+        """Return what the user wrote about a quantity as limits."""
+        unit = self.model.units[name]
+        result = []
+        for text in texts if isinstance(texts, (list, tuple)) else [texts]:
+            for sense, bound in self._read_limit(name, unit, text):
+                label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
+                result.append(ExtraLimit(label, name, sense, bound, unit))
+        return result
 
     @staticmethod
     def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
@@ -311,8 +331,7 @@ class Instance:
         elif name in model.declaration.counts:
             self._count_bounds.append((name, sense, bound))
         else:
-            sign = {"at_most": "<=", "at_least": ">=", "equal": "=="}[sense]
-            label = f"{name} {sign} {format_quantity(bound, unit, None)}"
+            label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
             ceiling = model.declaration.derived[name].ceiling
             if sense != "at_least" and bound > ceiling:
                 raise InputError(
@@ -491,9 +510,11 @@ class Instance:
         else:
             values = (selection.counts | selection.choices)[name]
             size, columns = len(values), {name: values}
-        when = expanded(refusal.when, model.calls)
         bad = np.array(
-            [number(when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5 for k in range(size)],
+            [
+                self._number(refusal.when, {**known, **{s: float(v[k]) for s, v in columns.items()}}) > 0.5
+                for k in range(size)
+            ],
             dtype=bool,
         )
         if not bad.any():
@@ -599,9 +620,14 @@ class Instance:
 
 def number(expression: Any, values: Mapping[str, float]) -> float:
     """Evaluate an expression whose symbols all have values."""
+    function, names = numeric(expression)
+    return float(function.call([values[name] for name in names])[0])
+
+
+def numeric(expression: Any) -> tuple[Any, list[str]]:
+    """Return the function that evaluates an expression, and the names of its arguments."""
     symbols = ca.symvar(ca.SX(expression))
-    function = ca.Function("number", symbols, [ca.SX(expression)])
-    return float(function.call([values[str(s)] for s in symbols])[0])
+    return ca.Function("number", symbols, [ca.SX(expression)]), [str(s) for s in symbols]
 
 
 def _contradict(first: str, one: float, second: str, other: float) -> bool:

@@ -74,7 +74,6 @@ class Solution:
     t: float
     cut_multipliers: np.ndarray
     goal_multipliers: np.ndarray
-    lagrangian_data_gradient: np.ndarray | None
     converged: bool
 
 
@@ -259,12 +258,8 @@ class ParametricNlp:
         g = ca.vertcat(*cut_rows, *goal_rows, *condition_rows)
         problem = {"x": ca.vertcat(y, t), "p": parameters, "f": cost, "g": g}
         solver = ca.nlpsol("nlp", "ipopt", problem, IPOPT)
-        multipliers = ca.SX.sym("multipliers", g.shape[0])
-        lagrangian = cost + ca.dot(multipliers, g)
-        gradient = ca.Function(
-            "gradient", [problem["x"], parameters, multipliers], [ca.gradient(lagrangian, data), ca.vertcat(*phi)]
-        )
-        return (solver, gradient), [position for position, _ in conditions]
+        objectives = ca.Function("objectives", [problem["x"], parameters], [ca.vertcat(*phi)])
+        return (solver, objectives), [position for position, _ in conditions]
 
     def to_search(self, variables: np.ndarray) -> np.ndarray:
         """Return SI variables as the solver sees them (logarithm where positive)."""
@@ -281,7 +276,6 @@ class ParametricNlp:
         high: np.ndarray,
         bounds: Sequence[float],
         void: np.ndarray,
-        want_gradient: bool = False,
     ) -> Solution | None:
         """Solve from one start, moving to a neighbouring branch when the solution lies on the border of its own.
 
@@ -311,7 +305,7 @@ class ParametricNlp:
             if pieces in tried:
                 continue
             tried.add(pieces)
-            solution, border = self._solve_branch(pieces, task, clean, x0, low, high, bounds, void, want_gradient)
+            solution, border = self._solve_branch(pieces, task, clean, x0, low, high, bounds, void)
             if solution is None:
                 continue
             if best is None or (solution.converged, -self._cost(task, solution)) > (
@@ -340,11 +334,10 @@ class ParametricNlp:
         high: np.ndarray,
         bounds: Sequence[float],
         void: np.ndarray,
-        want_gradient: bool,
     ) -> tuple[Solution | None, list[int]]:
         if pieces not in self._solvers:
             self._solvers[pieces] = self._build(pieces)
-        (solver, gradient), positions = self._solvers[pieces]
+        (solver, objectives), positions = self._solvers[pieces]
         rows, n = self.rows, self.n
         _, condition_sizes = self.branches.at([*x0, *data])
         sizes = self._row_sizes(task, x0, data, bounds)
@@ -378,7 +371,7 @@ class ParametricNlp:
         variables = np.where(rows.log_variables, np.exp(np.where(rows.log_variables, y, 0.0)), y)
         variables = np.clip(variables, low, high)
         multipliers = np.asarray(answer["lam_g"]).ravel()
-        data_gradient, phi = gradient(x, parameters, multipliers)
+        phi = objectives(x, parameters)
         g = np.asarray(answer["g"]).ravel()
         first = len(rows.cuts) + len(rows.goals)
         border = [p for k, p in enumerate(positions) if abs(g[first + k]) < ACTIVE]
@@ -388,7 +381,6 @@ class ParametricNlp:
             t=float(x[n]),
             cut_multipliers=multipliers[: len(rows.cuts)],
             goal_multipliers=multipliers[len(rows.cuts) : first],
-            lagrangian_data_gradient=np.asarray(data_gradient).ravel() if want_gradient else None,
             converged=bool(solver.stats()["success"]),
         )
         return solution, border

@@ -53,6 +53,8 @@ class DesignProblem:
     title: str = ""
     sources: tuple[str, ...] = ()
     simulation_settings: Mapping[str, Setting] = {}
+    # Requirements that mean here what they mean in every family: what a sheet for several families may state.
+    understands: tuple[str, ...] = ()
 
     def __init__(self, /, **options: str) -> None:
         if not self.name:

@@ -22,8 +22,8 @@ from synth.special import expanded
 SAMPLES = 256
 STEP = 1e-4
 LARGEST_INFLUENCE = 50.0
-LEAST_INFLUENCE = 0.001
-LEAST_WEIGHT = 0.001
+LEAST = 1e-3  # influence and weight of what seems to matter to nothing
+LEAST_IN_CONFLICT = 1e-6  # limits that nearly agree are told apart in very small boxes
 MOST_BITS = 3  # objectives that are told apart when weights are learned
 SOME = 1e-3  # share of the multipliers of all objectives from which one counts as asked for
 ENOUGH = 8  # problems solved before their own weights are believed
@@ -55,14 +55,27 @@ class Propagation:
         Limits, with the constant right sides of this question.
     goals : list of Goal
         Objectives: those to trade off first.
-    traded : int
+    bounded : int
+        How many objectives, from the first, are bounded in every box.
     conflict : bool
         Nothing feasible is known, so that what limits see counts as what objectives see: for pivots.
+    compiled : bool
+        Whether code may be compiled.
+    alike : int
+        How many questions of this kind are asked.
     """
 
     def __init__(
-        self, instance: Instance, cuts: Sequence[Cut], goals: Sequence[Goal], traded: int, conflict: bool = False
+        self,
+        instance: Instance,
+        cuts: Sequence[Cut],
+        goals: Sequence[Goal],
+        bounded: int,
+        conflict: bool = False,
+        compiled: bool = True,
+        alike: int = 1,
     ) -> None:
+        self._compiled, self._alike = compiled, alike
         self.instance, self.model = instance, instance.model
         self.cuts, self.goals = list(cuts), list(goals)
         self.n = len(self.model.variables)
@@ -79,8 +92,8 @@ class Propagation:
             made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted, pivots))
             return made
 
-        # Objectives that only settle ties would cost time while others are traded off.
-        wanted = {False: goals[:traded], True: goals}
+        # Objectives that only settle ties would cost time where others are sought.
+        wanted = {False: goals[:bounded], True: goals}
         self._contractors = {every: contractor(own, ()) for every, own in wanted.items()}
         self.factors = self._factors(names, owner)
         self._constants, self._roots = dict[bool, list[float]](), dict[bool, Root]()
@@ -95,6 +108,8 @@ class Propagation:
             for node, v in zip(c.tables, per_row[every], strict=True):
                 known = v[~np.isnan(v)]
                 self._least[node] = float(known.min()) if len(known) else np.nan
+        # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
+        self._floor = LEAST_IN_CONFLICT if conflict else LEAST
         self.empty = any(root.empty for root in self._roots.values())
         self.pivots = self._pivots(conflict)
         if self.pivots:
@@ -112,15 +127,15 @@ class Propagation:
             every: self._tables_of(c, self._roots[every], per_row[every]) for every, c in self._contractors.items()
         }
         self._spreads = [self._spread(tree) for tree in trees]
-        self._bits = traded if traded <= MOST_BITS else 0
+        self._bits = bounded if bounded <= MOST_BITS else 0
         self._learned = np.zeros((1 << self._bits, len(self.cuts) + len(self.goals)))
         self._lessons = np.zeros(1 << self._bits, dtype=np.int64)
+        self._importance = np.zeros(1 << self._bits)
         self.weights = self._weights()
-        # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
         moving = np.concatenate(
             [self._influence[:, : self.n], self._influence[:, len(self._influence[0]) - len(self.pivots) :]], axis=1
         )
-        self._steep = np.maximum(moving, LEAST_INFLUENCE).astype(np.float32)
+        self._steep = np.maximum(moving, self._floor).astype(np.float32)
         self._range = np.maximum(self.high - self.low, 1e-300)
         self._codes: dict[tuple[bool, bool], Code] = {}
         self._prepared: dict[bool, Prepared] = {}
@@ -223,7 +238,7 @@ class Propagation:
         own = self._influence[:, [self.n + i for i in tree.factor.inputs]]
         result: np.ndarray = (PARTS_FIRST * width @ own.T).astype(np.float32)
         # Rows that differ only in what has no influence are still different rows.
-        result += np.where(tree.leaf, 0.0, LEAST_INFLUENCE)[:, None].astype(np.float32)
+        result += np.where(tree.leaf, 0.0, self._floor)[:, None].astype(np.float32)
         return result
 
     def _influences(self) -> np.ndarray:
@@ -378,8 +393,8 @@ class Propagation:
     def _to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
         """Tell whether code is to be compiled for so many boxes more: by the question alone, see ``COMPILED_FROM``."""
         self._contracted[every, capped] += boxes
-        large = self.instance.combinations >= COMPILED_FROM and capped and not every
-        return large or self._contracted[every, capped] > COMPILE_AFTER
+        large = self.instance.combinations * self._alike >= COMPILED_FROM and capped and not every
+        return self._compiled and (large or self._contracted[every, capped] > COMPILE_AFTER)
 
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
         instance = self.instance
@@ -420,11 +435,11 @@ class Propagation:
             result[:, self.width + f] = np.einsum("bj,bj->b", counted, spread.take(cell[:, f], axis=0))
         return result
 
-    def learn(self, multipliers: np.ndarray) -> None:
+    def learn(self, multipliers: np.ndarray, importance: np.ndarray) -> None:
         """Take multipliers of solved problems (problems, limits + objectives): where they are large, boxes are split.
 
         What blurs a bound is, to first order, the spread of every limit times its multiplier. It steers the
-        search and proves nothing.
+        search and proves nothing. ``importance`` (problems,) tells how much each problem counts.
         """
         sizes = np.abs(multipliers)
         total = sizes.sum(axis=1)
@@ -435,8 +450,14 @@ class Propagation:
         first = len(self.cuts)
         own = shares[:, first : first + self._bits]
         pattern = self._pattern(own > SOME * own.sum(axis=1, keepdims=True))
-        np.add.at(self._learned, pattern, shares)
+        np.add.at(self._learned, pattern, importance[good, None] * shares)
+        np.add.at(self._importance, pattern, importance[good])
         np.add.at(self._lessons, pattern, 1)
+        self.weights = self._weights()
+
+    def taught_by(self, other: Propagation) -> None:
+        """Take what was learned for the same limits and objectives."""
+        self._learned, self._importance, self._lessons = other._learned, other._importance, other._lessons
         self.weights = self._weights()
 
     def _pattern(self, objectives: np.ndarray) -> np.ndarray:
@@ -448,13 +469,13 @@ class Propagation:
 
         An objective without a cap decides nothing, unless none has one.
         """
-        first, count = len(self.cuts), int(self._lessons.sum())
+        first = len(self.cuts)
         result = np.ones(self._learned.shape)
-        if count:
-            result[:] = self._learned.sum(axis=0) / count
+        if self._lessons.any():
+            result[:] = self._learned.sum(axis=0) / self._importance.sum()
             own = self._lessons >= ENOUGH
-            result[own] = self._learned[own] / self._lessons[own, None]
-            result += LEAST_WEIGHT
+            result[own] = self._learned[own] / self._importance[own, None]
+            result += self._floor
         for pattern in range(1, len(result)):
             idle = [k for k in range(self._bits) if not pattern >> k & 1]
             result[pattern, [first + k for k in idle]] = 0.0

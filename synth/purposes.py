@@ -192,9 +192,9 @@ def beating(rows: np.ndarray, phi: np.ndarray) -> np.ndarray:
     return better
 
 
-def reaches_beyond(purpose: Purpose, traded: int) -> bool:
+def reaches_beyond(purpose: Purpose, bounded: int) -> bool:
     """Tell whether a search speaks of more than the first objectives."""
-    return max(purpose.columns) >= traded or bool(np.any(np.isfinite(purpose.plain[traded:])))
+    return max(purpose.columns) >= bounded or bool(np.any(np.isfinite(purpose.plain[bounded:])))
 
 
 def proven_slack(form: Formulation, purpose: Cover, open_boxes: Boxes) -> float:

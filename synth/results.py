@@ -7,11 +7,10 @@ import hashlib
 import io
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -118,6 +117,11 @@ class Design:
         spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
         return spec
 
+    def yaml(self) -> str:
+        """Return the text of a DESIGN.yaml."""
+        text: str = yaml.safe_dump(self.to_spec(), sort_keys=False, allow_unicode=True, width=120)
+        return text
+
     def _as_json(self) -> dict[str, Any]:
         return {
             "rank": self.rank,
@@ -208,28 +212,14 @@ class ParetoFront:
 
         Every file is written beside its place and then renamed, so nothing half-written is ever seen.
         """
-        target = Path(folder)
-        if target.exists() and not target.is_dir():
-            raise InputError("output", str(folder), "a folder; this is a file")
-        try:
-            target.mkdir(parents=True, exist_ok=True)
-            wanted = self.files()
-            for stale in target.glob("design_*.yaml"):
-                if stale.name not in wanted:
-                    stale.unlink()
-            for name, text in wanted.items():
-                write_atomically(target / name, text)
-        except OSError as error:
-            raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
-        return target
+        return save_files(folder, self.files())
 
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""
         width = max(2, len(str(len(self.designs))))
         found = {"designs.csv": self._csv(), "front.json": self._json()}
         for design in self.designs:
-            text = yaml.safe_dump(design.to_spec(), sort_keys=False, allow_unicode=True, width=120)
-            found[f"design_{design.rank:0{width}d}.yaml"] = text
+            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
         return found
 
     def verify(self, problem: Any = None, catalogs: Any = None, time_limit: float = 120.0) -> Verification:
@@ -259,37 +249,17 @@ class ParetoFront:
         return verify(self, problem, catalogs, time_limit)
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
-        frame = self.frame
-        kinds = frame.kinds
-        shown = [n for n in frame.objectives]
-        for kind in ("variable", "count", "derived"):
-            shown += [n for n, k in kinds.items() if k == kind and n not in frame.objectives]
-        order = [n for n in shown if n in frame.objectives or kinds[n] != "derived"]
-        late = [n for n in shown if n not in order]
-        slots = list(self.designs[0].parts) if self.designs else []
-        choices = list(self.designs[0].choices) if self.designs else []
+        first = self.designs[0] if self.designs else None
         columns = ["rank", "score", "status", "gap", "note", "alternatives"]
-        columns += [header(n, frame.units[n]) for n in order] + choices + slots
-        columns += [header(n, frame.units[n]) for n in late]
-        columns += [f"utilisation: {n}" for n in frame.limit_units]
-        rows = []
-        for d in self.designs:
-            row: list[Any] = [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives)]
-            row += [_shown(d.values[n], frame.units[n]) for n in order]
-            row += [d.choices[c] for c in choices] + [str(d.parts[s]) for s in slots]
-            row += [_shown(d.values[n], frame.units[n]) for n in late]
-            row += [d.utilisation.get(n) for n in frame.limit_units]
-            rows.append(row)
+        columns += design_columns(self.frame, first.choices if first else (), first.parts if first else ())
+        rows: list[list[Any]] = [
+            [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *design_row(self.frame, d)]
+            for d in self.designs
+        ]
         return columns, rows
 
     def _csv(self) -> str:
-        columns, rows = self._table()
-        buffer = io.StringIO()
-        writer = csv.writer(buffer, lineterminator="\n")
-        writer.writerow(columns)
-        for row in rows:
-            writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
-        return buffer.getvalue()
+        return csv_text(*self._table())
 
     def _json(self) -> str:
         rows: dict[str, dict[str, Any]] = {}
@@ -355,6 +325,23 @@ def load_front(folder: str | Path) -> ParetoFront:
         raise InputError(
             f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
         )
+    return front_of_record(content, path)
+
+
+def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
+    """Rebuild a front from the content of its front.json.
+
+    Parameters
+    ----------
+    content : dict
+    path : Path
+        Where it stands, for messages.
+
+    Raises
+    ------
+    InputError
+        When it is not complete.
+    """
     try:
         return _front_from_json(content, path.parent)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -421,6 +408,60 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
     )
 
 
+def _order(frame: Frame) -> tuple[list[str], list[str]]:
+    """Return the quantities that stand before choices and parts, and those that stand behind."""
+    early = [n for n, kind in frame.kinds.items() if n not in frame.objectives and kind in ("variable", "count")]
+    early.sort(key=lambda n: frame.kinds[n] != "variable")
+    late = [n for n, kind in frame.kinds.items() if n not in frame.objectives and kind == "derived"]
+    return [*frame.objectives, *early], late
+
+
+def design_columns(frame: Frame, choices: Iterable[str], slots: Iterable[str]) -> list[str]:
+    """Return headers of what tables say of a design: objectives, sizes, choices, parts, derived, utilisation."""
+    early, late = _order(frame)
+    columns = [header(n, frame.units[n]) for n in early] + [*choices] + [*slots]
+    return columns + [header(n, frame.units[n]) for n in late] + [f"utilisation: {n}" for n in frame.limit_units]
+
+
+def design_row(frame: Frame, design: Design) -> list[Any]:
+    """Return what belongs under ``design_columns``; None where there is no value."""
+    early, late = _order(frame)
+    row: list[Any] = [shown_value(design.values[n], frame.units[n]) for n in early]
+    row += [*design.choices.values(), *(str(part) for part in design.parts.values())]
+    row += [shown_value(design.values[n], frame.units[n]) for n in late]
+    return row + [design.utilisation.get(n) for n in frame.limit_units]
+
+
+def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    """Return a table as CSV in full precision; nothing stands where there is no value."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(columns)
+    for row in rows:
+        writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
+    return buffer.getvalue()
+
+
+def save_files(folder: str | Path, files: Mapping[str, str]) -> Path:
+    """Write the files of a result and take away designs of an earlier one; return the folder.
+
+    Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+    """
+    target = Path(folder)
+    if target.exists() and not target.is_dir():
+        raise InputError("output", str(folder), "a folder; this is a file")
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        for stale in target.glob("design_*.yaml"):
+            if stale.name not in files:
+                stale.unlink()
+        for name, text in files.items():
+            write_atomically(target / name, text)
+    except OSError as error:
+        raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
+    return target
+
+
 def write_atomically(path: Path, text: str) -> None:
     """Write a text file so that it is either the old one or the whole new one."""
     temporary = path.with_name(f".{path.name}.{hashlib.sha256(str(path).encode()).hexdigest()[:8]}.tmp")
@@ -442,16 +483,12 @@ def installed_versions() -> dict[str, str]:
     return result
 
 
-def frozen(mapping: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a read-only view of a copy."""
-    return MappingProxyType(dict(mapping))
-
-
 def _number(value: Any) -> float:
     return float("nan") if value is None else float(value)
 
 
-def _shown(value: float, unit: str) -> float | None:
+def shown_value(value: float, unit: str) -> float | None:
+    """Return an SI value in the unit of its column; None where it does not exist."""
     return float(from_si(value, unit)) if math.isfinite(value) else None
 
 

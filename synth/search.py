@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from synth.analysis import chosen_objectives, make_design, make_frame, part_row
+from synth.analysis import chosen_objectives, make_design, make_frame, part_row, with_ties
 from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
 from synth.cover import Covered, best, cover
@@ -22,11 +23,14 @@ from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.purposes import Cover, Staircase, proven_slack
+from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
 
 EFFORT = 20_000_000
+SOON = 150_000
+MANY, EFFORT_WITH_MANY = 7, 200_000  # variables
 FILL_EFFORT = 20_000
 TIE_EFFORT = 40_000
 COARSE = 0.1
@@ -101,23 +105,104 @@ def synthesize(
     InputError
         For everything that is wrong with the input, in one sentence.
     """
+    check_settings(points, gap, grid, workers, seed, progress, time_limit)
+    question = pose(p, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
+    return question.answer(workers, progress, time_limit)
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question that has been checked: everything that can be wrong with it has been said.
+
+    ``alike``: how many questions of its kind are asked; code that is compiled for one serves them all.
+    """
+
+    instance: Instance
+    chosen: Mapping[str, str]
+    weights: Mapping[str, float]
+    settings: Mapping[str, Any]
+    alike: int = 1
+
+    def answer(
+        self,
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+        known: Sequence[Design] = (),
+        explained: bool = True,
+    ) -> ParetoFront:
+        """Search the designs.
+
+        ``known`` are designs of a similar question: where to look first. They prove nothing, and no design is taken
+        from them that this question does not allow. ``explained``: tell why, where nothing is feasible.
+        """
+        search = self.search(workers, progress, time_limit, known)
+        return search.run(list(self.weights.values()), self.settings, explained)
+
+    def search(
+        self,
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+        known: Sequence[Design] = (),
+    ) -> FrontSearch:
+        """Return the search that answers."""
+        points, gap, seed = (self.settings[name] for name in ("points", "gap", "seed"))
+        return FrontSearch(
+            self.instance, self.chosen, points, gap, seed, progress, time_limit, int(workers),
+            known=known, alike=self.alike,
+        )  # fmt: skip
+
+
+def pose(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    parts: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    fix: Mapping[str, Any] | None = None,
+    weights: Mapping[str, float] | None = None,
+    gap: float = 1e-3,
+    grid: bool = True,
+    seed: int = 0,
+) -> Question:
+    """Check a question to ``synthesize``; its arguments are those of the same names there.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the input, in one sentence.
+    """
     problem = load(p)
-    _check_settings(points, gap, grid, workers, seed, progress, time_limit)
+    check_settings(points, gap, grid, 1, seed, None, None)
     instance = Instance(problem, requirements, catalogs_for(problem, catalogs), parts, limits, fix, grid)
     chosen = chosen_objectives(instance.model, objectives)
-    weight_list = _weights(instance, chosen, weights)
+    weight_of = dict(zip(chosen, _weights(instance, chosen, weights), strict=True))
     settings = {
         "points": points,
         "gap": gap,
         "grid": grid,
         "seed": seed,
-        "weights": dict(zip(chosen, weight_list, strict=True)),
+        "weights": weight_of,
         "parts": {k: v if isinstance(v, str) else list(v) for k, v in (parts or {}).items()},
         "limits": {k: v if isinstance(v, str) else list(v) for k, v in (limits or {}).items()},
         "fix": {k: v if isinstance(v, (str, int, float, bool)) else str(v) for k, v in (fix or {}).items()},
     }
-    search = _FrontSearch(instance, chosen, points, gap, seed, progress, time_limit, int(workers))
-    return search.run(weight_list, settings)
+    return Question(instance, chosen, weight_of, settings)
+
+
+def one_best(
+    instance: Instance, objective: str, gap: float, effort: int, seed: int = 0, time_limit: float | None = None
+) -> ParetoFront:
+    """Return the best design for one objective, for questions that the engine asks itself.
+
+    Where there is none nothing is explained; what ``effort`` boxes leave open is left open.
+    """
+    chosen = chosen_objectives(instance.model, [objective])
+    search = FrontSearch(instance, chosen, 1, gap, seed, None, time_limit, 1, effort)
+    return search.run([1.0], {"points": 1, "gap": gap}, explained=False)
 
 
 def distinct(candidates: Sequence[Candidate], m: int) -> list[Candidate]:
@@ -139,7 +224,15 @@ def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.n
     )
 
 
-def _check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
+def check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
+    """Refuse what is no setting of a search.
+
+    Raises
+    ------
+    InputError
+        One of them is not what ``synthesize`` takes.
+    """
+
     def whole(value: Any) -> bool:
         return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
 
@@ -175,8 +268,13 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
     return list(values.values())
 
 
-class _FrontSearch:
-    """One run: the front, its extremes, ties, and the report."""
+def _effort(instance: Instance) -> int:
+    """Return how many boxes are worth looking into: with many unknowns they do not close."""
+    return EFFORT if len(instance.model.variables) < MANY else EFFORT_WITH_MANY
+
+
+class FrontSearch:
+    """One run: the front, its extremes, ties, and the report; afterwards it answers what more is asked of it."""
 
     def __init__(
         self,
@@ -188,7 +286,13 @@ class _FrontSearch:
         progress: Callable[[Mapping[str, Any]], None] | None,
         time_limit: float | None,
         workers: int,
+        effort: int | None = None,
+        known: Sequence[Design] = (),
+        alike: int = 1,
     ) -> None:
+        # A question that is worth only some effort is not worth compiling for, nor solving what stays open.
+        self.effort, self.thorough = (_effort(instance), True) if effort is None else (effort, False)
+        self.alike = alike
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
         self.started = time.monotonic()
         self.workers, self.m = workers, len(chosen)
@@ -199,6 +303,7 @@ class _FrontSearch:
         self.outer_trials = 0
         self.progress = progress
         self.stage_seconds: dict[str, float] = {}
+        self.in_conflict = False
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
@@ -213,23 +318,13 @@ class _FrontSearch:
         self.current: Cover | None = None  # the one that is under way
         self.proven_designs = set[bytes]()
         self.looked = 0
+        self.recalled = list(known)
 
     def _formulation(self, conflict: bool) -> Formulation:
-        form = Formulation(self.instance, self._chain(), self.m, conflict)
+        goals = with_ties(self.instance.model, self.chosen)
+        form = Formulation(self.instance, goals, self.m, conflict, self.thorough, self.alike)
         form.workers = self.workers
         return form
-
-    def _chain(self) -> dict[str, str]:
-        """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
-        declared = self.instance.model.declaration.objectives
-        chain = dict(self.chosen)
-        for default in (True, False):
-            for objective in declared.values():
-                if objective.default == default and objective.name not in chain:
-                    chain[objective.name] = objective.sense
-        for variable in self.instance.model.variables:
-            chain.setdefault(variable.name, "min")
-        return chain
 
     def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> Cover:
         """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
@@ -248,7 +343,8 @@ class _FrontSearch:
 
     # -- the run -------------------------------------------------------------------------------
 
-    def run(self, weights: Sequence[float], settings: Mapping[str, Any]) -> ParetoFront:
+    def run(self, weights: Sequence[float], settings: Mapping[str, Any], explained: bool = True) -> ParetoFront:
+        """Search, and return the front; what stops the search early leaves what is known by then."""
         frame = make_frame(self.instance, self.chosen)
         interrupted = ""
         designs: list[Design] = []
@@ -266,7 +362,7 @@ class _FrontSearch:
                 if self.m > 1:
                     self._timed("front", self._choose)
                 designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
-            else:
+            elif explained:
                 searched = set(self.form.solved_combinations)
                 explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
                 # What was solved only to explain does not change how the combinations were excluded.
@@ -330,24 +426,22 @@ class _FrontSearch:
     # -- one best design -----------------------------------------------------------------------
 
     def _best(
-        self, k: int, plain: np.ndarray, start: Candidate | None = None, effort: int = EFFORT
+        self, k: int, plain: np.ndarray, start: Candidate | None = None, effort: int | None = None
     ) -> Candidate | None:
-        """Return the design that is best in one objective, the others capped."""
+        """Return the design that is best in one objective, the others capped.
+
+        With an ``effort`` of its own the search may end early and is content with what it has.
+        """
         self.scalar_problems += 1
-        form = self.form
-        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), SMALLEST_SIZE)
-        slack = float(self._slack(sizes)[k])
-        before = len(form.archive)
-        found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
-        while self.m == 1 and found is not None and outcome.closed and not form.log_goals[k]:
-            # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
-            finer = float(self._slack(np.maximum(np.abs(found.phi), SMALLEST_SIZE))[k])
-            if finer >= slack:
-                break
-            slack = finer
-            found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, found, effort)
-        if not outcome.closed and effort == EFFORT:
-            purpose = Cover([k], np.array([slack]), plain, Archive([k], form.n, len(form.goals)))
+        before = len(self.form.archive)
+        first = effort if effort is not None else self.effort if self.in_conflict else min(SOON, self.effort)
+        found, outcome, slack = self._best_within(k, plain, start, first)
+        if not outcome.closed and effort is None and not self.in_conflict:
+            # What is feasible is so narrow that it costs most to tell which limits leave nothing.
+            self._prepare_for_conflict()
+            found, outcome, slack = self._best_within(k, plain, found, self.effort)
+        if not outcome.closed and effort is None:
+            purpose = Cover([k], np.array([slack]), plain, Archive([k], self.form.n, len(self.form.goals)))
             if found is not None:
                 purpose.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
             self._exhaust(outcome.open, purpose)
@@ -356,10 +450,30 @@ class _FrontSearch:
             self.open_combinations = 0.0
         return found
 
+    def _best_within(
+        self, k: int, plain: np.ndarray, start: Candidate | None, effort: float
+    ) -> tuple[Candidate | None, Covered, float]:
+        """Return the best design found with so much effort, how the search ended, and the slack it had."""
+        form = self.form
+        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), SMALLEST_SIZE)
+        slack = float(self._slack(sizes)[k])
+        found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
+        while self.m == 1 and found is not None and outcome.closed and not form.log_goals[k]:
+            # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
+            finer = float(self._slack(np.maximum(np.abs(found.phi), SMALLEST_SIZE))[k])
+            if finer >= slack:
+                break
+            slack = finer
+            found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, found, effort)
+        return found, outcome, slack
+
     def _exhaust(self, left: Boxes, purpose: Cover) -> None:
         """Solve what bounds could not exclude: every combination from several starts, or those that Optuna draws."""
         self.closed = False
         self.unresolved += len(left)
+        if not self.thorough:
+            self.exhausted = False
+            return
         combinations = self.form.cells.all_members(left.cell, EXHAUSTIVE_LIMIT + 1)
         if len(combinations) <= EXHAUSTIVE_LIMIT:
             solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
@@ -385,27 +499,39 @@ class _FrontSearch:
 
     def _coarse(self) -> None:
         """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
-        for conflict in (False, True):
-            if conflict:
-                known = self.form
-                self.form = self._formulation(conflict)
-                self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
-                self.form.solved_combinations = known.solved_combinations
-                self.purpose = self._purpose(None)
-                self.pool = self.form.root()
-            outcome = self._covered(self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0)), COARSE_EFFORT)
-            if len(self.form.archive):
-                self._seek(self._fine())
-                return
-            if outcome.closed:
-                self.pool, self.open_combinations = self.form.nothing(), 0.0
-                return
+        if self.recalled and recall(self.form, self.purpose, self.recalled, self.rng):
+            self._seek(self._fine())
+            return
+        if self._look_round() or not len(self.pool):
+            return
+        self._prepare_for_conflict()
+        self._look_round()
+
+    def _prepare_for_conflict(self) -> None:
+        """Begin again with boxes that also carry what limits share, and keep what is known."""
+        known, self.in_conflict = self.form, True
+        self.form = self._formulation(conflict=True)
+        self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
+        self.form.solved_combinations = known.solved_combinations
+        self.form.propagation.taught_by(known.propagation)
+        self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
+        self.purpose = self._purpose(None)
+        self.pool = self.form.root()
+
+    def _look_round(self) -> bool:
+        """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
+        outcome = self._covered(self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0)), COARSE_EFFORT)
+        if len(self.form.archive):
+            self._seek(self._fine())
+        elif outcome.closed:
+            self.pool, self.open_combinations = self.form.nothing(), 0.0
+        return bool(len(self.form.archive))
 
     def _cover(self) -> None:
         """Cover everything as finely as the points asked for need, at most as the gap."""
         form = self.form
         fine = self._fine()
-        outcome = self._covered(fine, EFFORT)
+        outcome = self._covered(fine, self.effort)
         left = outcome.open
         if len(left):
             self._exhaust(left, fine)
@@ -515,6 +641,48 @@ class _FrontSearch:
         proven.update(c.phi.tobytes() for c in finished)
         self.front = distinct(finished, self.m)
         return not replaced or len(self.front) >= self.points
+
+    # -- afterwards ----------------------------------------------------------------------------
+
+    def challenged(self, listed: np.ndarray, deadline: float) -> tuple[bool, list[Candidate]]:
+        """Look for designs that beat others, of other families for instance, and prove that no further ones do.
+
+        Parameters
+        ----------
+        listed : array (designs, objectives)
+            Objectives of the others in SI, with their sign.
+        deadline : float
+            As of ``time.monotonic``.
+
+        Returns
+        -------
+        tuple
+            Whether it is proven that nothing here improves one of them, or one of the designs found instead, by more
+            than the gap in every objective; and the designs found, as good as their parts allow.
+        """
+        form, m = self.form, self.m
+        self.stage, self.done = "against the others", 0.0
+        phi = np.zeros((len(listed), len(form.goals)))
+        phi[:, :m] = form.phi_of(listed)
+        every = np.concatenate([phi[:, :m], *(c.phi[None, :m] for c in self.front)])
+        sizes = np.ones(len(form.goals))
+        sizes[:m] = np.where(np.ptp(every, axis=0) > 0, np.ptp(every, axis=0), np.abs(every).max(axis=0))
+        nowhere = np.full(form.n, np.nan)
+        designs = [*(Candidate(-1, nowhere, row) for row in phi), *self.front]
+        own = {c.phi.tobytes() for c in self.front}
+        nothing = Archive(range(m), form.n, len(form.goals))
+        stairs = Staircase(designs, range(m), self._slack(sizes)[:m], nothing, own)
+        stairs.take(form.archive.combination, form.archive.variables, form.archive.phi)
+        outcome = cover(form, self.pool, stairs, Clock(deadline, self._working), self.rng, EFFORT)
+        better = [c for c in stairs.designs if c.combination >= 0 and c.phi.tobytes() not in own]
+        return outcome.closed, settle_variables(form, distinct(better, m), m, range(m))
+
+    def reported(self, candidates: Sequence[Candidate]) -> list[Design]:
+        """Return designs for more candidates, ties settled."""
+        known, self.front = self.front, list(candidates)
+        designs = self._designs(make_frame(self.instance, self.chosen), [1.0] * self.m, settle=True)
+        self.front = [*known, *candidates]
+        return designs
 
     # -- the report ----------------------------------------------------------------------------
 

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth.batch_nlp import MISSED, Tasks
+from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
 from synth.formulation import SNAP, Boxes, Candidate, Formulation
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
+from synth.settle import settle_variables
 
 PROBES = 256
 MOST_NLPS = 128
@@ -28,6 +29,8 @@ FAMILIES = 48  # known combinations that are tried at all places
 MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
 CONFLICTS = 64
+NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
+THIN = 1e-5  # relative
 
 
 class Seeker:
@@ -56,7 +59,16 @@ class Seeker:
             good = self._solve(chosen)
             self.nlps = min(2 * self.nlps, MOST_NLPS) if 4 * good > len(chosen) else max(self.nlps // 2, LEAST_NLPS)
             found += good
+        if found and len(self.purpose.columns) == 1:
+            self._settle_best()
         self.failures = 0 if found else self.failures + 1
+
+    def _settle_best(self) -> None:
+        """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""
+        k = self.purpose.columns[0]
+        best = self.form.archive[int(np.argmin(self.form.archive.phi[:, k]))]
+        exact = settle_variables(self.form, [best], 0, [k])[0]
+        self.offer(exact.variables[None, :], np.array([exact.combination]))
 
     def _conflicts(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
@@ -67,8 +79,18 @@ class Seeker:
         caps = np.tile(self.purpose.plain, (len(boxes), 1))
         tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
         found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
+        # The closer limits come to agreeing, the more boxes it takes to show that they do not.
+        form.learn(tasks, found, np.maximum(np.abs(found.t), NEAR) ** -2.0)
         if not form.gridded.any():
             self.offer(found.variables, combinations)
+
+    def _learn(self, tasks: Tasks, found: Solutions) -> None:
+        """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
+        importance = np.ones(len(found.t))
+        if self.form.conflict:
+            excess = np.nan_to_num(-self.purpose.room(found.phi), nan=np.inf, posinf=np.inf)
+            importance = np.maximum(excess, float(self.purpose.slack.min())) ** -2.0
+        self.form.learn(tasks, found, importance)
 
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
@@ -102,13 +124,23 @@ class Seeker:
 
     def _keep(self, boxes: Boxes) -> int:
         """Evaluate two points of each box; return how many were new."""
-        found = 0
+        found, thin = 0, self._thin(boxes)
         for share in (EDGE, 0.5) if len(boxes) else ():
             points = self.form.makeable(self.form.inside(boxes, share))
-            found += self.offer(points, self.form.combination(boxes))
+            found += self.offer(points, self.form.combination(boxes), thin)
         return found
 
-    def offer(self, points: np.ndarray, combinations: np.ndarray, exact: bool = False) -> int:
+    def _thin(self, boxes: Boxes) -> np.ndarray:
+        """Tell in which boxes limits that all but exclude each other leave a variable no choice.
+
+        What is feasible there is so by the tolerance alone. Without it such a sliver would be split endlessly along
+        the other variables.
+        """
+        low, high = self.form.ends(boxes)
+        narrow: np.ndarray = np.any((low < high) & (high - low <= THIN * np.maximum(np.abs(high), np.abs(low))), axis=1)
+        return narrow
+
+    def offer(self, points: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False) -> int:
         """Take what is feasible; return how many designs no known one covered."""
         form = self.form
         rows, phi = form.feasible_rows(points, combinations, exact)
@@ -117,6 +149,15 @@ class Seeker:
         used = self.purpose.take(combinations[rows], points[rows], phi[rows])
         form.archive.add(combinations[rows], points[rows], phi[rows])
         return used
+
+    def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
+        """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
+        form = self.form
+        near = form.makeable(points)
+        self.offer(near, combinations)
+        if form.n:
+            _, phi = form.feasible_rows(points, combinations)
+            self._reach(combinations, points, phi[:, self.purpose.columns])
 
     def beside(self, clock: Clock) -> None:
         """Exchange one part at a time of the designs known, and try known parts elsewhere on the front.
@@ -185,12 +226,13 @@ class Seeker:
             key = (parent.combination, bytes([k]))
             if key not in placed:
                 placed.add(key)
-                combinations, start, base = self._exchanged([parent])
+                combinations, start, _ = self._exchanged([parent])
                 own = np.append(combinations, parent.combination)
-                nearly = np.full((len(own), len(self.form.goals)), 0.0)
-                nearly[:, self.purpose.columns] = TIE_WEIGHT
-                nearly[:, k] = 1.0
-                tasks = replace(self._upwards(np.full((len(own), base.shape[1]), np.nan)), weights=nearly, t_weight=0.0)
+                weights = np.zeros((len(own), len(self.form.goals)))
+                weights[:, self.purpose.columns] = TIE_WEIGHT
+                weights[:, k] = 1.0
+                caps = np.tile(self.purpose.plain, (len(own), 1))
+                tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
 
@@ -204,9 +246,10 @@ class Seeker:
         """Solve many problems over the whole range of the variables; return how many designs are new."""
         form, columns = self.form, self.purpose.columns
         found = form.solve_many(tasks, combinations, start)
+        self._learn(tasks, found)
         if not form.gridded.any():
             return self.offer(found.variables, combinations)
-        phi = found.phi[:, : form.traded] if max(columns) < form.traded else found.phi
+        phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= MISSED) & np.all(np.isfinite(phi), axis=1))
         space, along = self.purpose.room(phi[good]), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], ROUNDED_OFF)]
@@ -244,6 +287,7 @@ class Seeker:
         settled = form.gridded & (low == high)
         low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
         answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
+        self._learn(tasks, answer)
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
         rest = np.flatnonzero(~whole)

@@ -33,17 +33,17 @@ def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
 
 
 def settle_discrete(
-    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int]
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int], parts: bool = True
 ) -> list[Candidate]:
     """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
 
     None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid or among
-    parts, the other objectives decide that way.
+    parts, the other objectives decide that way. Parts stay where ``parts`` is False.
     """
-    return [_settle_discrete(form, candidate, traded, list(order)) for candidate in candidates]
+    return [_settle_discrete(form, candidate, traded, list(order), parts) for candidate in candidates]
 
 
-def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order: list[int]) -> Candidate:
+def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order: list[int], parts: bool) -> Candidate:
     movable = np.flatnonzero(form.gridded & (form.lower < form.upper))
     for _ in range(MOST_MOVES):
         before = candidate
@@ -53,7 +53,7 @@ def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order
             trials = np.tile(candidate.variables, (len(grid), 1))
             trials[:, k] = grid
             candidate = _better(form, candidate, trials, np.full(len(grid), candidate.combination), traded, order)
-        others = form.instance.neighbours(candidate.combination)
+        others = form.instance.neighbours(candidate.combination) if parts else np.empty(0, dtype=np.int64)
         trials = np.tile(candidate.variables, (len(others), 1))
         candidate = _better(form, candidate, trials, others, traded, order)
         if candidate is before:

@@ -23,10 +23,11 @@ LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is
 class Spec:
     """A design question as it stands in a file; what was not written is None (or an empty mapping).
 
+    ``family`` is a name, "any", or a tuple of names and of mappings with ``family`` and what concerns it alone.
     ``file`` is the path as it was given and ``folder`` the place that relative catalogue paths start from.
     """
 
-    family: str
+    family: Any
     options: Mapping[str, str]
     requirements: Mapping[str, Any]
     objectives: Any
@@ -44,6 +45,11 @@ class Spec:
     workers: int | None
     file: str
     folder: Path
+
+    @property
+    def compares(self) -> bool:
+        """Tell whether several families are asked."""
+        return not isinstance(self.family, str) or self.family == "any"
 
     def merged(self, **flags: Any) -> Spec:
         """Return the spec with some of its keys replaced; flags that are None change nothing.
@@ -116,6 +122,29 @@ def _text(where: str, value: Any) -> str:
     if not isinstance(value, str) or not value.strip():
         raise InputError(where, _kind(value), "a name")
     return value
+
+
+def _family(where: str, value: Any) -> Any:
+    """Return a name, or several: names, and mappings with what concerns one family alone."""
+    if not isinstance(value, (list, tuple)):
+        return _text(where, value)
+    if not value:
+        raise InputError(where, _kind(value), "a name, 'any', or a list with at least one name")
+    return tuple(_one_family(f"{where}, entry {k}", entry) for k, entry in enumerate(value, start=1))
+
+
+def _one_family(where: str, entry: Any) -> Any:
+    if not isinstance(entry, Mapping):
+        return _text(where, entry)
+    for key in entry:
+        if key not in OWN:
+            raise InputError(f"{where}: key", key, f"one of {', '.join(OWN)}")
+    if entry.get("family") is None:
+        raise InputError(f"{where}: family", None, "the name of a family")
+    return MappingProxyType({
+        key: _text(where, value) if key == "family" else FIELDS[key](f"{where}: {key}", value)
+        for key, value in entry.items()
+    })  # fmt: skip
 
 
 def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
@@ -241,7 +270,7 @@ def _seconds(where: str, value: Any) -> float | None:
 
 
 FIELDS: dict[str, Callable[[str, Any], Any]] = {
-    "family": _text,
+    "family": _family,
     "options": _options,
     "requirements": _scalars("load_torque: 600 N*m"),
     "objectives": _objectives,
@@ -258,6 +287,10 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
     "time_limit": _seconds,
     "workers": _whole(1),
 }
+
+
+# What may concern one family of several alone.
+OWN = ("family", "options", "requirements", "limits", "fix", "parts")
 
 
 def _hint(key: Any) -> str:
@@ -353,32 +386,54 @@ def read_spec(path: str | Path) -> Spec:
     InputError
         When the file cannot be read, is not YAML (JSON), has unknown or doubled keys, or a value of the wrong kind.
     """
-    file = Path(path)
+    content = read_content(path, "spec")
     shown = str(path)
-    text = _read_text(file, shown)
-    content = _parse_json(text, shown) if file.suffix.lower() == ".json" else _parse_yaml(text, shown)
     if content is None:
         raise InputError(shown, _Described("an empty file"), "a spec: lines such as 'family: multi_plate_clutch'")
-    return spec_from_mapping(content, shown, file.parent)
+    return spec_from_mapping(content, shown, Path(path).parent)
 
 
-def _read_text(file: Path, shown: str) -> str:
+def read_content(path: str | Path, what: str) -> Any:
+    """Read a YAML file (JSON, with the ending ``.json``) strictly; what it means is for the caller to judge.
+
+    Parameters
+    ----------
+    path : str or Path
+    what : str
+        What the file is, for messages.
+
+    Returns
+    -------
+    object
+        None for an empty file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is not YAML (JSON), or has doubled keys.
+    """
+    file, shown = Path(path), str(path)
+    text = _read_text(file, shown, what)
+    return _parse_json(text, shown) if file.suffix.lower() == ".json" else _parse_yaml(text, shown)
+
+
+def _read_text(file: Path, shown: str, what: str) -> str:
     if file.is_dir():
-        raise InputError("spec", shown, "a file; this is a folder")
+        raise InputError(what, shown, "a file; this is a folder")
     try:
         with file.open("rb") as stream:
             raw = stream.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a possible file name"
-        raise InputError("spec", shown, f"a file that can be read ({reason})") from error
+        raise InputError(what, shown, f"a file that can be read ({reason})") from error
     if len(raw) > LARGEST_FILE:
-        raise InputError("spec", shown, f"a text file of at most {LARGEST_FILE // 1000} kB")
+        raise InputError(what, shown, f"a text file of at most {LARGEST_FILE // 1000} kB")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = "\0"
     if "\0" in text:
-        raise InputError("spec", shown, "a text file in UTF-8; this one is binary or in another encoding")
+        raise InputError(what, shown, "a text file in UTF-8; this one is binary or in another encoding")
     return text
 
 

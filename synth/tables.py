@@ -942,6 +942,17 @@ class Catalogs:
                 result[name] = ["+", *paths] if extends else paths[0]
         return result
 
+    def digest(self) -> str:
+        """SHA-256 of everything in these tables: shipped files byte by byte, a user's own row by row."""
+        total = hashlib.sha256()
+        for name, path in sorted(self._shipped.items()):
+            schema = path.with_name(name + _SCHEMA_SUFFIX)
+            for file in (path, schema):
+                total.update(file.name.encode() + b"\0" + (file.read_bytes() if file.is_file() else b"") + b"\0")
+        for name in sorted(self._spec):
+            total.update(json.dumps([name, *self.table(name).hashes]).encode())
+        return total.hexdigest()
+
     def names(self) -> tuple[str, ...]:
         """Names of all tables, sorted."""
         return tuple(sorted({*self._shipped, *self._spec}))

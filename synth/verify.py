@@ -18,9 +18,10 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
-from synth.instance import Instance, catalogs_for
-from synth.problem import DesignProblem, load
+from synth.instance import Instance
+from synth.problem import DesignProblem
 from synth.prooftree import Outcome, Point, ProofTree
+from synth.question import asked_again, problem_of
 from synth.special import expanded
 from synth.units import format_quantity
 
@@ -102,26 +103,7 @@ def verify(
         When the problem or its tables cannot be had.
     """
     started = time.monotonic()
-    check = _Check(front, started + time_limit)
-    check.record()
-    if front.question is not None and problem is None and catalogs is None:
-        check.question(front.question)
-    else:
-        own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
-        tables = catalogs_for(own, front.frame.restated.get("catalogs") if catalogs is None else catalogs)
-        try:
-            settings = front.settings
-            instance = Instance(
-                own, front.frame.requirements, tables, settings["parts"], settings["limits"], settings["fix"],
-                bool(settings["grid"]),
-            )  # fmt: skip
-        except (InputError, *UNREADABLE) as error:
-            check.find(f"the question of the record cannot be asked: {error}")
-        else:
-            try:
-                check.question(instance)
-            except UNREADABLE as error:
-                check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+    check = checked(front, problem, catalogs, started + time_limit)
     return Verification(
         holds=not check.findings,
         findings=tuple(check.findings),
@@ -134,7 +116,27 @@ def verify(
     )
 
 
-class _Check:
+def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float) -> Check:
+    """Return the check of a front, done; see ``verify``."""
+    check = Check(front, deadline)
+    check.record()
+    if front.question is not None and problem is None and catalogs is None:
+        check.question(front.question)
+    else:
+        own, tables = problem_of(front, problem, catalogs)
+        try:
+            instance = asked_again(front, own, tables)
+        except (InputError, *UNREADABLE) as error:
+            check.find(f"the question of the record cannot be asked: {error}")
+        else:
+            try:
+                check.question(instance)
+            except UNREADABLE as error:
+                check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+    return check
+
+
+class Check:
     """One verification in progress."""
 
     def __init__(self, front: ParetoFront, deadline: float) -> None:
@@ -421,6 +423,18 @@ class _Check:
             self.find(f"status {front.status.value} with designs")
         if front.status is Status.OPTIMAL and not proven:
             self.find("status optimal, but the certificate is no proof")
+
+    def against(self, values: Mapping[str, np.ndarray], gap: float) -> None:
+        """Prove that no design of this question improves some others by more than a gap in every objective.
+
+        ``values``: objectives of the others in SI, and of the designs of this front.
+        """
+        self.signed = np.stack([values[name] for name in self.front.frame.objectives], axis=1) * self.senses
+        self.tree = ProofTree(self.instance, self.front.frame.objectives)
+        self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
+        outcome = self._prove(self._thresholds(gap))
+        if not outcome.closed:
+            self.find(self._refuted(outcome, f"no design improves one listed by more than {_percent(gap)}", "feasible"))
 
     # -- the claim -----------------------------------------------------------------------------
 

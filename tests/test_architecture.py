@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("synth", "problems", "problems/blocks", "problems/mechanics", "catalogs", "reports")
+ENGINE = ("synth", "synth/jobs", "synth/jobs/migrations", "synth/jobs/migrations/versions", "synth/variants")
+PACKAGES = (*ENGINE, "problems", "problems/blocks", "problems/mechanics", "catalogs", "reports")
 OURS = {package.split("/")[0] for package in PACKAGES}
 
 
@@ -88,8 +89,9 @@ def test_packages_around_the_engine_keep_to_its_public_side(package: str) -> Non
 
 def test_the_engine_imports_no_family_no_catalogue_and_no_report() -> None:
     found = {
-        path.name: [n for n in imported(path.read_text()) if n.split(".")[0] in OURS - {"synth"}]
-        for path in sources("synth")
+        str(path): [n for n in imported(path.read_text()) if n.split(".")[0] in OURS - {"synth"}]
+        for package in ENGINE
+        for path in sources(package)
     }
     assert not {name: names for name, names in found.items() if names}
 
@@ -104,17 +106,31 @@ def circles(graph: dict[str, set[str]]) -> set[str]:
 
 def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": set()}) == {"a", "b", "c"}
-    graph = {
-        f"synth.{path.stem}": {
-            ".".join(name.split(".")[:2])
-            for name in imported(path.read_text(), at_run_time=True)
-            if name.startswith("synth.")
-        }
-        for path in sources("synth")
+    modules = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts): path
+        for package in ENGINE
+        for path in sources(package)
         if path.stem != "__init__"
     }
+
+    def module_of(name: str) -> str:
+        steps = name.split(".")
+        return next((m for k in range(len(steps), 0, -1) if (m := ".".join(steps[:k])) in modules), "")
+
+    graph = {
+        name: {module_of(other) for other in imported(path.read_text(), at_run_time=True)} - {""}
+        for name, path in modules.items()
+    }
     assert len(graph) > 10
+    assert "synth.jobs.store" in graph["synth.jobs.run"]
     assert circles(graph) == set()
+
+
+def test_the_rest_of_the_engine_does_without_batches_and_size_ranges() -> None:
+    for path in sources("synth"):
+        if path.stem not in ("__init__", "cli"):
+            names = imported(path.read_text())
+            assert not [name for name in names if name.startswith(("synth.jobs", "synth.variants"))], path.name
 
 
 def spoken(tree: ast.AST) -> set[str]:
@@ -144,7 +160,7 @@ def test_the_engine_names_no_family() -> None:
     families = {point.name for point in points} | {point.attr for point in points}
     # Messages may show a line of a spec that can be typed; nothing else may know a name.
     example = re.compile(r"'family: \w+'")
-    for path in sources("synth"):
+    for path in (path for package in ENGINE for path in sources(package)):
         words = {example.sub("", word) for word in spoken(ast.parse(path.read_text()))}
         named = {word for word in words for family in families if family in word}
         assert not named, f"{path.name} names {named}"

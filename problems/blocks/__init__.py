@@ -16,6 +16,7 @@ from problems.blocks.disc import (
     disc_size,
 )
 from problems.blocks.duty import (
+    COMMON,
     Duty,
     Size,
     declare_duty,
@@ -51,10 +52,12 @@ from problems.blocks.multi_plate import (
     declare_pack_temperature,
     declare_pack_torque,
     pack_size,
+    refuse_impossible_pack,
 )
 from problems.blocks.ring import RING_OUTER_DIAMETER_MAX, Ring, declare_ring
 
 __all__ = [
+    "COMMON",
     "RING_OUTER_DIAMETER_MAX",
     "DiscPack",
     "DiscRequirements",
@@ -94,6 +97,7 @@ __all__ = [
     "declare_worn_torque",
     "disc_size",
     "pack_size",
+    "refuse_impossible_pack",
     "sizing_torque",
     "sizing_torque_of",
 ]

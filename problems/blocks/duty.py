@@ -14,6 +14,26 @@ from synth.errors import InputError
 if TYPE_CHECKING:
     from synth.declaration import Declaration
 
+# What a sheet for several families may state, as far as a family uses it.
+COMMON = (
+    "load_torque",
+    "driver_speed",
+    "driven_inertia",
+    "safety_factor",
+    "switching_factor",
+    "speed_factor",
+    "engagements_per_hour",
+    "startup_torque",
+    "overload_torque",
+    "actuation_force_limit",
+    "outer_diameter_limit",
+    "length_limit",
+    "slip_time_limit",
+    "jerk_limit",
+    "acceleration_limit",
+    "steel_density",
+)
+
 
 @dataclass(frozen=True)
 class Duty:

@@ -10,7 +10,7 @@ import numpy as np
 
 from problems.blocks.duty import Duty, Size
 from problems.blocks.engagement import Pair, Startup, advise_frequent_switching
-from problems.blocks.ring import Ring
+from problems.blocks.ring import RING_OUTER_DIAMETER_MAX, Ring
 from problems.blocks.sources import S0, S1, TYPICAL
 from problems.mechanics import guide_friction, heat, plates
 from problems.mechanics import ring as ring_formulas
@@ -310,6 +310,65 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
             text="The shaft fits inside the plates", source="requirement of the drive",
         )  # fmt: skip
     return pack
+
+
+def refuse_impossible_pack(
+    d: Declaration,
+    duty: Duty,
+    options: PackOptions,
+    wants: PackRequirements,
+    ring: Ring,
+    pack: Pack,
+    required: Any,
+) -> None:
+    """Refuse requirements that no design can meet, whatever the unknowns.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    options : PackOptions
+        Options of the pack.
+    wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+    pack : Pack
+        The plates.
+    required : symbol
+        Sizing torque M_req [N m].
+    """
+    if wants.hub_bore_diameter is not None and duty.outer_diameter_limit is not None:
+        least_inner = wants.hub_bore_diameter + 2 * wants.lug_clearance
+        least_outer = least_inner * (1 + ring.ratio_min) / (1 - ring.ratio_min)
+        d.refuse(
+            "no_room_for_ring",
+            least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
+            "room for a friction ring of at least ring_ratio_min between hub_bore_diameter and "
+            "outer_diameter_limit, besides lug_clearance and drum_wall",
+        )
+    # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
+    saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
+    if duty.actuation_force_limit is not None and saturates:
+        outer_spline = RING_OUTER_DIAMETER_MAX / 2000 + wants.lug_clearance
+        if duty.outer_diameter_limit is not None:
+            outer_spline = np.minimum(outer_spline, duty.outer_diameter_limit / 2 - wants.drum_wall)
+        outer_radius = outer_spline - wants.lug_clearance
+        inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - wants.lug_clearance
+        net_force = duty.actuation_force_limit * (1 - pack.aid.force_fraction)
+        d.refuse(
+            "torque_above_guide_limit",
+            np.logical_and(
+                inner_spline > 0,
+                required * wants.guide_friction * (inner_spline + outer_spline)
+                > net_force * inner_spline * outer_spline,
+            ),
+            "a sizing torque that the friction in the guides lets pass at actuation_force_limit with the largest "
+            "splines that fit; more plates do not help: raise actuation_force_limit or outer_diameter_limit, or "
+            "lower guide_friction",
+        )
 
 
 def declare_pack_torque(

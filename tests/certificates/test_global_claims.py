@@ -329,3 +329,18 @@ def _equal_rows(case: Case, slot: str, designation: str) -> list[str]:
     used = table[["k", "s"]].to_numpy()
     own = used[np.flatnonzero(table["designation"] == designation)[0]]
     return list(table["designation"][np.all(used == own, axis=1)])
+
+
+def test_limits_that_nearly_agree_are_shown_to_conflict_with_little_work():
+    # Jerk and slip time miss each other by 0.12 % over all parts: parts and rings must hardly be told apart.
+    hoist = {
+        "load_torque": "730.93 N*m",
+        "driver_speed": "22.567 rad/s",
+        "driven_inertia": "22.2245 kg*m2",
+        "engagements_per_hour": "50 1/h",
+        "jerk_limit": "14.612 rad/s3",
+    }
+    front = synth.synthesize("multi_plate_clutch", hoist, objectives=["mass"], points=1, time_limit=60)
+    assert front.status.value == "infeasible"
+    assert front.certificate.kind == "global"
+    assert front.statistics["boxes"] < 300_000

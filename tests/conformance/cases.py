@@ -29,7 +29,8 @@ class Case:
 class Family:
     """What the suite needs to know of a family.
 
-    ``option_sets`` are the structures to trace, ``optional`` values for all optional requirements.
+    ``option_sets`` are the structures to trace, ``optional`` values for all optional requirements of the first of them.
+    ``constants`` are the numbers with a unit that its formulas hold, as "module:name": exponents of kg, m, s, K, A.
     """
 
     option_sets: Mapping[str, Mapping[str, str]]
@@ -40,6 +41,8 @@ class Family:
     culprits: frozenset[str]
     sound: Any
     needed: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by "option=value": what it must be told
+    unknown: Mapping[str, frozenset[str]] = field(default_factory=dict)  # by "option=value": what it does not have
+    constants: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
 
 def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
@@ -444,6 +447,8 @@ def question(family: str, options: Mapping[str, str], optional: bool) -> Instanc
     requirements = {**data.requirements, **(data.optional if optional else {})}
     for option, value in options.items():
         requirements |= data.needed.get(f"{option}={value}", {})
+        absent = data.unknown.get(f"{option}={value}", frozenset())
+        requirements = {name: given for name, given in requirements.items() if name not in absent}
     return Instance(synth.load(family, **options), requirements, as_catalogs(None))
 
 

@@ -1,4 +1,8 @@
-"""Names, symbols, units, defaults and bounds of a family against the table of its public names."""
+"""Names, symbols, units, defaults and bounds of a family against the table of its public names.
+
+A family whose names depend on an option has a table per value: ``names_FAMILY.csv`` for the default, and
+``names_FAMILY@OPTION=VALUE.csv``.
+"""
 
 import csv
 from pathlib import Path
@@ -6,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.units import from_si, parse_unit
-from tests.conformance.cases import CASES
+from tests.conformance.cases import CASES, question
 
 FOLDER = Path(__file__).parent
 TABLES = sorted(FOLDER.glob("names_*.csv"))
@@ -18,23 +22,35 @@ def rows_of(path):
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def models(family):
-    """Return the models of all structures of the family."""
-    data = CASES[family]
-    return [
-        Instance(synth.load(family, **options), {**data.requirements, **data.optional}, as_catalogs(None)).model
-        for options in data.option_sets.values()
+def family_and_option(path):
+    """Return the family of a table, and the option (name, value) that it is for, if it is for one."""
+    family, _, option = path.stem.removeprefix("names_").partition("@")
+    return family, tuple(option.split("=")) if option else None
+
+
+def structures(family, option):
+    """Return the options of all structures of the family that a table is for."""
+    others = {own for f, own in map(family_and_option, TABLES) if f == family and own not in (None, option)}
+    kept = [
+        options
+        for options in CASES[family].option_sets.values()
+        if (option is None or option in options.items()) and not others & set(options.items())
     ]
+    assert kept
+    return kept
 
 
 @pytest.fixture(scope="module", params=TABLES, ids=lambda p: p.stem.removeprefix("names_"))
 def named(request):
-    family = request.param.stem.removeprefix("names_")
-    return family, rows_of(request.param), models(family)
+    family, option = family_and_option(request.param)
+    models = [question(family, options, optional=True).model for options in structures(family, option)]
+    default = {} if option is None else dict([option])
+    plain = question(family, default, optional=False)  # expressions get their numbers here
+    return plain, rows_of(request.param), models
 
 
 def test_every_family_has_its_table():
-    assert {p.stem.removeprefix("names_") for p in TABLES} == set(synth.families())
+    assert {family for family, option in map(family_and_option, TABLES) if option is None} == set(synth.families())
 
 
 def numbers(text):
@@ -42,13 +58,10 @@ def numbers(text):
 
 
 def test_requirements(named):
-    _, rows, (default, *_) = named
+    plain, rows, (default, *_) = named
     wanted = {r["name"]: r for r in rows if r["kind"] in ("req", "opt")}
     declared = default.declaration.requirements
     assert set(declared) == set(wanted)
-    instance = Instance(
-        synth.load(named[0]), CASES[named[0]].requirements, as_catalogs(None)
-    )  # expressions get their numbers here
     for name, row in wanted.items():
         r = declared[name]
         assert (r.symbol, r.unit, r.optional) == (row["symbol"], row["unit"], row["kind"] == "opt"), name
@@ -56,7 +69,7 @@ def test_requirements(named):
         assert from_si(r.lower, unit) == pytest.approx(numbers(row["lower"])), name
         assert from_si(r.upper, unit) == pytest.approx(numbers(row["upper"])), name
         if row["default"]:
-            assert from_si(instance.requirements[name], unit) == pytest.approx(float(row["default"])), name
+            assert from_si(plain.requirements[name], unit) == pytest.approx(float(row["default"])), name
         else:
             assert r.default is None, name
 
@@ -113,7 +126,8 @@ def test_variables_and_counts(named):
 
 
 def test_slots_and_their_columns(named):
-    _, rows, everything = named
+    plain, rows, everything = named
+    everything = [*everything, plain.model]  # an optional requirement may take the place of a column
     slots = {r["name"]: r for r in rows if r["kind"] == "slot"}
     seen = {name: part for model in everything for name, part in model.declaration.slots.items()}
     assert set(seen) == set(slots)
@@ -141,7 +155,8 @@ def test_slots_and_their_columns(named):
 
 
 def test_optional_columns_are_those_of_the_table(named):
-    _, rows, everything = named
+    plain, rows, everything = named
+    everything = [*everything, plain.model]  # an optional requirement may take the place of a column
     wanted = {r["name"] for r in rows if r["kind"] == "col?"}
     for model in everything:
         for limit in model.limits:
@@ -172,11 +187,11 @@ def test_objectives(named):
 
 
 def test_a_symbol_works_wherever_the_name_does(named):
-    family, rows, everything = named
+    plain, rows, everything = named
     spellings = {word: name for model in everything for word, name in model.declaration.names().items()}
     structural = {r["name"] for r in rows if "." not in r["name"]}
     for row in rows:
         if row["name"] in structural:
             assert spellings[row["symbol"]] == row["name"]
             assert spellings[row["name"]] == row["name"]
-    assert family == everything[0].title
+    assert {model.title for model in everything} == {plain.model.title}

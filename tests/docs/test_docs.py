@@ -25,7 +25,8 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth import cli
+import synth.results
+from synth import cli, terminal
 from synth.description import describe
 from synth.spec import FIELDS
 
@@ -186,17 +187,21 @@ def offered() -> list[tuple[str, list[str]]]:
     """Return the commands of the command line with their options."""
     import typer
 
-    group = typer.main.get_command(cli.app)
-    return [
-        (name, [flag for p in command.params for flag in (*p.opts, *p.secondary_opts) if flag.startswith("-")])
-        for name, command in group.commands.items()
-    ]
+    found = []
+    pending = list(typer.main.get_command(cli.app).commands.items())
+    while pending:
+        name, command = pending.pop(0)
+        pending += [(f"{name} {own}", part) for own, part in getattr(command, "commands", {}).items()]
+        flags = [flag for p in command.params for flag in (*p.opts, *p.secondary_opts) if flag.startswith("-")]
+        found.append((name, flags))
+    return found
 
 
 def test_every_command_and_option_is_documented() -> None:
     text = all_pages()
     found = offered()
     assert len(found) > 3
+    assert "jobs resume" in dict(found)
     for name, flags in found:
         assert f"clutchsynth {name}" in text
         for flag in flags:
@@ -210,7 +215,8 @@ def test_every_key_of_a_spec_is_documented() -> None:
 
 
 def test_every_exit_code_is_documented() -> None:
-    codes = {cli.FOUND, cli.INTERNAL, cli.BAD_INPUT, cli.INFEASIBLE, cli.STOPPED, cli.DOES_NOT_HOLD}
+    codes = {terminal.FOUND, terminal.INTERNAL, terminal.BAD_INPUT, terminal.INFEASIBLE, terminal.STOPPED}
+    codes.add(terminal.DOES_NOT_HOLD)
     for page in ("README.md", "docs/results.md"):
         table = text_of(page).split("## Exit codes")[1].split("\n## ")[0]
         assert {int(code) for code in re.findall(r"^\| (\d) \|", table, re.MULTILINE)} == codes

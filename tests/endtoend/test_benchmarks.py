@@ -13,7 +13,7 @@ import pytest
 import synth
 from synth.instance import Instance
 from synth.tables import Catalogs
-from tests.benchmarks import cases
+from tests.benchmarks import batch, cases
 from tests.benchmarks.__main__ import main
 from tests.benchmarks.child import MARK
 from tests.benchmarks.families import QUESTIONS, measure
@@ -110,3 +110,16 @@ def test_a_question_to_a_family_is_measured() -> None:
     assert found["combinations"] > 1
     assert 0 < found["processor s"]
     assert {q.family for q in QUESTIONS} <= set(synth.families())
+
+
+def test_a_batch_is_measured() -> None:
+    found = batch.measure(2, 1, "tiny", None)
+    assert (found["rows"], found["with designs"], found["global"]) == (2, 1, 2)
+    assert found["combinations"] == 30
+    assert found["NLPs, median"] > 0
+    assert 0 < found["MiB, master"]
+    spent = batch.overhead(4)
+    assert 0 < spent["claim and keep ms"]
+    (report,) = batch.ranges(quick=True)
+    assert [row["kind"] for row in report.rows] == ["capacity and room", "plane"]
+    assert all(row["gap"] <= 1e-3 for row in report.rows)

@@ -23,7 +23,10 @@ ROOT = Path(__file__).parents[2]
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
 COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
-HEAVY = ("casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib")
+HEAVY = (
+    "casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib", "sqlalchemy", "alembic", "distributed",
+    "multiprocessing",
+)  # fmt: skip
 
 # One ring, three plate numbers: the force is all that is left to find.
 SMALL = """

@@ -2,10 +2,11 @@
 
 import casadi as ca
 import numpy as np
+import pytest
 
 ca.GlobalOptions.setNumpyMode(-1)
 
-# Exponents of kilogram, metre, second, kelvin.
+# Exponents of kilogram, metre, second, kelvin and, where there is one, ampere.
 DIMENSION = {
     "-": (0, 0, 0, 0),
     "kg": (1, 0, 0, 0),
@@ -19,6 +20,7 @@ DIMENSION = {
     "1/s3": (0, 0, -3, 0),
     "K": (0, 0, 0, 1),
     "N": (1, 1, -2, 0),
+    "N/m": (1, 0, -2, 0),
     "N m": (1, 2, -2, 0),
     "J": (1, 2, -2, 0),
     "W": (1, 2, -3, 0),
@@ -34,6 +36,15 @@ DIMENSION = {
     "J/(kg K)": (0, 2, -2, -1),
     "W/(m K)": (1, 1, -3, -1),
     "W/(m2 K)": (1, 0, -3, -1),
+    "K/W": (-1, -2, 3, 1),
+    "1/K": (0, 0, 0, -1),
+    "A": (0, 0, 0, 0, 1),
+    "A/m": (0, -1, 0, 0, 1),
+    "A/(m T)": (-1, -1, 2, 0, 2),
+    "T": (1, 0, -2, 0, -1),
+    "V": (1, 2, -3, 0, -1),
+    "V s/(A m)": (1, 1, -2, 0, -2),
+    "ohm m": (1, 3, -3, 0, -2),
 }
 
 
@@ -42,16 +53,23 @@ def draw(units, ranges, rng):
     return {name: rng.uniform(*ranges.get(name, (0.5, 2.0))) for name in units}
 
 
-def assert_homogeneous(function, units, result_unit, ranges, seed=0, trials=20):
-    """Rescale kilogram, metre, second and kelvin at random: a sound formula scales as its unit."""
+def assert_homogeneous(function, units, result_unit, ranges, seed=0, trials=20, constants=()):
+    """Rescale kilogram, metre, second, kelvin and ampere at random: a sound formula scales as its unit.
+
+    ``constants`` are the numbers with a unit that the formula holds: (module, name, unit).
+    """
     rng = np.random.default_rng(seed)
     for _ in range(trials):
         values = draw(units, ranges, rng)
-        scale = rng.uniform(0.3, 3.0, size=4)
-        factor = {unit: np.prod(scale ** np.array(exponents)) for unit, exponents in DIMENSION.items()}
+        scale = rng.uniform(0.3, 3.0, size=5)
+        factor = {unit: np.prod(scale[: len(e)] ** np.array(e)) for unit, e in DIMENSION.items()}
         rescaled = {name: value * factor[units[name]] for name, value in values.items()}
         expected = np.asarray(function(**values), dtype=float) * factor[result_unit]
-        np.testing.assert_allclose(np.asarray(function(**rescaled), dtype=float), expected, rtol=1e-9)
+        with pytest.MonkeyPatch.context() as patch:
+            for module, name, unit in constants:
+                patch.setattr(module, name, getattr(module, name) * factor[unit])
+            found = np.asarray(function(**rescaled), dtype=float)
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
 
 
 def assert_same_on_symbols_and_arrays(function, units, ranges, seed=1, trials=12):

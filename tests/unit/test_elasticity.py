@@ -158,3 +158,27 @@ def test_a_limit_moved_by_the_user_costs_what_its_elasticity_says(light):
     found = lightest(duty).elasticity["mass"]
     assert found["actuation_force"] == pytest.approx(expected, rel=2e-3)
     assert found["actuation_force_limit"] == pytest.approx(expected, rel=2e-3)
+
+
+class Followed(synth.DesignProblem):
+    """A rod whose second load is made of the first by default, and a third of the second."""
+
+    name = "followed"
+
+    def declare(self, d):
+        load = d.requirement("load", "kN", lower=1, upper=100)
+        peak = d.requirement("peak", "kN", 2.0 * load)
+        jolt = d.requirement("jolt", "kN", peak * peak / load)
+        diameter = d.variable("diameter", "mm", 1, 200)
+        d.derive("mass", "kg", 7850 * 0.785398 * diameter**2)
+        d.at_least("strength", 100e6 * 0.785398 * diameter**2, jolt + load, "kN")
+        d.objective("mass")
+
+
+@pytest.mark.parametrize(("stated", "expected"), [({}, 1.0), ({"peak": 20.0}, -0.6), ({"jolt": 40.0}, 0.2)])
+def test_what_a_default_makes_of_a_requirement_moves_with_it(stated, expected):
+    # mass ~ jolt + load: 5 load where all follow, 400/load + load where the peak is stated, 40 + load.
+    (design,) = synth.synthesize(Followed, {"load": 10.0, **stated}, gap=1e-5).designs
+    assert design.elasticity["mass"]["load"] == pytest.approx(expected, rel=1e-4)
+    if not stated:
+        assert design.elasticity["mass"]["peak"] == pytest.approx(1.6, rel=1e-4)  # 2 * 40 of 50

@@ -24,7 +24,7 @@ def strut_form(traded=2, grid=False):
 
 
 def seeker(form, slack=1e-3):
-    m = form.traded
+    m = len(form.archive.columns)
     purpose = Cover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
     return Seeker(form, purpose, np.random.default_rng(0), False)
 
@@ -93,7 +93,7 @@ def test_weights_are_learned_for_each_set_of_objectives():
     lessons = np.zeros((40, cuts + 3))
     lessons[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
     lessons[20:, [1, cuts + 1]] = 1.0, 1.0
-    propagation.learn(lessons)
+    propagation.learn(lessons, np.ones(40))
     weights = propagation.weights
     assert np.argmax(weights[1, :cuts]) == 0
     assert np.argmax(weights[2, :cuts]) == 1
@@ -101,6 +101,15 @@ def test_weights_are_learned_for_each_set_of_objectives():
     for one, other in itertools.pairwise((weights[0], weights[3])):
         np.testing.assert_array_equal(one, other)  # none capped, or both: all lessons count
     assert weights[0, 0] == pytest.approx(0.375, abs=0.01)
+
+
+def test_what_is_important_is_learned_most():
+    propagation = strut_form().propagation
+    cuts = len(propagation.cuts)
+    lessons = np.zeros((10, cuts + 3))
+    lessons[:9, 0] = lessons[9:, 1] = 1.0
+    propagation.learn(lessons, np.array([1.0] * 9 + [91.0]))
+    assert propagation.weights[0, 1] == pytest.approx(0.91, abs=0.01)
 
 
 def test_limits_that_exclude_each_other_teach_what_to_split():

@@ -1,0 +1,102 @@
+"""The commands that help to choose: near-equals, and run where several families are asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from synth.errors import InputError
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output
+
+if TYPE_CHECKING:
+    from synth.spec import Spec
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="near-equals")(near_equals)
+
+
+def near_equals(
+    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
+    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
+    within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
+    count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
+    seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
+    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+) -> None:
+    """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
+    check_output(folder)
+    if folder.resolve() == source.resolve():
+        raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
+    from synth.choice_console import print_near_equals
+    from synth.console import output, progress_display
+    from synth.near import near_equals as find
+    from synth.results import load_front
+    from synth.units import parse_quantity
+
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    front = load_front(source)
+    with progress_display(quiet) as progress:
+        found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
+    found.save(folder)
+    if not quiet:
+        print_near_equals(found, output())
+        print(f"written to {folder}: {', '.join(sorted(found.files()))}")
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.designs:
+        raise typer.Exit(INFEASIBLE)
+
+
+def show_common() -> None:
+    """Show the requirements that may stand in a sheet for several families, with those that understand them."""
+    from synth.sheet import understood
+
+    names = understood()
+    wide, units = max(map(len, names), default=0), max((len(unit) for unit, _ in names.values()), default=0)
+    for name, (unit, families) in names.items():
+        print(f"{name:{wide}}  {unit:{units}}  {', '.join(families)}")
+
+
+def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> None:
+    """Search the families of a spec, show and save their common front; end as ``run`` does."""
+    from synth.choice_console import comparison_explanation, print_comparison
+    from synth.comparison import compare
+    from synth.console import output, progress_display
+    from synth.results import write_atomically
+    from synth.tables import Catalogs
+
+    settings = asked.search_settings()
+    with blamed_on(asked.file), progress_display(quiet) as progress:
+        found = compare(
+            asked.family if isinstance(asked.family, str) else list(asked.family),
+            asked.requirements,
+            catalogs=Catalogs(asked.catalogs, base=asked.folder),
+            options=asked.options,
+            progress=progress,
+            finished=lambda label, front: front.save(folder / label),
+            **settings,
+        )
+    found.save(folder)
+    note = folder / "explanation.txt"
+    note.unlink(missing_ok=True)
+    if not found.designs and not found.interrupted:
+        write_atomically(note, comparison_explanation(found))
+    if not quiet:
+        print_comparison(found, output(), every)
+        folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]
+        files = [name for name in sorted(found.files()) if not name.startswith("design_")]
+        files += ["explanation.txt"] if note.exists() else []
+        files += [f"design_{d.rank:02d}.yaml" for d in found.designs[:1]]
+        if len(found.designs) > 1:
+            files[-1] += f" .. design_{len(found.designs):02d}.yaml"
+        output().print(f"written to {folder}: {', '.join([*files, *folders])}", soft_wrap=True)
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.designs:
+        raise typer.Exit(INFEASIBLE)

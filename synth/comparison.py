@@ -1,0 +1,541 @@
+"""Several families asked the same: each is searched by itself, and all designs together make one ranked front.
+
+Of the designs of all families those stay that no other one beats. What a family's own proof says of its designs says
+nothing of those of the others; so each is asked again, by its own tree, whether it can beat them. Better designs that
+it finds take their places, until nothing changes.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from synth.clock import Stopped
+from synth.errors import InputError
+from synth.feasibility import Status
+from synth.pareto import rank, spread_subset
+from synth.results import Certificate, Design, ParetoFront, csv_text, design_columns, design_row, save_files
+from synth.search import FrontSearch, pose
+from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
+from synth.tables import Catalogs
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMAT = 1
+SAME = 1e-9  # relative; objectives closer than this are the same
+ROUNDS = 6
+KINDS = ("heuristic", "exhaustive", "global")
+
+
+@dataclass(frozen=True)
+class FamilyOutcome:
+    """How one family came out.
+
+    ``outcome`` is listed (it has designs on the common front), beaten, infeasible, refused (it does not understand the
+    sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why. ``front`` is its own front, where it
+    was searched, ``listed`` how many of its designs are on the common one, ``meanings`` what the objectives mean in it.
+    """
+
+    family: str
+    title: str
+    outcome: str
+    sentence: str
+    listed: int = 0
+    front: ParetoFront | None = None
+    beaten_by: Design | None = None
+    meanings: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One front over the designs of several families.
+
+    ``designs`` are in rank order; ``families`` names, design by design, the family as ``outcomes`` does.
+    """
+
+    objectives: Mapping[str, str]
+    designs: list[Design]
+    families: list[str]
+    outcomes: list[FamilyOutcome]
+    certificate: Certificate
+    settings: Mapping[str, Any]
+    interrupted: str = ""
+    seconds: float = 0.0
+
+    @property
+    def status(self) -> Status:
+        """Return how the comparison stands, as a front does."""
+        if self.designs:
+            return Status.OPTIMAL if self.certificate.kind == "global" else Status.FEASIBLE
+        return Status.NOT_SOLVED if self.interrupted else Status.INFEASIBLE
+
+    def sentence(self) -> str:
+        """Return how far the common front is proven."""
+        searched = sum(x.front is not None for x in self.outcomes)
+        those = "the family" if searched == 1 else f"the {searched} families"
+        n = f"{self.certificate.combinations:,}".replace(",", " ")
+        if self.certificate.kind == "global" and self.designs:
+            return (
+                f"proven: over all {n} combinations of parts and counts of {those} searched no design improves one "
+                f"listed here by more than {100 * (self.certificate.gap or 0):.3g} % in every objective"
+            )
+        if self.certificate.kind == "global":
+            return f"proven: none of the {n} combinations of parts and counts of {those} searched is feasible"
+        if self.interrupted:
+            return f"not proven: stopped ({self.interrupted}) before every family was searched to the end"
+        return f"not proven ({self.certificate.kind}): the certificate of each family says how far it is"
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, with units in the headers; what a family does not have is empty."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self._table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def families_frame(self) -> pd.DataFrame:
+        """Return one row per family."""
+        import pandas as pd
+
+        columns, rows = self._family_table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes into its folder: file name -> text."""
+        width = max(2, len(str(len(self.designs))))
+        found = {
+            "designs.csv": csv_text(*self._table()),
+            "families.csv": csv_text(*self._family_table()),
+            "comparison.json": self._json(),
+        }
+        for design in self.designs:
+            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
+        return found
+
+    def save(self, folder: str | Path) -> Path:
+        """Write designs.csv, families.csv, comparison.json, design_NN.yaml, and each family's own front in a folder."""
+        target = save_files(folder, self.files())
+        for outcome in self.outcomes:
+            if outcome.front is not None:
+                outcome.front.save(target / outcome.family)
+        return target
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        known = [
+            dict(zip(design_columns(d.frame, d.choices, d.parts), design_row(d.frame, d), strict=True))
+            for d in self.designs
+        ]
+        every = sorted({c: None for columns in known for c in columns}, key=lambda c: c.startswith("utilisation: "))
+        rows: list[list[Any]] = [
+            [d.rank, d.score, name, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *map(own.get, every)]
+            for d, name, own in zip(self.designs, self.families, known, strict=True)
+        ]
+        return ["rank", "score", "family", "status", "gap", "note", "alternatives", *every], rows
+
+    def _family_table(self) -> tuple[list[str], list[list[Any]]]:
+        columns = ["family", "title", "outcome", "listed", "why", "designs", "certificate", "gap", "combinations"]
+        columns += [f"best {n}" for n in self.objectives] + [f"meaning of {n}" for n in self.objectives]
+        rows: list[list[Any]] = []
+        for x in self.outcomes:
+            told: list[Any] = [None] * 4
+            if x.front is not None:
+                own = x.front.certificate
+                told = [len(x.front.designs), own.kind, own.gap, own.combinations]
+            best = [best_value(x.front, n, sense) for n, sense in self.objectives.items()]
+            meanings = [x.meanings.get(n) for n in self.objectives]
+            rows.append([x.family, x.title, x.outcome, x.listed, x.sentence, *told, *best, *meanings])
+        return columns, rows
+
+    def _json(self) -> str:
+        content = {
+            "format": FORMAT,
+            "objectives": dict(self.objectives),
+            "status": self.status.value,
+            "interrupted": self.interrupted,
+            "certificate": self.certificate.__dict__,
+            "sentence": self.sentence(),
+            "settings": dict(self.settings),
+            "seconds": self.seconds,
+            "families": [
+                {
+                    "family": x.family,
+                    "title": x.title,
+                    "outcome": x.outcome,
+                    "why": x.sentence,
+                    "listed": x.listed,
+                    "folder": None if x.front is None else x.family,
+                    "beaten_by": None if x.beaten_by is None else x.beaten_by.rank,
+                }
+                for x in self.outcomes
+            ],
+            "designs": [
+                {"rank": d.rank, "score": d.score, "family": name, "note": d.note, "objectives": dict(d.objectives)}
+                for d, name in zip(self.designs, self.families, strict=True)
+            ],
+        }
+        return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def best_value(front: ParetoFront | None, name: str, sense: str) -> str | None:
+    """Return the best value of an objective on a front with its unit; None where there is no design."""
+    if front is None or not front.designs:
+        return None
+    values = [d.values[name] for d in front.designs]
+    return format_quantity(min(values) if sense == "min" else max(values), front.frame.units[name])
+
+
+def compare(
+    families: Any,
+    requirements: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    parts: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    fix: Mapping[str, Any] | None = None,
+    weights: Mapping[str, float] | None = None,
+    gap: float = 1e-3,
+    grid: bool = True,
+    workers: int = 1,
+    seed: int = 0,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+    options: Mapping[str, str] | None = None,
+    finished: Callable[[str, ParetoFront], object] | None = None,
+) -> Comparison:
+    """Search all families that can serve one requirement sheet, and rank their designs on one front.
+
+    Parameters
+    ----------
+    families : "any" or list
+        Every registered family, or some: names, DesignProblem subclasses or instances, or mappings with ``family`` and
+        what concerns that family alone (``options``, ``requirements``, ``limits``, ``fix``, ``parts``).
+    requirements : mapping
+        What all are asked: names that several families understand.
+    objectives : names, or mapping name -> "min"/"max", optional
+        Quantities that all have. By default what all families that can serve offer, their defaults first.
+    points : int
+        At most this many designs on the common front.
+    catalogs, parts, limits, fix, weights, gap, grid, workers, seed, progress : optional
+        As for ``synthesize``; a family that does not know a name of ``parts``, ``limits`` or ``fix`` is left out.
+    time_limit : float, optional
+        Seconds for all families together.
+    options : mapping, optional
+        Options of every family.
+    finished : callable, optional
+        Called with the label and the front of each family as soon as it is searched.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        When something is wrong for every family: a name that none knows, a sheet that none can serve.
+    """
+    sheet = sheet_of(options=options, requirements=requirements, limits=limits, fix=fix, parts=parts)
+    tables = catalogs if isinstance(catalogs, Catalogs) else Catalogs(catalogs)
+    found = applicants(families, sheet, tables)
+    refuse_all(found, sheet)
+    chosen = common_objectives(found, objectives)
+    refuse_all(found, sheet)
+    settings = {
+        "points": points, "weights": weights, "gap": gap, "grid": grid, "workers": workers, "seed": seed,
+        "time_limit": time_limit,
+    }  # fmt: skip
+    run = _Comparing(found, sheet, chosen, tables, settings, progress)
+    return run.run(finished)
+
+
+@dataclass
+class _Member:
+    """A family that is searched: its search, its front, and its designs on the way to the common front."""
+
+    one: Applicant
+    search: FrontSearch
+    front: ParetoFront
+    designs: list[Design]
+
+
+class _Comparing:
+    """One comparison in progress."""
+
+    def __init__(
+        self,
+        found: Sequence[Applicant],
+        sheet: Sheet,
+        objectives: Mapping[str, str],
+        tables: Catalogs,
+        settings: Mapping[str, Any],
+        progress: Callable[[Mapping[str, Any]], None] | None,
+    ) -> None:
+        self.started = time.monotonic()
+        self.found, self.sheet, self.objectives, self.tables = found, sheet, dict(objectives), tables
+        self.settings, self.progress = settings, progress
+        limit = settings["time_limit"]
+        self.deadline = math.inf if limit is None else self.started + limit
+        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
+        self.members: list[_Member] = []
+        self.faults: dict[str, InputError] = {}
+        self.interrupted = ""
+        self.proven = True
+
+    def run(self, finished: Callable[[str, ParetoFront], object] | None) -> Comparison:
+        serving = [one for one in self.found if not one.misfits]
+        self._search_all(serving, finished)
+        if len(self.faults) == len(serving):
+            raise next(iter(self.faults.values()))
+        try:
+            self._challenge_all()
+        except Stopped as stop:
+            self._stop(stop.reason)
+        except KeyboardInterrupt:
+            self._stop("interrupted")
+        return self._compared()
+
+    def _stop(self, reason: str) -> None:
+        self.interrupted, self.proven = self.interrupted or reason, False
+
+    # -- every family by itself ----------------------------------------------------------------
+
+    def _search_all(self, serving: Sequence[Applicant], finished: Callable[[str, ParetoFront], object] | None) -> None:
+        for number, one in enumerate(serving):
+            if self.interrupted == "interrupted" or (self.interrupted and time.monotonic() > self.deadline):
+                break
+            try:
+                member = self._searched(one, number, len(serving))
+            except InputError as error:
+                self.faults[one.label] = error
+                continue
+            except KeyboardInterrupt:
+                self._stop("interrupted")
+                break
+            self.members.append(member)
+            if finished is not None:
+                finished(one.label, member.front)
+            if member.front.interrupted:
+                self._stop(member.front.interrupted)
+
+    def _searched(self, one: Applicant, number: int, count: int) -> _Member:
+        """Search one family, in its share of the time that is left."""
+        asked, settings = one.asked(self.sheet), self.settings
+        limit = None
+        if math.isfinite(self.deadline):
+            limit = max((self.deadline - time.monotonic()) / (count - number), 1e-3)
+        question = pose(
+            one.problem, asked["requirements"], self.objectives, settings["points"], self.tables, asked["parts"],
+            asked["limits"], asked["fix"], settings["weights"], settings["gap"], settings["grid"], settings["seed"],
+        )  # fmt: skip
+        search = question.search(settings["workers"], self._shown(one.label, number, count), limit)
+        front = search.run(list(question.weights.values()), question.settings)
+        return _Member(one, search, front, list(front.designs))
+
+    def _shown(self, label: str, number: int, count: int) -> Callable[[Mapping[str, Any]], None] | None:
+        progress = self.progress
+        if progress is None:
+            return None
+
+        def show(state: Mapping[str, Any]) -> None:
+            done = (number + float(state.get("done") or 0.0)) / count
+            progress({**state, "stage": f"{label}: {state.get('stage', '')}", "done": done})
+
+        return show
+
+    # -- against each other --------------------------------------------------------------------
+
+    def _signed(self, designs: Sequence[Design]) -> np.ndarray:
+        rows = [[d.values[n] for n in self.objectives] for d in designs]
+        signed: np.ndarray = np.array(rows, dtype=float).reshape(len(designs), len(self.objectives)) * self.senses
+        return signed
+
+    def _challenge_all(self) -> None:
+        """Let every family look for designs that beat those of the others, until none finds any."""
+        able = [m for m in self.members if m.designs or m.front.status is Status.FEASIBLE]
+        if len(able) < 2 or len(self.objectives) < 2 or self.interrupted:
+            return
+        for _ in range(ROUNDS):
+            quiet = closed = True
+            for member in able:
+                listed, _ = self._listed()
+                others = [d for m, d in listed if m is not member]
+                if others:
+                    done, better = member.search.challenged(self._signed(others), self.deadline)
+                    fresh = self._useful(member.search.reported(better)) if better else []
+                    member.designs += fresh
+                    closed, quiet = closed and done, quiet and not fresh
+            if quiet:
+                self.proven = closed
+                return
+        self.proven = False
+
+    def _useful(self, designs: Sequence[Design]) -> list[Design]:
+        """Return those that no design known beats or equals."""
+        known = self._signed([d for m in self.members for d in m.designs])
+        return [d for d, own in zip(designs, self._signed(designs), strict=True) if not _beaten(known, own).any()]
+
+    def _listed(self) -> tuple[list[tuple[_Member, Design]], list[tuple[_Member, Design]]]:
+        """Return the designs of the common front, and all that nothing beats."""
+        every = [(m, d) for m in self.members for d in m.designs]
+        signed = self._signed([d for _, d in every])
+        stay: list[int] = []
+        for k, own in enumerate(signed):
+            beaten = _beaten(signed, own) & (_strictly(signed, own) | (np.arange(len(signed)) < k))
+            if not beaten.any():
+                stay.append(k)
+        front = [every[k] for k in stay]
+        return [front[k] for k in self._spread([m for m, _ in front], signed[stay])], front
+
+    def _spread(self, owners: Sequence[_Member], signed: np.ndarray) -> list[int]:
+        """Return designs that spread best, at most so many as asked for; no family is left out that has one."""
+        most = int(self.settings["points"])
+        taken = [int(k) for k in spread_subset(signed, most)]
+        kept = [owners[k].one.label for k in taken]
+        for label in dict.fromkeys(m.one.label for m in owners):
+            if label not in kept:
+                spare = [k for k, own in enumerate(kept) if kept.count(own) > 1]
+                if not spare:
+                    break
+                low, high = signed.min(axis=0), signed.max(axis=0)
+                unit = (signed - low) / np.where(high > low, high - low, 1.0)
+                own = [k for k, m in enumerate(owners) if m.one.label == label]
+                best = min(own, key=lambda k: float(np.linalg.norm(unit[k])))
+                # It takes the place of the design nearest to it of a family that has more.
+                gone = min(spare, key=lambda k: float(np.linalg.norm(unit[taken[k]] - unit[best])))
+                taken[gone], kept[gone] = best, label
+        return sorted(taken)
+
+    # -- the report ----------------------------------------------------------------------------
+
+    def _compared(self) -> Comparison:
+        listed, every = self._listed()
+        certificate = self._certificate(bool(listed))
+        weights = [float((self.settings["weights"] or {}).get(n, 1.0)) for n in self.objectives]
+        designs: list[Design] = []
+        owners: list[str] = []
+        if listed:
+            values = self._signed([d for _, d in listed]) * self.senses
+            ranking = rank(self.objectives, values, weights)
+            proven = certificate.kind == "global"
+            for position, k in enumerate(ranking.order):
+                member, design = listed[k]
+                owners.append(member.one.label)
+                designs.append(
+                    replace(
+                        design,
+                        rank=position + 1,
+                        score=float(ranking.scores[k]),
+                        note=ranking.notes[k],
+                        status=design.status if proven else Status.FEASIBLE,
+                        gap=certificate.gap if proven else None,
+                    )
+                )
+        outcomes = [self._outcome(one, designs, owners, every) for one in self.found]
+        settings = {**self.settings, "sheet": {key: _plain(self.sheet[key]) for key in self.sheet}}
+        return Comparison(
+            self.objectives, designs, owners, outcomes, certificate, settings, self.interrupted,
+            time.monotonic() - self.started,
+        )  # fmt: skip
+
+    def _certificate(self, any_design: bool) -> Certificate:
+        own = [m.front.certificate for m in self.members]
+        weakest = min((KINDS.index(c.kind) for c in own), default=0)
+        kind = KINDS[weakest] if not self.interrupted else KINDS[0]
+        if kind == "global" and not self.proven:
+            kind = KINDS[0]
+        gap = float(self.settings["gap"]) if kind == "global" and any_design else None
+        return Certificate(
+            kind, gap, sum(c.combinations for c in own), sum(c.excluded_by_bound for c in own),
+            sum(c.solved for c in own), sum(c.unresolved for c in own),
+        )  # fmt: skip
+
+    def _outcome(
+        self,
+        one: Applicant,
+        designs: Sequence[Design],
+        owners: Sequence[str],
+        every: Sequence[tuple[_Member, Design]],
+    ) -> FamilyOutcome:
+        d = one.declaration
+        quantities: Mapping[str, Any] = {**d.variables, **d.counts, **d.derived}
+        meanings = {n: quantities[n].text for n in self.objectives if n in quantities}
+        told = FamilyOutcome(one.label, one.title, "refused", "", meanings=meanings)
+        if one.misfits:
+            return replace(told, sentence=f"it {' and '.join(one.misfits)}")
+        if one.label in self.faults:
+            return replace(told, sentence=str(self.faults[one.label]))
+        member = next((m for m in self.members if m.one is one), None)
+        if member is None:
+            return replace(told, outcome="stopped", sentence=f"not searched ({self.interrupted})")
+        listed = owners.count(one.label)
+        told = replace(told, front=member.front, listed=listed)
+        if listed:
+            words = "1 design" if listed == 1 else f"{listed} designs"
+            return replace(told, outcome="listed", sentence=f"{words} on the common front")
+        if not member.designs and member.front.interrupted:
+            reason = f"no design was found until it was stopped ({member.front.interrupted})"
+            return replace(told, outcome="stopped", sentence=reason)
+        if not member.designs:
+            explanation = (member.front.explanation or {}).get("message", "No design is feasible.")
+            return replace(told, outcome="infeasible", sentence=str(explanation))
+        if any(m is member for m, _ in every):
+            reason = "it has designs that nothing beats, but there is no room for them among so few points"
+            return replace(told, outcome="beaten", sentence=reason)
+        winner, sentence = self._beaten(member, designs, owners, every)
+        return replace(told, outcome="beaten", sentence=sentence, beaten_by=winner)
+
+    def _beaten(
+        self,
+        member: _Member,
+        designs: Sequence[Design],
+        owners: Sequence[str],
+        every: Sequence[tuple[_Member, Design]],
+    ) -> tuple[Design | None, str]:
+        """Say by which design a family is beaten in most of its own, and how its best values compare."""
+        own = self._signed(member.designs)
+        all_of_them = self._signed([d for _, d in every])
+        beats = [int(_beaten(own, row, of_others=True).sum()) for row in self._signed(designs)]
+        best = int(np.argmax(beats)) if beats else -1
+        words = []
+        for k, (name, sense) in enumerate(self.objectives.items()):
+            mine, least = (
+                format_quantity(float(rows[:, k].min() * self.senses[k]), member.front.frame.units[name], 4)
+                for rows in (own, all_of_them)
+            )
+            words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {least}")
+        if best < 0 or not beats[best]:
+            return None, f"everywhere, by designs between those listed: {', '.join(words)}"
+        by = f"by #{designs[best].rank} ({owners[best]})"
+        if len(own) > 1:
+            by = f"in {'all' if beats[best] == len(own) else f'{beats[best]} of {len(own)}'} of its designs {by}"
+        return designs[best], f"everywhere, {by}: {', '.join(words)}"
+
+
+def _beaten(signed: np.ndarray, own: np.ndarray, of_others: bool = False) -> np.ndarray:
+    """Tell which rows are as good as a design in every objective; ``of_others``: which ones it is as good as."""
+    room = SAME * np.maximum(np.abs(own), np.abs(signed))
+    better = own <= signed + room if of_others else signed <= own + room
+    result: np.ndarray = np.all(better, axis=1)
+    return result
+
+
+def _strictly(signed: np.ndarray, own: np.ndarray) -> np.ndarray:
+    room = SAME * np.maximum(np.abs(own), np.abs(signed))
+    result: np.ndarray = np.any(signed < own - room, axis=1)
+    return result
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return value if isinstance(value, (str, int, float, bool)) else str(value)

@@ -1,0 +1,1 @@
+"""Batches: many requirement rows as one job that survives whatever stops it."""

@@ -1,0 +1,275 @@
+"""The commands for many rows: batch and jobs."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from synth.errors import InputError
+from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, objectives, tell
+
+if TYPE_CHECKING:
+    from synth.jobs.models import Job
+    from synth.jobs.run import BatchJob
+    from synth.jobs.store import Store
+
+DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
+
+RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
+Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")]
+Workers = Annotated[int | None, typer.Option(help="Processes of this machine; by default one per core.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Work on a Dask cluster instead: the address of its scheduler.", metavar="tcp://HOST:PORT"),
+]
+Database = Annotated[
+    str | None,
+    typer.Option(
+        envvar=DATABASE_VARIABLE,
+        help="Database of the jobs: sqlite:///FILE or postgresql://USER@HOST/NAME; by default a file in DIR.",
+        metavar="URL",
+    ),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]
+JobName = Annotated[str, typer.Argument(help="The folder of a batch, or the id of a job.", metavar="JOB")]
+
+jobs_app = typer.Typer(help="List, show, cancel and resume batches.", no_args_is_help=True, rich_markup_mode=None)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="batch")(batch)
+    app.add_typer(jobs_app, name="jobs")
+
+
+def batch(
+    rows: RowsFile,
+    folder: Folder,
+    family: Annotated[str | None, typer.Option(help="Family of the rows that name none.", metavar="FAMILY")] = None,
+    mapping: Annotated[
+        Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
+    ] = None,
+    points: Annotated[int | None, typer.Option(help="At most this many designs per row.")] = None,
+    gap: Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")] = None,
+    grid: Annotated[bool, typer.Option("--grid/--no-grid", help="Makeable sizes only.")] = True,
+    seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
+    time_limit: Annotated[
+        str | None, typer.Option(help="Stop each row after this time, in seconds or such as '2 min'.")
+    ] = None,
+    objective: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"
+        ),
+    ] = None,
+    catalogs: Annotated[Path | None, typer.Option(help="Folder with your own tables.", metavar="DIR")] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    database: Database = None,
+    quiet: Quiet = False,
+) -> None:
+    """Search the designs for every row of a table; run again to go on after an interruption."""
+
+    def make() -> BatchJob:
+        return batch_job(
+            rows, folder, family, mapping, points, gap, grid, seed, time_limit, objective, catalogs, database
+        )
+
+    raise typer.Exit(finish(make, workers, scheduler, quiet))
+
+
+def batch_job(
+    rows: Path,
+    folder: Path,
+    family: str | None,
+    mapping: Path | None,
+    points: int | None,
+    gap: float | None,
+    grid: bool,
+    seed: int,
+    time_limit: str | None,
+    objective: list[str] | None,
+    catalogs: Path | None,
+    database: str | None,
+) -> BatchJob:
+    """Return the batch that flags describe."""
+    from synth.jobs.run import BatchJob
+    from synth.units import parse_quantity
+
+    check_output(folder)
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    settings = {
+        "objectives": objectives(objective or []), "points": 30 if points is None else points,
+        "gap": 1e-3 if gap is None else gap, "grid": grid, "seed": seed, "time_limit": seconds,
+    }  # fmt: skip
+    return BatchJob(
+        family, rows, folder, mapping, catalogs, {"parts": None, "limits": None, "fix": None}, database, settings
+    )
+
+
+def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
+    """Plan a batch, work it off, write it, and return the exit code that it has."""
+    with _terminated_as_interrupted():
+        try:
+            from synth.jobs.console import batch_display, print_summary, print_table_remarks
+
+            job = make()
+            continues = job.plan()
+        except KeyboardInterrupt:
+            tell("stopped while the rows were checked; nothing is kept")
+            raise typer.Exit(STOPPED) from None
+        try:
+            if not quiet:
+                print_table_remarks(job, continues)
+            with batch_display(quiet) as progress:
+                stopped = job.work(_processes(workers), scheduler, progress, tell)
+            counts = job.write()
+        except KeyboardInterrupt:
+            tell("stopped; what was found is in the database, the same command goes on")
+            raise typer.Exit(STOPPED) from None
+        finally:
+            job.close()
+    if not quiet:
+        print_summary(counts, job.folder, stopped)
+    return _code(counts, stopped)
+
+
+def _processes(workers: int | None) -> int:
+    from synth.jobs.run import cores
+
+    return cores() if workers is None else workers
+
+
+def _code(counts: dict[str, int], stopped: str) -> int:
+    """Return the exit code of a batch: stopped, a row failed, nothing feasible, or fine."""
+    if stopped:
+        return STOPPED
+    if counts.get("failed"):
+        return INTERNAL
+    return 0 if counts.get("optimal", 0) + counts.get("feasible", 0) else INFEASIBLE
+
+
+@contextmanager
+def _terminated_as_interrupted() -> Iterator[None]:
+    """Take the signal by which a scheduler ends a program as a Ctrl-C: stop, and leave everything in order."""
+
+    def stop(number: int, frame: Any) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+# ---- jobs -----------------------------------------------------------------------------------------------------------
+
+
+@jobs_app.command(name="list")
+def list_jobs(
+    folders: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Folders of batches; by default those below this one.", metavar="[DIR]..."),
+    ] = None,
+    database: Database = None,
+) -> None:
+    """List the jobs of a database, or of the folders that hold one."""
+    from synth.jobs.console import print_jobs
+
+    found: list[tuple[Job, Any]] = []
+    for store in _stores(database, folders or None):
+        with store:
+            found += [(job, store.account(job.id)) for job in store.jobs()]
+    print_jobs(found)
+
+
+@jobs_app.command()
+def show(job: JobName, database: Database = None) -> None:
+    """Show how far a job is, and what happened to it."""
+    from synth.jobs.console import print_job
+
+    store, found = _find(job, database)
+    with store:
+        print_job(found, store.account(found.id), store.open_units(found.id), store.events(found.id, 20))
+
+
+@jobs_app.command()
+def cancel(job: JobName, database: Database = None) -> None:
+    """Stop a job wherever it runs; what it has found is kept, and resume goes on."""
+    from synth.jobs.store import CANCELLED, DONE
+
+    store, found = _find(job, database)
+    with store:
+        if found.state == DONE:
+            raise InputError("JOB", job, "a job that is not done yet")
+        store.set_state(found.id, CANCELLED, "cancelled")
+    print(f"{found.id}: cancelled; clutchsynth jobs resume goes on")
+
+
+@jobs_app.command()
+def resume(
+    job: JobName,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    database: Database = None,
+    quiet: Quiet = False,
+) -> None:
+    """Go on with a job that was stopped or cancelled, without its table."""
+    from synth.jobs.console import batch_display, print_summary
+    from synth.jobs.outputs import write_outputs
+    from synth.jobs.run import resume as go_on
+
+    store, found = _find(job, database)
+    with store, _terminated_as_interrupted():
+        try:
+            with batch_display(quiet) as progress:
+                stopped = go_on(store, found.id, _processes(workers), scheduler, progress, tell)
+            counts = write_outputs(store, found.id, Path(found.folder))
+        except KeyboardInterrupt:
+            tell("stopped; what was found is in the database, the same command goes on")
+            raise typer.Exit(STOPPED) from None
+    if not quiet:
+        print_summary(counts, Path(found.folder), stopped)
+    raise typer.Exit(_code(counts, stopped))
+
+
+def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
+    """Return the databases that are meant: the one named, or those in folders."""
+    from synth.jobs.run import DATABASE
+    from synth.jobs.store import Store, file_url
+
+    if database is not None and folders is None:
+        return [Store(database, create=False)]
+    files = [folder / DATABASE for folder in folders or [Path(), *sorted(p for p in Path().iterdir() if p.is_dir())]]
+    if folders is not None:
+        missing = next((file.parent for file in files if not file.is_file()), None)
+        if missing is not None:
+            raise InputError("DIR", str(missing), f"the folder of a batch, with {DATABASE} in it")
+    return [Store(file_url(file.resolve()), create=False) for file in files if file.is_file()]
+
+
+def _find(job: str, database: str | None) -> tuple[Store, Job]:
+    """Return the job that is meant by a folder (its latest), or by the beginning of an id."""
+    from synth.jobs.run import DATABASE
+
+    if database is None and (Path(job) / DATABASE).is_file():
+        (store,) = _stores(None, [Path(job)])
+        jobs = store.jobs()
+        if jobs:
+            return store, max(jobs, key=lambda found: found.updated)
+        store.close()
+    else:
+        matches = []
+        for store in _stores(database, None):
+            matches += [(store, found) for found in store.jobs() if found.id.startswith(job)]
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            raise InputError("JOB", job, "more of the id: it fits several jobs")
+    raise InputError("JOB", job, "the folder of a batch, or the id of a job that clutchsynth jobs list shows")

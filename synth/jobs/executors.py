@@ -1,0 +1,212 @@
+"""Where units are solved: in this process, in processes of this machine, or on a Dask cluster.
+
+All are executors of ``concurrent.futures`` with a number of ``slots``. They are muscle: nothing is lost with them.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.connection import Connection
+from queue import SimpleQueue
+from typing import Any
+
+from synth.errors import InputError
+
+ANSWER = 5.0  # seconds that a scheduler has to answer
+PATIENCE = 600.0  # seconds to wait for a scheduler that has gone
+LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class Inline(Executor):
+    """Solves at once, in the calling thread."""
+
+    slots = 1
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call the function, and return a future that is finished."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class Processes(Executor):
+    """Processes of this machine, each an executor of its own: one that dies takes only its own unit with it.
+
+    Parameters
+    ----------
+    workers : int
+        How many.
+    """
+
+    def __init__(self, workers: int) -> None:
+        # Never fork: threads and solvers of this process do not survive it.
+        self._context = multiprocessing.get_context("spawn")
+        self.slots = workers
+        self._all = [_Worker(self._context) for _ in range(workers)]
+        self._idle: SimpleQueue[_Worker] = SimpleQueue()
+        for worker in self._all:
+            self._idle.put(worker)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Give work to an idle process; at most ``slots`` calls may be under way."""
+        worker = self._idle.get()  # one whose work has just ended comes back a moment later
+        try:
+            future = worker.pool.submit(fn, *args, **kwargs)
+        except BrokenProcessPool:  # it died while it was idle
+            worker = self._replaced(worker)
+            future = worker.pool.submit(fn, *args, **kwargs)
+        future.add_done_callback(lambda done: self._idle.put(self._after(worker, done)))
+        return future
+
+    def _after(self, worker: _Worker, done: Future[Any]) -> _Worker:
+        broken = not done.cancelled() and isinstance(done.exception(), BrokenProcessPool)
+        return self._replaced(worker) if broken else worker
+
+    def _replaced(self, worker: _Worker) -> _Worker:
+        worker.end()
+        fresh = _Worker(self._context)
+        self._all[self._all.index(worker)] = fresh
+        return fresh
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes at once, whatever they do."""
+        for worker in self._all:
+            worker.end()
+
+
+class _Worker:
+    """One process, which ends as soon as this side of its lifeline is closed, by hand or by death."""
+
+    def __init__(self, context: Any) -> None:
+        far, self._near = context.Pipe(duplex=False)
+        self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far,))
+        self._far = far
+
+    def end(self) -> None:
+        self._near.close()
+        self._far.close()
+        self.pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _begin(lifeline: Connection) -> None:
+    """Prepare a worker process: one thread, deaf to Ctrl-C, and gone when its master is."""
+    for name in ONE_THREAD:
+        os.environ.setdefault(name, "1")
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the master decides what Ctrl-C means
+
+    def watch() -> None:
+        try:
+            lifeline.recv_bytes()
+        except (EOFError, OSError):
+            os._exit(1)
+
+    threading.Thread(target=watch, name="lifeline", daemon=True).start()
+
+
+class Cluster(Executor):
+    """A Dask cluster. A scheduler that dies is waited for; what it was doing is asked for again.
+
+    Parameters
+    ----------
+    address : str
+        ``tcp://host:port`` of the scheduler.
+    say : callable
+        Told in a sentence when the scheduler is lost or found again.
+
+    Raises
+    ------
+    InputError
+        When nothing answers there, or the extra is not installed.
+    """
+
+    def __init__(self, address: str, say: Callable[[str], None]) -> None:
+        try:
+            import distributed  # an extra: only for those who outgrow one machine
+        except ImportError:
+            wanted = "the extra for clusters: pip install 'clutchsynth[cluster]'"
+            raise InputError("--scheduler", address, wanted) from None
+        self._distributed = distributed
+        self._address, self._say = address, say
+        try:
+            self._connect()
+        except (OSError, ValueError) as error:
+            wanted = f"the address of a Dask scheduler that answers, such as tcp://host:8786 ({type(error).__name__})"
+            raise InputError("--scheduler", address, wanted) from error
+
+    def _connect(self) -> None:
+        self._client = self._distributed.Client(self._address, timeout=ANSWER, set_as_default=False)
+        self._executor = self._client.get_executor(pure=False)
+        self._threads, self._counted = 0, float("-inf")
+
+    @property
+    def slots(self) -> int:
+        """Units to have under way: some more than the cluster has threads, so that none waits for the next."""
+        if time.monotonic() - self._counted > ANSWER:
+            try:
+                self._threads = sum(int(count) for count in self._client.nthreads().values())
+            except LOST:
+                self._threads = 0
+            self._counted = time.monotonic()
+        return max(2 * self._threads, 2)
+
+    def alive(self) -> bool:
+        """Tell whether the scheduler is there."""
+        return bool(self._client.status == "running")
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Give work to the cluster; what cannot be given comes back as cancelled."""
+        future: Future[Any]
+        try:
+            future = self._executor.submit(fn, *args, **kwargs)
+        except LOST:
+            future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+        return future
+
+    def reconnect(self, stopped: Callable[[], bool]) -> bool:
+        """Wait for the scheduler to come back; tell whether it has.
+
+        Parameters
+        ----------
+        stopped : callable
+            Tells whether there is no more need.
+        """
+        self._say(f"the scheduler at {self._address} does not answer; nothing is lost, waiting for it")
+        self._close()
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline and not stopped():
+            try:
+                self._connect()
+            except (OSError, ValueError):
+                time.sleep(0.5)
+                continue
+            self._say("the scheduler is back; what it had not finished is asked for again")
+            return True
+        return False
+
+    def _close(self) -> None:
+        try:
+            self._client.close(timeout=1)
+        except LOST:
+            return  # it was closed by what happened to the scheduler
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Let go of the cluster; it goes on without us."""
+        self._close()
+
+
+def is_lost(future: Future[Any]) -> bool:
+    """Tell whether work was lost with whoever held it, which says nothing about the work."""
+    return future.cancelled() or isinstance(future.exception(), (CancelledError, OSError))

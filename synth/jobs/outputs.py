@@ -1,0 +1,210 @@
+"""The files of a batch: designs.csv, rows.csv and batch.json, written row by row beside their place and renamed."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, TextIO
+
+from synth.errors import InputError
+from synth.jobs.store import Answered, Store, has_died, new_owner
+from synth.results import installed_versions, write_atomically
+
+FORMAT = 1
+RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
+GROUPS = ("objectives", "searched", "choices", "parts", "derived", "limits")
+ROW_COLUMNS = (
+    "line", "row", "family", "status", "designs", "seconds", "certificate", "gap", "best design", "explanation",
+    "remarks",
+)  # fmt: skip
+SHORT = 12  # digits of a key that tell rows apart
+
+
+def write_outputs(store: Store, job: str, folder: Path) -> dict[str, int]:
+    """Write what is known of a job.
+
+    Parameters
+    ----------
+    store : Store
+    job : str
+    folder : Path
+
+    Returns
+    -------
+    dict
+        Rows by status; ``bad_input`` and ``not_solved`` are among them.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    record = store.job(job)
+    assert record is not None
+    content = record.content
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _new_file(folder / "designs.csv") as file:
+            _write_designs(file, store, job, content)
+        with _new_file(folder / "rows.csv") as file:
+            counts = _write_rows(file, store, job, content)
+        summary = {
+            "format": FORMAT,
+            "job": job,
+            "state": record.state,
+            "rows": counts,
+            **{key: content[key] for key in ("source", "settings", "columns", "mapping", "hashes")},
+            "versions": installed_versions(),
+            "database": store.url,
+            "files": {name: _hash_of(folder / name) for name in ("designs.csv", "rows.csv")},
+        }
+        write_atomically(folder / "batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
+    except OSError as error:
+        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
+    return counts
+
+
+# ---- designs.csv ----------------------------------------------------------------------------------------------------
+
+
+def _write_designs(file: TextIO, store: Store, job: str, content: Mapping[str, Any]) -> None:
+    """Write the designs of all rows, in the order of what is in the rows."""
+    layouts = store.layouts(job)
+    groups, places = _common_columns(layouts)
+    titles, carried = _carried(content)
+    columns = [name for group in groups for name in group]
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(["row", "family", *titles, *RANKING, *columns])
+    for row in store.rows(job, canonical=True):
+        if row.layout is None or row.content is None:
+            continue
+        own = [(row.key or "")[:SHORT], row.family, *(row.cells[k] for k in carried)]
+        place = places[row.layout]
+        for cells in row.content["rows"]:
+            line = [""] * len(columns)
+            for k, cell in zip(place, cells[len(RANKING) :], strict=True):
+                line[k] = cell
+            writer.writerow([*own, *cells[: len(RANKING)], *line])
+
+
+def _common_columns(layouts: Mapping[str, Mapping[str, Any]]) -> tuple[list[list[str]], dict[str, list[int]]]:
+    """Return the columns that hold all layouts, by group, and where each layout puts its cells.
+
+    The order follows from the layouts alone: of each family as it declares them, families by name.
+    """
+    order = sorted(layouts, key=lambda key: (layouts[key]["family"], -_width(layouts[key]), key))
+    where: dict[str, int] = {}  # column -> the first group that has it
+    groups: list[list[str]] = [[] for _ in GROUPS]
+    for k, group in enumerate(GROUPS):
+        for key in order:
+            for name in layouts[key][group]:
+                if name not in where:
+                    where[name] = k
+                    groups[k].append(name)
+    position = {name: k for k, name in enumerate(name for group in groups for name in group)}
+    return groups, {
+        key: [position[name] for group in GROUPS for name in layout[group]] for key, layout in layouts.items()
+    }
+
+
+def _carried(content: Mapping[str, Any]) -> tuple[list[str], list[int]]:
+    """Return the headings of the columns that are only carried along, and where they stand in a row.
+
+    A heading that we use ourselves is told apart.
+    """
+    ours = {*ROW_COLUMNS, *RANKING}
+    columns = [column for column in content["columns"] if column["carried"]]
+    titles = [f"input: {column['title']}" if column["title"] in ours else column["title"] for column in columns]
+    return titles, [column["position"] for column in columns]
+
+
+def _width(layout: Mapping[str, Any]) -> int:
+    return sum(len(layout[group]) for group in GROUPS)
+
+
+# ---- rows.csv -------------------------------------------------------------------------------------------------------
+
+
+def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]) -> dict[str, int]:
+    """Write what became of each row, in the order of the table; return the rows by status."""
+    layouts = store.layouts(job)
+    titles, carried = _carried(content)
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow([*ROW_COLUMNS, *titles])
+    counts: dict[str, int] = {}
+    for row in store.rows(job, canonical=False):
+        status = status_of(row)
+        counts[status] = counts.get(status, 0) + 1
+        answer = row.content or {}
+        designs = answer.get("rows", [])
+        own = [
+            row.line, (row.key or "")[:SHORT], row.family, status, len(designs),
+            "" if row.seconds is None else f"{row.seconds:.3f}",
+            answer.get("certificate", ""), _text(answer.get("gap")),
+            best_design(layouts[row.layout], designs[0]) if designs and row.layout else "",
+            explanation_of(row), row.remarks,
+        ]  # fmt: skip
+        writer.writerow([*own, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
+    return dict(sorted(counts.items()))
+
+
+def status_of(row: Answered) -> str:
+    """Return how a row stands: the status of its front, or bad_input, refused, failed, not_solved."""
+    return "bad_input" if row.key is None else row.status or "not_solved"
+
+
+def explanation_of(row: Answered) -> str:
+    """Return why a row has no designs, or was stopped; empty where there is nothing to explain."""
+    if row.faults:
+        return "; ".join(fault["sentence"] for fault in row.faults)
+    content = row.content or {}
+    stopped = f"stopped: {content['interrupted']}" if content.get("interrupted") else ""
+    return str(content.get("error") or content.get("explanation") or stopped)
+
+
+def best_design(layout: Mapping[str, Any], cells: Sequence[str]) -> str:
+    """Return a design in words: objectives, sizes, choices and parts."""
+    names = [name for group in GROUPS for name in layout[group]]
+    shown = [name for group in ("objectives", "searched", "choices", "parts") for name in layout[group]]
+    return ", ".join(
+        _said(name, cell) for name, cell in zip(names, cells[len(RANKING) :], strict=True) if name in shown and cell
+    )
+
+
+def _said(heading: str, cell: str) -> str:
+    name, _, unit = heading.partition(" [")
+    unit = unit.removesuffix("]")
+    if heading == name:
+        return f"{name} {cell}"
+    return f"{name} {float(cell):.6g}{'' if unit in ('', '-') else f' {unit}'}"
+
+
+def _text(value: Any) -> str:
+    return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+
+
+# ---- files ----------------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _new_file(path: Path) -> Iterator[TextIO]:
+    """Give a file that takes its place when it is whole; what a killed process left is removed."""
+    for left in path.parent.glob(f".{path.name}.*.tmp"):
+        if has_died(left.name.removeprefix(f".{path.name}.").removesuffix(".tmp").replace("+", "/")):
+            left.unlink(missing_ok=True)
+    temporary = path.with_name(f".{path.name}.{new_owner().replace('/', '+')}.tmp")
+    try:
+        with temporary.open("w", encoding="utf-8", newline="") as file:
+            yield file
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _hash_of(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

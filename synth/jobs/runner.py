@@ -1,0 +1,206 @@
+"""Works off a job: claims units, has them solved, writes what comes out, and can be stopped or killed at any moment."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from sqlalchemy.exc import OperationalError
+
+from synth.errors import InputError
+from synth.fingerprint import code_digest
+from synth.jobs.executors import Cluster, is_lost
+from synth.jobs.solve import OtherCodeError, solve_unit
+from synth.jobs.store import CANCELLED, LEASE, Account, Claim, Outcome, Store, new_owner
+
+ATTEMPTS = 3  # of a question that fails, before it is answered by its error
+TICK = 0.5  # seconds between looks at what is going on
+OUTAGE = 60.0  # seconds to wait for a database that does not answer
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Shares:
+    """What all units of a job are solved with."""
+
+    settings: Mapping[str, Any]
+    catalogs: Any
+    own: Any
+
+
+class Runner:
+    """One process at work on a job; any number of them may be, on any machines.
+
+    Parameters
+    ----------
+    store : Store
+    job : str
+    shares : Shares
+    executor : Executor
+        With ``slots``.
+    progress : callable, optional
+        Called with a mapping: rows, done, failed, infeasible, rate (rows per second), left (seconds; None = unknown).
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        job: str,
+        shares: Shares,
+        executor: Any,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+    ) -> None:
+        self.store, self.job, self.shares, self.executor, self.progress = store, job, shares, executor, progress
+        self.owner = new_owner()
+        self.started = time.monotonic()
+        self.first: Account | None = None
+        self.said = 0.0
+        self.pause = 1.0
+        self.cancelled = threading.Event()
+        self.over = threading.Event()
+        self.waiting: deque[Claim] = deque()
+        self.under_way: dict[Future[Any], Claim] = {}
+
+    def run(self) -> str:
+        """Work until nothing is left.
+
+        Returns
+        -------
+        str
+            Empty when the job is done, otherwise why it was stopped; then everything that was found is kept.
+        """
+        heart = threading.Thread(target=self._beat, name="heartbeat", daemon=True)
+        heart.start()
+        try:
+            self.store.release_dead(self.job)
+            return self._work()
+        except KeyboardInterrupt:
+            self.store.tell(self.job, "interrupted", self.owner)
+            return "interrupted"
+        finally:
+            self.over.set()
+            executor: Executor = self.executor
+            executor.shutdown(wait=False, cancel_futures=True)
+            self.store.release(self.owner)
+            heart.join(timeout=TICK)
+
+    def _work(self) -> str:
+        while True:
+            self._tell()
+            if self.cancelled.is_set():
+                return "cancelled"
+            if isinstance(self.executor, Cluster) and not self.executor.alive():
+                # The futures of a scheduler that is gone never end.
+                self.waiting.extend(self.under_way.values())
+                self.under_way.clear()
+                if not self.executor.reconnect(self.cancelled.is_set):
+                    return "the scheduler did not come back"
+            self._fill()
+            if self.under_way:
+                done, _ = wait(self.under_way, timeout=TICK, return_when=FIRST_COMPLETED)
+                for future in done:
+                    self._take(future, self.under_way.pop(future))
+            elif not self.waiting and not self._others_work():
+                self._tell(always=True)
+                return ""
+
+    def _fill(self) -> None:
+        """Keep all slots busy."""
+        free = self.executor.slots - len(self.under_way)
+        wanted = free - len(self.waiting)
+        if wanted > 0:
+            # Some more than there are slots for: asking the database costs more than what it gives.
+            ahead = wanted + self.executor.slots
+            self.waiting.extend(_patiently(lambda: self.store.claim(self.job, self.owner, ahead)))
+        while free > 0 and self.waiting:
+            claim = self.waiting.popleft()
+            work = {
+                "job": self.job, "questions": claim.questions, "settings": dict(self.shares.settings),
+                "catalogs": self.shares.catalogs, "own": self.shares.own, "code": code_digest(),
+            }  # fmt: skip
+            self.under_way[self.executor.submit(solve_unit, work)] = claim
+            free -= 1
+
+    def _take(self, future: Future[Any], claim: Claim) -> None:
+        """Write what came out of a unit; what was lost with its executor waits for another one."""
+        if is_lost(future):
+            self.waiting.append(claim)
+            return
+        error = future.exception()
+        outcomes: dict[str, Outcome] = {}
+        errors: dict[str, str] = {}
+        if isinstance(error, OtherCodeError):
+            raise InputError("--scheduler", "workers with other code", "the same clutchsynth on all machines")
+        if error is not None:
+            errors = dict.fromkeys(claim.questions, f"{type(error).__name__}: {error}")
+        else:
+            for key, found in future.result().items():
+                if "error" in found:
+                    errors[key] = found["error"]
+                else:
+                    outcomes[key] = Outcome(found["status"], found["seconds"], found["layout"], found["content"])
+        _patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, ATTEMPTS))
+
+    def _others_work(self) -> bool:
+        """Tell whether units are left that other processes have; wait a little for them."""
+        left = sum(_patiently(lambda: self.store.open_units(self.job)))
+        if left:
+            self.store.release_dead(self.job)
+            self.cancelled.wait(TICK)
+        return left > 0
+
+    # -- signs of life -------------------------------------------------------------------------
+
+    def _beat(self) -> None:
+        """Renew the leases, and see whether the job is still wanted; a thread of its own."""
+        renewed = time.monotonic()
+        while not self.over.wait(TICK):
+            try:
+                job = self.store.job(self.job)
+                if job is None or job.state == CANCELLED:
+                    self.cancelled.set()
+                if time.monotonic() - renewed > LEASE / 4:
+                    self.store.renew(self.owner)
+                    renewed = time.monotonic()
+            except OperationalError:
+                continue  # the database may be back at the next beat, long before a lease ends
+
+    def _tell(self, always: bool = False) -> None:
+        """Report how far the job is, now and then."""
+        if self.progress is None or (not always and time.monotonic() - self.said < self.pause):
+            return
+        begin = time.monotonic()
+        account = self.store.account(self.job)
+        self.said = time.monotonic()
+        self.pause = max(1.0, 20 * (self.said - begin))  # counting must not cost what it counts
+        if self.first is None:
+            self.first = account
+        elapsed, fresh = self.said - self.started, account.done - self.first.done
+        rate = fresh / elapsed if elapsed > 0 else 0.0
+        self.progress({
+            "rows": account.rows,
+            "done": account.done,
+            "failed": account.status.get("failed", 0),
+            "infeasible": account.status.get("infeasible", 0),
+            "bad": account.bad,
+            "rate": rate,
+            "left": (account.rows - account.done) / rate if rate > 0 else None,
+        })  # fmt: skip
+
+
+def _patiently(call: Callable[[], T]) -> T:
+    """Call the database, again and again while it does not answer, for a minute."""
+    deadline = time.monotonic() + OUTAGE
+    while True:
+        try:
+            return call()
+        except OperationalError:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(TICK)

@@ -1,0 +1,192 @@
+"""Rows of a batch as they stand in a CSV file, an Excel sheet or a DataFrame: a header, and lines of text."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from synth.errors import InputError
+
+EXCEL = (".xlsx", ".xlsm")
+MOST_CELLS = 2000  # columns that anybody has typed
+
+
+@dataclass(frozen=True)
+class RowTable:
+    """A table of rows. It can be read again and again, and is read line by line.
+
+    Parameters
+    ----------
+    name : str
+        How messages call it.
+    source : Path or sequence
+        A file, or header and cells that are in memory.
+    """
+
+    name: str
+    source: Path | tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]
+
+    def header(self) -> tuple[str, ...]:
+        """Return the cells of the first line.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, or has no header.
+        """
+        for _, cells in self._records():
+            return _checked_header(self.name, cells)
+        raise InputError(self.name, "an empty file", "a header such as 'family,load_torque [N*m]' and rows below it")
+
+    def lines(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        """Return the lines below the header that are not blank: number in the file, cells."""
+        records = self._records()
+        width = len(_checked_header(self.name, next(records)[1]))
+        for number, cells in records:
+            if any(cell.strip() for cell in cells):
+                spare = len(cells) > width and not any(cell.strip() for cell in cells[width:])
+                yield number, cells[:width] if spare else cells
+
+    def digest(self) -> str:
+        """Return the SHA-256 of the file, or of what is in memory."""
+        if isinstance(self.source, Path):
+            with self.source.open("rb") as file:
+                return hashlib.file_digest(file, "sha256").hexdigest()
+        return hashlib.sha256(repr(self.source).encode("utf-8", "surrogatepass")).hexdigest()
+
+    def _records(self) -> Iterator[tuple[int, tuple[str, ...]]]:
+        if not isinstance(self.source, Path):
+            header, rows = self.source
+            yield 1, header
+            yield from enumerate(rows, start=2)
+        elif self.source.suffix.lower() in EXCEL:
+            yield from _excel(self.source, self.name)
+        else:
+            yield from _csv(self.source, self.name)
+
+
+def read_table(table: Any) -> RowTable:
+    """Return the rows of a batch, whatever form they have.
+
+    Parameters
+    ----------
+    table : path, DataFrame or sequence of mappings
+        A CSV file, an Excel file (first sheet), a DataFrame, or one mapping per row.
+
+    Raises
+    ------
+    InputError
+        It is none of these, or cannot be read.
+    """
+    if isinstance(table, RowTable):
+        return table
+    if isinstance(table, (str, Path)):
+        path = Path(table)
+        if not path.is_file():
+            raise InputError("rows", str(table), "a CSV or .xlsx file that exists")
+        if path.suffix.lower() == ".xls":
+            raise InputError("rows", str(table), "a CSV or .xlsx file; save the old format .xls as one of these")
+        return RowTable(path.name, path)
+    if isinstance(table, Sequence) and table and all(isinstance(row, Mapping) for row in table):
+        names = tuple(dict.fromkeys(str(key) for row in table for key in row))
+        cells = [{str(key): text_of(value) for key, value in row.items()} for row in table]
+        return RowTable("rows", (names, tuple(tuple(row.get(name, "") for name in names) for row in cells)))
+    pandas = sys.modules.get("pandas")  # whoever holds a DataFrame has imported it
+    if pandas is not None and isinstance(table, pandas.DataFrame):
+        present = table.notna().to_numpy()
+        columns = [table.iloc[:, j].tolist() for j in range(table.shape[1])]
+        rows = tuple(
+            tuple(text_of(columns[j][i]) if present[i, j] else "" for j in range(len(columns)))
+            for i in range(len(table))
+        )
+        return RowTable("DataFrame", (tuple(str(name) for name in table.columns), rows))
+    raise InputError("rows", type(table).__name__, "a CSV or .xlsx file, a DataFrame, or a list of mappings")
+
+
+def text_of(value: Any) -> str:
+    """Return a cell as the text that somebody would have typed.
+
+    Examples
+    --------
+    >>> text_of(20.0), text_of(True), text_of({"mass": "<= 20 kg", "friction_pair": ["a", "b"]})
+    ('20', 'yes', 'mass: <= 20 kg; friction_pair: a, b')
+    """
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    if isinstance(value, Mapping):
+        return "; ".join(f"{name}: {part}" for name, some in value.items() for part in _several(name, some))
+    return str(value)
+
+
+def _several(name: str, value: Any) -> list[str]:
+    """Return what one entry of a mapping says; a list of comparisons is several entries, one of names is one."""
+    if not isinstance(value, (list, tuple)):
+        return [text_of(value)]
+    texts = [text_of(entry) for entry in value]
+    compared = any(text.lstrip()[:1] in ("<", ">", "=") or ".." in text for text in texts)
+    return texts if compared else [", ".join(texts)]
+
+
+def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
+    titles = [cell.strip() for cell in cells]
+    while titles and not titles[-1]:
+        titles.pop()
+    where = f"{name}, line 1"
+    if len(titles) == 1 and any(sign in titles[0] for sign in ";\t"):
+        raise InputError(where, titles[0], "commas between the columns (and decimal points)")
+    if not titles:
+        raise InputError(where, None, "a header such as 'family,load_torque [N*m]'")
+    if len(titles) > MOST_CELLS:
+        raise InputError(where, f"{len(titles)} columns", f"at most {MOST_CELLS}")
+    for title in titles:
+        if not title:
+            raise InputError(where, "a column without a name", "a name for each column")
+        if titles.count(title) > 1:
+            raise InputError(where, title, "each column once")
+    return tuple(titles)
+
+
+def _csv(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
+    line = 1
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file, strict=True)
+            for cells in reader:
+                if any("\0" in cell for cell in cells):
+                    raise InputError(f"{name}, line {line}", "a binary file", "a text file in UTF-8, or .xlsx")
+                yield line, tuple(cells)
+                line = reader.line_num + 1
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{name}, from line {line} on", "another encoding", "a text file in UTF-8, or .xlsx"
+        ) from error
+    except csv.Error as error:
+        raise InputError(f"{name}, line {line}", str(error), "CSV with commas, and quotes that close") from error
+    except OSError as error:
+        raise InputError("rows", str(path), f"a file that can be read ({error.strerror})") from error
+
+
+def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
+    try:
+        import openpyxl  # an extra; only for those who have such files
+    except ImportError:
+        raise InputError("rows", name, "CSV, or the extra for Excel: pip install 'clutchsynth[excel]'") from None
+    try:
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+    except Exception as error:  # whatever a broken archive may raise
+        raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
+    try:
+        sheet = book.worksheets[0]
+        for number, cells in enumerate(sheet.iter_rows(values_only=True), start=1):
+            yield number, tuple(text_of(cell) for cell in cells)
+    finally:
+        book.close()

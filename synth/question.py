@@ -1,0 +1,98 @@
+"""The question that a front answers, posed again: from the front itself, or from what a saved one repeats."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from synth.errors import InputError
+from synth.instance import Instance, catalogs_for
+from synth.problem import DesignProblem, load
+from synth.tables import Catalogs
+
+if TYPE_CHECKING:
+    from synth.results import Design, ParetoFront
+
+
+def problem_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> tuple[DesignProblem, Catalogs]:
+    """Return the problem of a front and its tables.
+
+    Parameters
+    ----------
+    front : ParetoFront
+    problem : family name, DesignProblem subclass or instance, optional
+        For a front of a problem of one's own that was loaded from a file.
+    catalogs : folder or mapping, optional
+        Own tables that were in memory; those that were files are read again.
+
+    Raises
+    ------
+    InputError
+        When the problem or its tables cannot be had.
+    """
+    own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
+    return own, catalogs_for(own, front.frame.restated.get("catalogs") if catalogs is None else catalogs)
+
+
+def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:
+    """Return the question of a front with a problem and its tables.
+
+    Raises
+    ------
+    InputError, KeyError, TypeError, ValueError
+        When the record of the front does not pose a question.
+    """
+    settings = front.settings
+    return Instance(
+        problem, front.frame.requirements, catalogs, settings["parts"], settings["limits"], settings["fix"],
+        bool(settings["grid"]),
+    )  # fmt: skip
+
+
+def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> Instance:
+    """Return the question that a front answers.
+
+    Raises
+    ------
+    InputError
+        When it cannot be posed again.
+    """
+    if front.question is not None and problem is None and catalogs is None:
+        known: Instance = front.question
+        return known
+    own, tables = problem_of(front, problem, catalogs)
+    try:
+        return asked_again(front, own, tables)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("front", front.frame.family, "a front whose record is complete") from error
+
+
+def combination_of(instance: Instance, design: Design) -> int:
+    """Return the number of the combination of a design.
+
+    Raises
+    ------
+    InputError
+        When it has a part, count or choice that the question does not offer.
+    """
+    number = 0
+    selection = instance.selection
+    for slot in selection.slots:
+        offered = [slot.table.designations[r] for r in slot.rows]
+        number = number * len(offered) + _place(slot.slot, str(design.parts.get(slot.slot)), offered)
+    for name, values in selection.counts.items():
+        offered = [f"{v:.12g}" for v in values]
+        number = number * len(offered) + _place(name, f"{design.values.get(name, float('nan')):.12g}", offered)
+    for name, indices in selection.choices.items():
+        labels = instance.model.declaration.choices[name].labels
+        offered = [labels[int(k)] for k in indices]
+        number = number * len(offered) + _place(name, str(design.choices.get(name)), offered)
+    return number
+
+
+def _place(name: str, value: str, offered: list[str]) -> int:
+    if value not in offered:
+        shown = ", ".join(offered[:5]) + (f" and {len(offered) - 5} more" if len(offered) > 5 else "")
+        raise InputError(f"design: {name}", value, f"what this question offers: {shown}")
+    return offered.index(value)

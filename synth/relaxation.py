@@ -1,0 +1,124 @@
+"""A question of which requirements, limits or part columns give way, by an amount that the search decides.
+
+The unknown ``relaxation`` s is the amount, as the logarithm of a factor: what gives way upwards is multiplied by
+exp(s), downwards by exp(-s).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.declaration import Limit, Objective, Variable
+from synth.instance import ExtraLimit, Instance
+from synth.model import Model
+from synth.problem import DesignProblem
+from synth.special import expanded
+from synth.tables import Catalogs
+
+AMOUNT = "relaxation"
+MOST = 3.0  # of the amount: a factor of twenty
+REQUIREMENT, LIMIT, COLUMN = "requirement", "limit", "column"
+
+
+class Relaxed(DesignProblem):
+    """A question in which something gives way, and of which only some limits are kept.
+
+    Parameters
+    ----------
+    instance : Instance
+        The question.
+    own : sequence of ExtraLimit
+        The user's own limits on quantities, which become limits like those of the family.
+    give : mapping
+        (kind, name) of a requirement, limit or part column (``slot.column``) -> 1 or -1, upwards or downwards.
+    kept : collection of str
+        The limits that count; guards always do.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        own: Sequence[ExtraLimit],
+        give: Mapping[tuple[str, str], float],
+        kept: Collection[str],
+    ) -> None:
+        self.name = f"{instance.problem.name} (relaxed)"
+        self.title = instance.problem.title
+        super().__init__(**instance.problem.options)
+        self._instance, self._own, self._give, self._kept = instance, own, give, kept
+        self._model = self._traced()
+
+    def model(self, given: frozenset[str], catalogs: Catalogs) -> Model:
+        """Return the relaxed model; there is one, for the requirements and tables of the question."""
+        return self._model
+
+    def _traced(self) -> Model:
+        original = self._instance.model
+        source = original.declaration
+        amount = Variable(
+            AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
+        )
+        before, after = self._moved_inputs(amount.sx)
+
+        def moved(expression: Any) -> Any:
+            return ca.substitute([ca.SX(expression)], before, after)[0] if before else expression
+
+        def loosened(limit: Limit) -> Limit:
+            sign = self._give.get((LIMIT, limit.name))
+            return limit if sign is None else replace(limit, limit=limit.limit * np.exp(sign * amount.sx))
+
+        target = copy.copy(source)
+        target.problem = self.name
+        target.derived = {name: replace(q, sx=moved(q.sx)) for name, q in source.derived.items()}
+        quantities = {**original.quantity_sx, **{name: q.sx for name, q in target.derived.items()}}
+        limits = [replace(x, value=moved(x.value), limit=moved(x.limit)) for x in source.limits.values()]
+        limits += [
+            Limit(x.name, x.sense, x.unit, "", "", quantities[x.quantity], ca.SX(x.limit), False, 1e-9)
+            for x in self._own
+        ]
+        target.limits = {x.name: loosened(x) for x in limits if x.guard or x.name in self._kept}
+        # What is refused for a requirement that moves is refused where it has moved to: that is a limit.
+        target.refusals = []
+        for refusal in source.refusals:
+            when = moved(expanded(refusal.when, original.calls))
+            if any(str(s) == AMOUNT for s in ca.symvar(when)):
+                name = f"refused: {refusal.code}"
+                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", when, ca.SX(0.5), False, 1e-9)
+            else:
+                target.refusals.append(refusal)
+        target.variables = {**source.variables, AMOUNT: amount}
+        target.objectives = {AMOUNT: Objective(AMOUNT, "min", True), **source.objectives}
+        target.advices = []
+        target._symbols = {**source.names(), AMOUNT: AMOUNT}
+        calls = [replace(c, arguments=tuple(moved(a) for a in c.arguments)) for c in original.calls]
+        return Model(self.name, target, calls)
+
+    def _moved_inputs(self, amount: Any) -> tuple[list[Any], list[Any]]:
+        """Return the symbols of requirements and columns that move, and what stands in their place.
+
+        A requirement at its default follows those that the default is made of.
+        """
+        d, calls = self._instance.model.declaration, self._instance.model.calls
+        before: list[Any] = []
+        after: list[Any] = []
+        for r in d.requirements.values():
+            sign = self._give.get((REQUIREMENT, r.name), 0.0)
+            value = r.sx
+            if before and r.sx is not None and r.name not in self._instance.given and isinstance(r.default, ca.SX):
+                value = ca.substitute([expanded(r.default, calls)], before, after)[0]
+            if sign or value is not r.sx:
+                before.append(r.sx)
+                after.append(value * np.exp(sign * amount) if sign else value)
+        for part in d.slots.values():
+            for key, column in part.columns.items():
+                sign = self._give.get((COLUMN, f"{part.slot}.{key}"), 0.0)
+                if sign:
+                    before.append(column.sx)
+                    after.append(column.sx * np.exp(sign * amount))
+        return before, after

@@ -1,0 +1,435 @@
+"""A what-if study: its steps, its break points, the tables they become and the files they are saved to."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.feasibility import Status
+from synth.results import Design, Frame, ParetoFront
+from synth.terminal import report, write_all
+from synth.units import from_si, header
+from synth.vary import Value, Varied
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+BINDING = 0.999  # a limit used more than this binds
+MOST_LINES = 7  # a drawing with more is not read
+MOST_LABELS = 8
+
+
+@dataclass(frozen=True)
+class Step:
+    """The question at some values, and its answer; ``front`` is None where the study was stopped before."""
+
+    number: int
+    values: tuple[Value, ...]
+    front: ParetoFront | None
+    fingerprint: str = ""
+    stopped: str = ""
+
+    @property
+    def status(self) -> Status:
+        """Return how the step stands."""
+        return Status.NOT_SOLVED if self.front is None else self.front.status
+
+    @property
+    def reason(self) -> str:
+        """Return in a few words why there is no design; nothing where there is one."""
+        if self.front is None:
+            return f"not reached: {self.stopped}" if self.stopped else "not reached"
+        if self.front.designs:
+            return ""
+        conflicts = (self.front.explanation or {}).get("conflicts") or []
+        missed = [f"{c['limit']} by {100 * c['missed_by']:.3g} %" for c in conflicts]
+        return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
+
+
+@dataclass(frozen=True)
+class Composition:
+    """Parts, counts and choices of a best design, with the value that it reaches."""
+
+    parts: Mapping[str, str]
+    counts: Mapping[str, float]
+    choices: Mapping[str, str]
+    value: float
+
+    @staticmethod
+    def of(design: Design, objective: str) -> Composition:
+        """Return what a design is made of."""
+        kinds = design.frame.kinds
+        return Composition(
+            {slot: str(row) for slot, row in design.parts.items()},
+            {n: design.values[n] for n, kind in kinds.items() if kind == "count"},
+            dict(design.choices),
+            design.values[objective],
+        )
+
+    @property
+    def named(self) -> dict[str, str]:
+        """Return everything discrete by name."""
+        return {**self.parts, **{n: f"{v:g}" for n, v in self.counts.items()}, **self.choices}
+
+
+@dataclass(frozen=True)
+class Break:
+    """A value at which the best design in one objective changes its parts or counts, or begins or ends to exist.
+
+    It lies between ``low`` and ``high``, in the unit of what is varied; ``before`` is best at ``low``, ``after`` at
+    ``high`` (None: nothing is feasible). ``others`` are the values of what else is varied. ``proven``: over all
+    combinations, on both sides; where it is not, ``remark`` says why.
+    """
+
+    objective: str
+    others: tuple[Value, ...]
+    low: float
+    high: float
+    before: Composition | None
+    after: Composition | None
+    proven: bool
+    remark: str = ""
+
+    @property
+    def value(self) -> float:
+        """Return the middle of the range that holds the break."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def kind(self) -> str:
+        """Return what changes: feasible, parts, counts or choices, the first that applies."""
+        if self.before is None or self.after is None:
+            return "feasible"
+        for kind in ("parts", "choices", "counts"):
+            if getattr(self.before, kind) != getattr(self.after, kind):
+                return kind
+        return "none"
+
+    @property
+    def change(self) -> str:
+        """Return in words what changes."""
+        if self.before is None:
+            return "feasible from here on"
+        if self.after is None:
+            return "nothing feasible from here on"
+        old, new = self.before.named, self.after.named
+        return ", ".join(
+            f"{n} {old.get(n, '-')} -> {new.get(n, '-')}" for n in {**old, **new} if old.get(n) != new.get(n)
+        )
+
+
+@dataclass(frozen=True)
+class Study:
+    """Fronts for all values of what is varied, and where the best parts change.
+
+    ``along`` is the position of what breaks are sought along (None: nothing numeric is varied); ``settings`` are those
+    of the question that stays.
+    """
+
+    varied: tuple[Varied, ...]
+    steps: tuple[Step, ...]
+    breaks: tuple[Break, ...]
+    along: int | None
+    interrupted: str = ""
+    statistics: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def fronts(self) -> list[ParetoFront]:
+        """Return the fronts of the steps that were answered."""
+        return [s.front for s in self.steps if s.front is not None]
+
+    @property
+    def feasible(self) -> bool:
+        """Tell whether any step has a design."""
+        return any(front.designs for front in self.fronts)
+
+    # -- tables --------------------------------------------------------------------------------
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per step and design, with units in the headers; a step without designs has one row."""
+        import pandas as pd  # costly to import
+
+        columns, rows = self._table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def breaks_frame(self) -> pd.DataFrame:
+        """Return one row per break point."""
+        import pandas as pd
+
+        columns, rows = self._breaks_table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def _headers(self) -> list[str]:
+        return [header(x.label, x.unit) if x.numeric else x.label for x in self.varied]
+
+    def _cells(self, values: Sequence[Value]) -> list[Any]:
+        return [v if x.numeric else x.shown(v) for x, v in zip(self.varied, values, strict=True)]
+
+    def objectives(self) -> dict[str, str]:
+        """Return the objectives of all steps with their unit."""
+        return {n: f.frame.units[n] for f in self.fronts for n in f.frame.objectives}
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        frames = [f.frame for f in self.fronts]
+        designs = [d for f in self.fronts for d in f.designs]
+        objectives = self.objectives()
+        units = {n: u for frame in frames for n, u in frame.units.items()}
+        searched = [
+            n
+            for kind in ("variable", "count")
+            for n in _union(_of_kind(f, kind) for f in frames)
+            if n not in objectives
+        ]
+        choices, slots = _union(d.choices for d in designs), _union(d.parts for d in designs)
+        prices = [
+            (objective, name)
+            for objective in objectives
+            for name in _union(d.elasticity.get(objective, {}) for d in designs)
+        ]
+        columns = ["step", *self._headers(), "status", "rank", "note"]
+        columns += [header(n, objectives[n]) for n in objectives] + ["binding", *slots, *choices]
+        columns += [header(n, units[n]) for n in searched]
+        columns += [f"elasticity: {objective} by {name}" for objective, name in prices]
+        columns += ["certificate", "gap", "reason"]
+        rows = []
+        for step in self.steps:
+            front, start = step.front, [step.number, *self._cells(step.values)]
+            kind = "" if front is None else front.certificate.kind
+            if front is None or not front.designs:
+                blank: list[Any] = [None] * (len(columns) - len(start) - 4)
+                rows.append([*start, step.status.value, *blank, kind, None, step.reason])
+                continue
+            for d in front.designs:
+                row: list[Any] = [*start, d.status.value, d.rank, d.note]
+                row += [_shown(d.values.get(n), objectives[n]) for n in objectives]
+                row.append("; ".join(binding(d)))
+                row += [str(d.parts[s]) if s in d.parts else None for s in slots]
+                row += [d.choices.get(c) for c in choices]
+                row += [_shown(d.values.get(n), units[n]) for n in searched]
+                row += [d.elasticity.get(objective, {}).get(name) for objective, name in prices]
+                rows.append([*row, kind, front.certificate.gap, ""])
+        return columns, rows
+
+    def _breaks_table(self) -> tuple[list[str], list[list[Any]]]:
+        k, units = self.along, self.objectives()
+        if k is None:
+            return ["objective", "kind", "change", "proven", "remark"], []
+        varied, heads = self.varied[k], self._headers()
+        others = [x for j, x in enumerate(self.varied) if j != k]
+        columns = ["objective", *(h for j, h in enumerate(heads) if j != k), heads[k], "from", "to", "kind", "change"]
+        columns += ["objective before", "objective after", "parts before", "parts after", "proven", "remark"]
+        rows = []
+        for b in self.breaks:
+            row: list[Any] = [b.objective]
+            row += [v if x.numeric else x.shown(v) for x, v in zip(others, b.others, strict=True)]
+            row += [b.value, b.low, b.high, b.kind, b.change]
+            for side in (b.before, b.after):
+                row.append(None if side is None or b.objective not in units else _shown(side.value, units[b.objective]))
+            for side in (b.before, b.after):
+                row.append("" if side is None else ", ".join(f"{n} {w}" for n, w in side.named.items()))
+            rows.append([*row, "yes" if b.proven else "no", b.remark])
+        assert varied.numeric
+        return columns, rows
+
+    # -- drawings ------------------------------------------------------------------------------
+
+    def curves(self) -> dict[str, pd.DataFrame]:
+        """Return what is drawn, by file name, as the hooks of families do: objectives over what is varied, fronts."""
+        found = {"whatif": self._objective_curves()}
+        fronts = self._front_curves()
+        return found if fronts is None else {**found, "fronts": fronts}
+
+    def _objective_curves(self) -> pd.DataFrame:
+        """Return least, leading and largest value of each objective over what is varied."""
+        import pandas as pd
+
+        k = 0 if self.along is None else self.along
+        varied = self.varied[k]
+        numeric = self.along is not None
+        x = self._headers()[k] if numeric else header("step", "-")
+        groups = [()] if len(self.varied) == 1 else list(dict.fromkeys(_without(s.values, k) for s in self.steps))
+        places = sorted({float(s.values[k]) for s in self.steps}) if numeric else [float(s.number) for s in self.steps]  # type: ignore[arg-type]
+        data: dict[str, list[float]] = {x: places}
+        panels: list[dict[str, Any]] = []
+        for name, unit in self.objectives().items():
+            columns = []
+            for group in _spread(groups, MOST_LINES):
+                steps = [
+                    s for s in self.steps if not numeric or _without(s.values, k) == group or len(self.varied) == 1
+                ]
+                at = {float(s.values[k]) if numeric else float(s.number): s for s in steps}  # type: ignore[arg-type]
+                lines = _lines(len(groups) == 1, [at.get(p) for p in places], name)
+                for label, values in lines.items():
+                    words = "" if len(groups) == 1 else f" at {self._words(k, group)}"
+                    column = header(f"{label} {name}{words}", unit)
+                    data[column] = [_in_unit(v, unit) for v in values]
+                    columns.append(column)
+            panels.append({"label": header(name, unit), "columns": columns, "points": True})
+        frame = pd.DataFrame(data)
+        marks: list[dict[str, Any]] = [{"x": b.value} for b in self.breaks] if numeric else []
+        if len(marks) <= MOST_LABELS:
+            marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
+        frame.attrs.update(
+            title=f"{self._title()} over {varied.label.replace('_', ' ')}" if numeric else self._title(),
+            x=x,
+            panels=panels,
+            marks=marks,
+            source=self._footer(bool(marks)),
+        )
+        return frame
+
+    def _front_curves(self) -> pd.DataFrame | None:
+        """Return the fronts of some steps in the first two objectives; None where there are not two."""
+        import pandas as pd
+
+        objectives = list(self.objectives().items())
+        steps = [s for s in self.steps if s.front is not None and len(s.front.designs) > 1]
+        if len(objectives) < 2 or not steps:
+            return None
+        (first, unit), (second, other) = objectives[:2]
+        x = header(first, unit)
+        data: dict[str, list[float]] = {x: []}
+        shown = _spread(steps, MOST_LINES)
+        labels = [
+            header(", ".join(v.shown(w) for v, w in zip(self.varied, s.values, strict=True)), other) for s in shown
+        ]
+        data |= {label: [] for label in labels}
+        for step, label in zip(shown, labels, strict=True):
+            assert step.front is not None
+            designs = sorted(step.front.designs, key=lambda d: d.values[first])
+            for d in [*designs, None]:
+                for column in data:
+                    data[column].append(math.nan)
+                if d is None:
+                    data[x][-1] = data[x][-2]
+                else:
+                    data[x][-1] = _in_unit(d.values[first], unit)
+                    data[label][-1] = _in_unit(d.values[second], other)
+        frame = pd.DataFrame(data)
+        panel = {"label": header(second, other), "columns": labels, "points": True}
+        names = " and ".join(v.label.replace("_", " ") for v in self.varied)
+        frame.attrs.update(
+            title=f"{self._title()}: the front for {names}", x=x, panels=[panel], source=self._footer(False)
+        )
+        return frame
+
+    def _words(self, k: int, group: Sequence[Value]) -> str:
+        others = [x for j, x in enumerate(self.varied) if j != k]
+        return ", ".join(x.stated(v) for x, v in zip(others, group, strict=True)).replace("_", " ")
+
+    def _title(self) -> str:
+        return self.fronts[0].frame.title if self.fronts else "What if"
+
+    def _footer(self, breaks: bool) -> str:
+        solved = [f.certificate.kind for f in self.fronts]
+        answered = f"{len(solved)} of {len(self.steps)} steps answered, {solved.count('global')} of them proven"
+        return answered + ("; vertical lines: break points" if breaks else "")
+
+    # -- files ---------------------------------------------------------------------------------
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        found = {"whatif.csv": csv_text(*self._table()), "breaks.csv": csv_text(*self._breaks_table())}
+        draw = report("figure")
+        if draw is not None and self.feasible:
+            found |= {f"{key}.svg": draw(frame) for key, frame in self.curves().items()}
+        return found
+
+    def save(self, folder: str | Path) -> Path:
+        """Write whatif.csv, breaks.csv and the drawings; return the folder.
+
+        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        """
+        target = Path(folder)
+        files = self.files()
+        write_all(target, files)
+        for name in ("whatif.svg", "fronts.svg"):
+            if name not in files:
+                (target / name).unlink(missing_ok=True)
+        return target
+
+
+def binding(design: Design) -> list[str]:
+    """Return the limits that a design has reached; an equality is one always and says nothing."""
+    return [
+        name
+        for name, used in design.utilisation.items()
+        if used is not None and used >= BINDING and design.frame.limit_senses[name] != "equal"
+    ]
+
+
+def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    """Return a table as CSV in full precision; nothing stands where there is no value."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(columns)
+    for row in rows:
+        writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
+    return buffer.getvalue()
+
+
+def best_design(front: ParetoFront | None, objective: str) -> Design | None:
+    """Return the design of a front that is best in one objective."""
+    if front is None or not front.designs:
+        return None
+    sign = 1.0 if front.frame.objectives.get(objective, "min") == "min" else -1.0
+    return min(front.designs, key=lambda d: sign * d.values[objective])
+
+
+def _lines(single: bool, steps: Sequence[Step | None], name: str) -> dict[str, list[float]]:
+    """Return the lines of one objective: best and, where there is room, leading and worst design of each front."""
+    fronts = [None if s is None or s.front is None or not s.front.designs else s.front for s in steps]
+    best = [math.nan if f is None else _value(best_design(f, name), name) for f in fronts]
+    if not single or all(f is None or len(f.designs) < 2 for f in fronts):
+        return {"best": best}
+    values = [[] if f is None else [d.values[name] for d in f.designs] for f in fronts]
+    worst = [
+        math.nan if not v else max(v) if abs(min(v) - b) <= abs(max(v) - b) else min(v)
+        for v, b in zip(values, best, strict=True)
+    ]
+    leading = [math.nan if f is None else f.designs[0].values[name] for f in fronts]
+    return {"best": best, "leading design": leading, "other end of the front": worst}
+
+
+def _brief(b: Break) -> str:
+    if b.before is None or b.after is None:
+        return "feasible" if b.before is None else "infeasible"
+    old, new = b.before.named, b.after.named
+    changed = [new[n] for n in new if old.get(n) != new[n]]
+    return ", ".join(changed[:2]) + (" ..." if len(changed) > 2 else "")
+
+
+def _value(design: Design | None, name: str) -> float:
+    return math.nan if design is None else design.values[name]
+
+
+def _in_unit(value: float, unit: str) -> float:
+    return float(from_si(value, unit)) if math.isfinite(value) else math.nan
+
+
+def _shown(value: float | None, unit: str) -> float | None:
+    return None if value is None or not math.isfinite(value) else float(from_si(value, unit))
+
+
+def _union(groups: Iterable[Iterable[str]]) -> list[str]:
+    return list(dict.fromkeys(name for group in groups for name in group))
+
+
+def _of_kind(frame: Frame, kind: str) -> list[str]:
+    return [n for n, k in frame.kinds.items() if k == kind]
+
+
+def _without(values: Sequence[Value], k: int) -> tuple[Value, ...]:
+    return tuple(v for j, v in enumerate(values) if j != k)
+
+
+def _spread(items: Sequence[Any], most: int) -> list[Any]:
+    """Return at most so many, at equal distances but for the last."""
+    stride = -(-(len(items) - 1) // (most - 1)) if len(items) > most else 1
+    chosen = list(range(0, len(items), stride))
+    return [items[k] for k in (chosen if not items or chosen[-1] == len(items) - 1 else [*chosen, len(items) - 1])]

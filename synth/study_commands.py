@@ -1,0 +1,101 @@
+"""The commands that vary a question: whatif."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from synth.errors import InputError
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, objectives, tell
+
+if TYPE_CHECKING:
+    from synth.spec import Spec
+    from synth.study import Study
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="whatif")(whatif)
+
+
+def whatif(
+    spec: Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")],
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            help="What to vary: 'load_torque=500:700:50 N*m', 'mass <= 40,50,60 kg', 'weights.mass=1:4:1', "
+            "'parts.SLOT=a,b' or 'options.NAME=a,b'; give it once or twice.",
+            metavar="TEXT",
+        ),
+    ],
+    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    points: Annotated[int | None, typer.Option(help="At most this many designs per step.")] = None,
+    gap: Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")] = None,
+    grid: Annotated[bool | None, typer.Option("--grid/--no-grid", help="Makeable sizes only.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the random starts.")] = None,
+    time_limit: Annotated[
+        str | None, typer.Option(help="Stop after this time for all steps, in seconds or such as '2 min'.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Threads to use.")] = None,
+    objective: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"
+        ),
+    ] = None,
+    breaks: Annotated[
+        bool, typer.Option("--breaks/--no-breaks", help="Find where the best parts or counts change.")
+    ] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+) -> None:
+    """Answer a spec for many values of a requirement, limit, weight, part or option; run again to go on."""
+    from synth.spec import read_spec
+
+    asked = read_spec(spec).merged(
+        points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
+        objectives=objectives(objective or []),
+    )  # fmt: skip
+    if asked.values is not None:
+        raise InputError(f"{asked.file}: values", ", ".join(asked.values), "a question without values")
+    check_output(folder)
+    study = _study(asked, vary, folder, breaks, quiet)
+    study.save(folder)
+    if not quiet:
+        from synth.console import output
+        from synth.study_console import print_study
+
+        print_study(study, output())
+        print(f"written to {folder}: {', '.join(sorted(study.files()))}, steps/")
+    if study.interrupted:
+        raise typer.Exit(STOPPED)
+    if not study.feasible:
+        raise typer.Exit(INFEASIBLE)
+
+
+def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool) -> Study:
+    from synth.console import progress_display
+    from synth.instance import catalogs_for
+    from synth.problem import load
+    from synth.vary import split_text
+    from synth.what_if import whatif as answer
+
+    wanted: dict[str, Any] = {}
+    for text in vary:
+        name, values = split_text(text)
+        if name in wanted:
+            raise InputError("--vary", text, "each thing once")
+        wanted[name] = values
+    with blamed_on(asked.file):
+        problem = load(asked.family, **asked.options)
+        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+        with progress_display(quiet) as progress:
+            try:
+                return answer(
+                    problem, asked.requirements, wanted, catalogs=catalogs, progress=progress, breaks=breaks,
+                    folder=folder, **asked.search_settings(),
+                )  # fmt: skip
+            except KeyboardInterrupt:
+                tell("stopped before the first step was begun; nothing is written")
+                raise typer.Exit(STOPPED) from None

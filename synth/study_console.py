@@ -1,0 +1,85 @@
+"""What the command line shows of a study: the steps, the break points, and how far both are proven."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from synth.console import plain_table
+from synth.study import Break, Composition, Step, best_design
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from synth.study import Study
+    from synth.vary import Varied
+
+MOST_ROWS = 40
+MOST_BREAKS = 20
+
+
+def print_study(study: Study, console: Console) -> None:
+    """Print a line per step with the best of each objective, the break points, and what is proven."""
+    title = study.fronts[0].frame.title if study.fronts else ""
+    varied = " and ".join(x.label for x in study.varied)
+    console.print(f"{title}{': ' if title else ''}{varied}, {len(study.steps)} steps")
+    console.print()
+    names = list(study.objectives())
+    heads = [*(x.label for x in study.varied), "designs", *(f"best {n}" for n in names), "of the leading design"]
+    last = len(heads) - 1
+    table = plain_table(*heads, right=range(len(study.varied), last), wide=last)
+    for step in study.steps[:MOST_ROWS]:
+        table.add_row(*_row(study, step, names))
+    console.print(table)
+    if len(study.steps) > MOST_ROWS:
+        console.print(f"{len(study.steps) - MOST_ROWS} more in whatif.csv")
+    console.print()
+    if study.breaks:
+        _print_breaks(study, console)
+    if study.interrupted:
+        done = sum(s.front is not None for s in study.steps)
+        console.print(f"stopped: {study.interrupted}; {done} of {len(study.steps)} steps are kept, run again to go on")
+    console.print(_proven(study))
+
+
+def _row(study: Study, step: Step, names: list[str]) -> list[str]:
+    cells = [x.shown(v) for x, v in zip(study.varied, step.values, strict=True)]
+    if step.front is None or not step.front.designs:
+        return [*cells, "0", *("" for _ in names), step.reason]
+    frame, leader = step.front.frame, step.front.designs[0]
+    best = [(n, best_design(step.front, n)) for n in names]
+    cells.append(str(len(step.front.designs)))
+    cells += [
+        "" if d is None or n not in frame.units else format_quantity(d.values[n], frame.units[n], 5) for n, d in best
+    ]
+    made = Composition.of(leader, names[0])
+    words = [*made.parts.values(), *(f"{n} {v:g}" for n, v in made.counts.items()), *made.choices.values()]
+    return [*cells, ", ".join(words)]
+
+
+def _print_breaks(study: Study, console: Console) -> None:
+    assert study.along is not None
+    along = study.varied[study.along]
+    others = [x for k, x in enumerate(study.varied) if k != study.along]
+    table = plain_table("break in", *(x.label for x in others), along.label, "change", "proven", wide=len(others) + 2)
+    for b in study.breaks[:MOST_BREAKS]:
+        table.add_row(b.objective, *(x.shown(v) for x, v in zip(others, b.others, strict=True)), *_told(b, along))
+    console.print(table)
+    if len(study.breaks) > MOST_BREAKS:
+        console.print(f"{len(study.breaks) - MOST_BREAKS} more in breaks.csv")
+    console.print()
+
+
+def _told(b: Break, along: Varied) -> list[str]:
+    return [
+        along.shown(float(f"{b.value:.5g}")),
+        b.change,
+        "yes" if b.proven else f"no{': ' if b.remark else ''}{b.remark}",
+    ]
+
+
+def _proven(study: Study) -> str:
+    kinds = [front.certificate.kind for front in study.fronts]
+    if kinds and all(kind == "global" for kind in kinds):
+        return "proven: every step over all its combinations of parts and counts (certificate and gap in whatif.csv)"
+    return f"{kinds.count('global')} of {len(study.steps)} steps are proven; the certificates stand in whatif.csv"

@@ -1,0 +1,108 @@
+"""What the modules of the command line share: exit codes, and how it speaks, writes and refuses."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
+REPORTS = "clutchsynth.reports"
+
+
+def tell(sentence: str) -> None:
+    """Say something beside the results: on standard error."""
+    print(f"clutchsynth: {sentence}", file=sys.stderr)
+
+
+def pair(flag: str, text: str) -> tuple[str, str]:
+    """Split name=value."""
+    name, sign, value = text.partition("=")
+    if not sign or not name.strip() or not value.strip():
+        raise InputError(flag, text, "name=value")
+    return name.strip(), value.strip()
+
+
+def objectives(texts: list[str]) -> list[str] | dict[str, str] | None:
+    """Return what repeated flags ask for: names, or names with min or max."""
+    if not texts:
+        return None
+    if not any("=" in text for text in texts):
+        return texts
+    pairs = [pair("--objective", text) if "=" in text else (text, "") for text in texts]
+    unsaid = [name for name, sense in pairs if not sense]
+    if unsaid:
+        raise InputError(
+            "--objective", unsaid[0], f"{unsaid[0]}=min or {unsaid[0]}=max: all objectives with a sense, or none"
+        )
+    return dict(pairs)
+
+
+def frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
+    """Return what frames are written as: file name -> text, a table and a drawing of each."""
+    draw = report("figure")
+    files = {}
+    for key, frame in frames.items():
+        files[f"{key}.csv"] = as_csv(frame)
+        if draw is not None:
+            files[f"{key}.svg"] = draw(frame)
+    return files
+
+
+def as_csv(frame: pd.DataFrame) -> str:
+    """Return a frame as CSV."""
+    text: str = frame.to_csv(index=False, lineterminator="\n", float_format="%.10g")
+    return text
+
+
+def write_all(folder: Path, files: Mapping[str, str]) -> None:
+    """Write files that are all complete before the first one is touched."""
+    from synth.results import write_atomically
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            write_atomically(folder / name, text)
+    except OSError as error:
+        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
+
+
+@contextmanager
+def blamed_on(file: str) -> Iterator[None]:
+    """Put the name of the file in front of what is wrong in it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{file}: {error.field}", error.value, error.expected) from error
+
+
+def check_output(folder: Path) -> None:
+    """Refuse a folder that cannot be written before the search, not after it."""
+    if str(folder) in ("", "."):
+        raise InputError("--output", str(folder), "the name of a folder for the results, for example out/")
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    if not place.is_dir():
+        raise InputError("--output", str(folder), f"a folder; {place} is a file")
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError("--output", str(folder), f"a folder that can be written; {place} is read-only for you")
+
+
+def report(name: str) -> Callable[..., Any] | None:
+    """Return a report by its registered name; None where it is not installed."""
+    from importlib.metadata import entry_points
+
+    for point in entry_points(group=REPORTS):
+        if point.name == name:
+            found: Callable[..., Any] = point.load()
+            return found
+    return None

@@ -1,0 +1,1 @@
+"""Size ranges: the fewest standard variants that serve many requirement rows."""

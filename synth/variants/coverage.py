@@ -1,0 +1,255 @@
+"""Which design can serve which question: every design against every question, by the model's own evaluator."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.feasibility import holds, residual
+from synth.instance import Instance, numeric
+from synth.model import Evaluation, Model, part_column_value
+from synth.problem import DesignProblem
+from synth.special import expanded
+from synth.tables import Catalogs
+
+FloatArray = NDArray[np.float64]
+PAIRS = 40_000  # evaluated at a time
+SAME = 1e-9  # relative; values closer than this are one
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A design without what belongs to its use: sizes and counts in SI, choices, parts by designation."""
+
+    family: str
+    values: Mapping[str, float]
+    choices: Mapping[str, str]
+    parts: Mapping[str, str]
+
+    @property
+    def label(self) -> str:
+        """What tells it from others."""
+        values = {name: float(f"{value:.12g}") for name, value in self.values.items()}
+        return json.dumps([self.family, values, dict(self.choices), dict(self.parts)], sort_keys=True)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A question that variants are to serve: how often it is asked, and its own best value of the objective."""
+
+    key: str
+    question: Mapping[str, Any]
+    weight: int
+    best: float
+
+
+@dataclass
+class Structure:
+    """Questions of one structure: one model, and an instance of it for each."""
+
+    problem: DesignProblem
+    catalogs: Catalogs
+    asked: list[Asked] = field(default_factory=list)
+
+
+def objective_of_pairs(
+    structure: Structure, variants: Sequence[Variant], objective: str, used: frozenset[str]
+) -> tuple[FloatArray, list[str]]:
+    """Evaluate every variant for every question of a structure.
+
+    Parameters
+    ----------
+    structure : Structure
+    variants : sequence of Variant
+        Of the same family.
+    objective : str
+        A quantity.
+    used : set of str
+        Variables that belong to the use: each question pins them, variants have none.
+
+    Returns
+    -------
+    array (questions, variants), list of str
+        The objective in SI, not-a-number where the variant cannot serve the question; and, per question that none can
+        serve, which limits the nearest one misses (an empty text otherwise).
+    """
+    result = np.full((len(structure.asked), len(variants)), np.nan)
+    reasons = [""] * len(structure.asked)
+    if not structure.asked or not variants:
+        return result, reasons
+    instances = [_instance(structure, asked.question) for asked in structure.asked]
+    model = instances[0].model
+    columns = _VariantColumns(model, structure, variants)
+    if not columns.complete.any():
+        return result, ["no design of this family fits its options"] * len(structure.asked)
+    step = max(PAIRS // len(variants), 1)
+    for begin in range(0, len(instances), step):
+        some = instances[begin : begin + step]
+        evaluation = _evaluate(model, some, columns, used)
+        serves = _serves(model, some, columns, used, evaluation).reshape(len(some), -1)
+        values = evaluation.values[objective].reshape(serves.shape)
+        result[begin : begin + len(some)] = np.where(serves, values, np.nan)
+        for k in np.flatnonzero(~serves.any(axis=1)):
+            reasons[begin + int(k)] = _nearest_miss(model, some[k], int(k), columns, evaluation)
+    return result, reasons
+
+
+def _instance(structure: Structure, question: Mapping[str, Any]) -> Instance:
+    return Instance(
+        structure.problem, question["requirements"], structure.catalogs, question["parts"], question["limits"],
+        question["fix"],
+    )  # fmt: skip
+
+
+class _VariantColumns:
+    """What the variants have for each input of a model; variants that lack something are not complete."""
+
+    def __init__(self, model: Model, structure: Structure, variants: Sequence[Variant]) -> None:
+        d = model.declaration
+        count = len(variants)
+        self.count = count
+        self.complete = np.ones(count, dtype=bool)
+        self.values = np.full((count, len(model.variables)), np.nan)
+        self.counts: dict[str, FloatArray] = {}
+        self.choices: dict[str, FloatArray] = {}
+        self.rows: dict[str, NDArray[np.int_]] = {}
+        self.parts: list[dict[str, FloatArray]] = []
+        for k, variable in enumerate(model.variables):
+            self.values[:, k] = [v.values.get(variable.name, np.nan) for v in variants]
+        for name in d.counts:
+            self.counts[name] = np.array([v.values.get(name, np.nan) for v in variants])
+            self.complete &= ~np.isnan(self.counts[name])
+        for name, choice in d.choices.items():
+            places = [
+                choice.labels.index(v.choices[name]) if v.choices.get(name) in choice.labels else -1 for v in variants
+            ]
+            self.choices[name] = np.array(places, dtype=float)
+            self.complete &= self.choices[name] >= 0
+        self.columns: dict[tuple[str, str], FloatArray] = {}
+        for slot, part in d.slots.items():
+            table = structure.catalogs.table(part.table)
+            known = {name: k for k, name in enumerate(table.designations)}
+            rows = np.array([known.get(v.parts.get(slot, ""), -1) for v in variants])
+            self.rows[slot] = rows
+            self.complete &= rows >= 0
+            for key, column in part.columns.items():
+                numbers = {c: table.number(c) if table.has(c) else np.full(len(table), np.nan) for c in column.columns}
+                values = part_column_value(column, numbers)
+                self.columns[slot, key] = np.where(rows >= 0, values[rows], np.nan)
+                if column.required:
+                    self.complete &= ~np.isnan(self.columns[slot, key])
+
+
+def _evaluate(
+    model: Model, instances: Sequence[Instance], columns: _VariantColumns, used: frozenset[str]
+) -> Evaluation:
+    """Evaluate the pairs of some questions and all variants, question by question."""
+    variables, data = _inputs(model, instances, columns, used)
+    return model.evaluate(variables, data)
+
+
+def _inputs(
+    model: Model, instances: Sequence[Instance], columns: _VariantColumns, used: frozenset[str]
+) -> tuple[FloatArray, list[Any]]:
+    questions, count = len(instances), columns.count
+    variables = np.tile(columns.values, (questions, 1))
+    for k, variable in enumerate(model.variables):
+        if variable.name in used:
+            variables[:, k] = np.repeat([i.lower[k] for i in instances], count)
+    data: list[Any] = []
+    for entry in model.data_inputs:
+        if entry.kind == "requirement":
+            data.append(np.repeat([i.requirements[entry.name] for i in instances], count))
+        elif entry.kind == "row":
+            data.append(np.repeat([i.row_values[str(entry.sx)] for i in instances], count))
+        elif entry.kind == "count":
+            data.append(np.tile(columns.counts[entry.name], questions))
+        elif entry.kind == "choice":
+            data.append(np.tile(columns.choices[entry.name], questions))
+        else:
+            data.append(np.tile(columns.columns[entry.name, "|".join(entry.columns)], questions))
+    return variables, data
+
+
+def _serves(
+    model: Model,
+    instances: Sequence[Instance],
+    columns: _VariantColumns,
+    used: frozenset[str],
+    evaluation: Evaluation,
+) -> NDArray[np.bool_]:
+    """Tell, per pair, whether all limits hold and the question allows these parts, counts, choices and sizes."""
+    count = columns.count
+    serves = evaluation.feasible & np.tile(columns.complete, len(instances))
+    for q, instance in enumerate(instances):
+        allowed = np.ones(count, dtype=bool)
+        for slot in instance.selection.slots:
+            allowed &= np.isin(columns.rows[slot.slot], slot.rows)
+        for name, values in {**instance.selection.counts, **instance.selection.choices}.items():
+            own = columns.counts[name] if name in columns.counts else columns.choices[name]
+            allowed &= (np.abs(own[:, None] - values[None, :]) < SAME).any(axis=1)
+        for k, variable in enumerate(model.variables):
+            if variable.name not in used:
+                low, high = instance.lower[k], instance.upper[k]
+                own = columns.values[:, k]
+                allowed &= (own >= low - SAME * abs(low)) & (own <= high + SAME * abs(high))
+        pairs = slice(q * count, (q + 1) * count)
+        for extra in instance.extra:
+            missed = residual(evaluation.values[extra.quantity][pairs], extra.limit, extra.sense, 1e-9)
+            allowed &= np.asarray(holds(missed, guard=False))
+        allowed &= ~_refused(model, instance, columns, used)
+        serves[pairs] &= allowed
+    return np.asarray(serves)
+
+
+def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: frozenset[str]) -> NDArray[np.bool_]:
+    """Tell which variants a refusal over several parts or counts forbids."""
+    refused = np.zeros(columns.count, dtype=bool)
+    if not instance.joint_refusals:
+        return refused
+    _, data = _inputs(model, [instance], columns, used)
+    known = {str(e.sx): np.asarray(v, dtype=float) for e, v in zip(model.data_inputs, data, strict=True)}
+    for refusal in instance.joint_refusals:
+        made = _refusal(model, refusal.when)
+        function, names = made
+        found = np.asarray(function.call([known[name][None, :] for name in names])[0].full()).ravel()
+        refused |= np.broadcast_to(found > 0.5, refused.shape)
+    return refused
+
+
+def _refusal(model: Model, when: Any) -> tuple[Any, list[str]]:
+    made: tuple[Any, list[str]] = model.function(("number", id(when)), lambda: numeric(expanded(when, model.calls)))
+    return made
+
+
+def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:
+    """Say what the nearest variant misses: that whose worst residual is least."""
+    pairs = slice(q * columns.count, (q + 1) * columns.count)
+    names = [limit.name for limit in model.limits]
+    missed = np.array([np.nan_to_num(evaluation.residuals[name][pairs], nan=0.0) for name in names])
+    for extra in instance.extra:
+        names.append(extra.name)
+        own = residual(evaluation.values[extra.quantity][pairs], extra.limit, extra.sense, 1e-9)
+        missed = np.vstack([missed, np.nan_to_num(own, nan=0.0)])
+    worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
+    nearest = int(np.argmin(worst))
+    broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > 1e-6]
+    if not broken:
+        return "the designs that keep its limits have parts, counts or sizes that it does not allow"
+    shown = ", ".join(f"{name} by {100 * share:.3g} %" for share, name in sorted(broken, reverse=True)[:3])
+    return f"the nearest design misses {shown}"
+
+
+def pinned_by_all(questions: Iterable[Mapping[str, Any]], model: Model) -> frozenset[str]:
+    """Return the variables that every question pins: they belong to the use, not to the variant."""
+    variables, names = {v.name for v in model.variables}, model.declaration.names()
+    found: set[str] | None = None
+    for question in questions:
+        pinned = {names.get(word, word) for word in question["fix"]} & variables
+        found = pinned if found is None else found & pinned
+    return frozenset(found or ())

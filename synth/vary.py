@@ -1,0 +1,440 @@
+"""What a study varies: requirements, limits, weights, parts and options, one or two at a time, checked beforehand."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+from synth.analysis import chosen_objectives
+from synth.errors import InputError
+from synth.instance import SENSES, catalogs_for
+from synth.model import Model
+from synth.problem import DesignProblem, load
+from synth.search import Question, pose
+from synth.tables import Catalogs
+from synth.units import parse_quantity
+
+MOST_STEPS = 1000
+DIGITS = 12
+KEY = re.compile(r"^\s*(?:(weights|parts|options)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
+TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
+NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
+SIGN = {"<": "<=", ">": ">=", "=": "=="}
+
+Value = float | str | tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Varied:
+    """One thing that a study varies.
+
+    ``kind`` is requirement, limit, weight, part or option, ``name`` the public name of what is varied, ``sign`` that of
+    a limit. ``values`` are numbers in ``unit``; of parts and options designations, conditions (or several
+    designations) and words.
+    """
+
+    kind: str
+    name: str
+    sign: str
+    unit: str
+    values: tuple[Value, ...]
+
+    @property
+    def numeric(self) -> bool:
+        """Tell whether there is something between two values."""
+        return self.kind not in ("part", "option")
+
+    @property
+    def label(self) -> str:
+        """Return what a column of its values is called, without the unit."""
+        places = {"weight": "weights.", "part": "parts.", "option": "options."}
+        return f"{places.get(self.kind, '')}{self.name}{self.sign and ' ' + self.sign}"
+
+    def asked(self, value: Value) -> Any:
+        """Return a value as it stands in a spec."""
+        if not isinstance(value, float):
+            return value if isinstance(value, str) else list(value)
+        number = f"{value:.{DIGITS}g}"
+        if self.kind == "weight":
+            return float(number)
+        return number if self.unit == "-" else f"{number} {self.unit}"
+
+    def shown(self, value: Value) -> str:
+        """Return a value for people."""
+        if isinstance(value, tuple):
+            return ", ".join(value)
+        return f"{value:.{DIGITS}g}" if self.kind == "weight" else str(self.asked(value))
+
+    def stated(self, value: Value) -> str:
+        """Return name and value for people: ``mass <= 40 kg``."""
+        return f"{self.label} {'' if self.sign else '= '}{self.shown(value)}"
+
+
+def split_text(text: str) -> tuple[str, str]:
+    """Split what the command line takes, ``mass <= 40:60:5 kg`` or ``load_torque=500,600 N*m``, into name and values.
+
+    Examples
+    --------
+    >>> split_text("mass <= 40:60:5 kg"), split_text("outer_diameter_limit=200:300:10 mm")
+    (('mass <=', '40:60:5 kg'), ('outer_diameter_limit', '200:300:10 mm'))
+    """
+    match = TEXT.match(text)
+    if match is None:
+        raise InputError("--vary", text, "NAME=VALUES or QUANTITY <= VALUES, for example 'load_torque=500:700:50 N*m'")
+    name, sign, values = match.groups()
+    return (name if sign == "=" else f"{name} {sign}"), values
+
+
+def read_vary(vary: Any, problem: DesignProblem, model: Model, chosen: Sequence[str]) -> list[Varied]:
+    """Read what a study varies.
+
+    Parameters
+    ----------
+    vary : mapping
+        Name (or symbol) -> values, as ``synth.whatif`` describes.
+    problem : DesignProblem
+    model : Model
+        With all that is asked, for names and units.
+    chosen : list of str
+        The objectives, which alone have weights.
+
+    Raises
+    ------
+    InputError
+        When a name or a value cannot be meant.
+    """
+    if not isinstance(vary, Mapping) or not vary:
+        raise InputError("vary", vary, "names with values, for example {'load_torque': '500:700:50 N*m'}")
+    if len(vary) > 2:
+        raise InputError("vary", ", ".join(map(str, vary)), "one or two things at a time")
+    found = [_read_one(str(key), values, problem, model, chosen) for key, values in vary.items()]
+    if len({(x.kind, x.name, x.sign) for x in found}) < len(found):
+        raise InputError("vary", found[0].label, "each thing once (name and symbol mean the same)")
+    count = math.prod(len(x.values) for x in found)
+    if count > MOST_STEPS:
+        raise InputError("vary", count, f"at most {MOST_STEPS} steps")
+    return found
+
+
+def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chosen: Sequence[str]) -> Varied:
+    match = KEY.match(key)
+    if match is None:
+        raise InputError(
+            "vary", key, "a requirement, a limit such as 'mass <=', weights.NAME, parts.SLOT or options.NAME"
+        )
+    place, word, sign = match.group(1), match.group(2), match.group(3) or ""
+    if place is not None and sign:
+        raise InputError("vary", key, f"{place}.{word} without {sign}")
+    d = model.declaration
+    if place == "weights":
+        name = model.name_of(word, "vary", list(chosen), "a chosen objective")
+        return Varied("weight", name, "", "-", _numbers(key, values, "-"))
+    if place == "parts":
+        name = model.name_of(word, "vary", list(d.slots), "a slot")
+        return Varied("part", name, "", "", _words(key, values, several=True))
+    if place == "options":
+        name = model.name_of(word, "vary", list(d.options), "an option")
+        words = _words(key, values, several=False)
+        for label in words:
+            if label not in d.options[name].choices:
+                raise InputError(f"vary {key}", label, "one of " + ", ".join(d.options[name].choices))
+        return Varied("option", name, "", "", words)
+    if sign:
+        name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity")
+        unit = model.units[name]
+        return Varied("limit", name, SIGN.get(sign, sign), *_with_unit(key, values, unit))
+    spelled = d.names().get(word)
+    if spelled in model.quantity_sx:
+        kind = model.kind_of(str(spelled))
+        raise InputError("vary", key, f"a requirement, or a limit such as '{word} <=': {word} is {kind}")
+    for kind, members in (("parts", d.slots), ("options", d.options)):
+        if spelled in members:
+            raise InputError("vary", key, f"{kind}.{word}")
+    name = model.name_of(word, "vary", list(d.requirements), "a requirement")
+    return Varied("requirement", name, "", *_with_unit(key, values, d.requirements[name].unit))
+
+
+# ---- values ---------------------------------------------------------------------------------------------------------
+
+
+def _with_unit(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ...]]:
+    """Return the unit in which values are given, and their numbers."""
+    units: list[str] = []
+    numbers = _numbers(key, values, declared, units)
+    return (units[0] if units else declared), numbers
+
+
+def _numbers(key: str, values: Any, declared: str, units: list[str] | None = None) -> tuple[Value, ...]:
+    """Return the numbers that a range or list stands for; the one unit that they have is left in ``units``."""
+    field = f"vary {key}"
+    seen = [] if units is None else units
+    if isinstance(values, str):
+        pieces = values.split(":")
+        if len(pieces) == 3:
+            found = _steps(field, values, [_number(field, x, declared, seen, values) for x in pieces])
+        elif len(pieces) > 1:
+            raise InputError(field, values, f"three numbers from:to:step, as in {RANGE}")
+        else:
+            found = [_number(field, x, declared, seen, values) for x in values.split(",")]
+    elif isinstance(values, tuple) and len(values) == 3 and _whole(values[2]):
+        first, last, count = values
+        if not isinstance(first, str) and not isinstance(last, str):
+            raise InputError(field, values, f"a list, {list(values)}, or ends with a unit: {RANGE}")
+        if count < 2:
+            raise InputError(field, values, "a count of at least 2 as the third entry: ('200 mm', '300 mm', 11)")
+        low, high = (_number(field, x, declared, seen, values) for x in (first, last))
+        found = [float(f"{low + (high - low) * k / (count - 1):.{DIGITS}g}") for k in range(count)]
+    elif isinstance(values, (list, tuple)) and not isinstance(values, str):
+        if isinstance(values, tuple) and len(values) == 3 and not isinstance(values[2], (str, int, float)):
+            raise InputError(field, values, f"a list of values, or {RANGE}")
+        found = [_number(field, x, declared, seen, values) for x in values]
+    else:
+        raise InputError(field, values, f"values such as {RANGE}")
+    if not found:
+        raise InputError(field, values, "at least one value")
+    if len(set(found)) < len(found):
+        raise InputError(field, values, "each value once")
+    for number in found:
+        parse_quantity(f"{number:.{DIGITS}g} {seen[0]}" if seen else number, declared, field)
+    return tuple(found)
+
+
+def _whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) -> float:
+    """Return one number; its unit, if it has one, is that of all."""
+    if not isinstance(value, str):
+        parse_quantity(value, declared, field)
+        return float(value)
+    match = NUMBER.match(value)
+    if match is None or not math.isfinite(float(match.group(1))):
+        raise InputError(field, whole if isinstance(whole, str) else value, f"numbers with one unit, as in {RANGE}")
+    number, unit = match.groups()
+    if unit:
+        parse_quantity(f"{number} {unit}", declared, field)
+        if seen and seen[0] != unit:
+            raise InputError(field, whole, f"one unit for all values, here {seen[0]} and {unit}")
+        seen[:] = [unit]
+    return float(number)
+
+
+def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
+    """Return what from:to:step stands for; the end belongs to it where a step meets it."""
+    first, last, step = numbers
+    if step == 0 or (last - first) * step < 0:
+        raise InputError(field, text, "a step that leads from the first value to the last")
+    count = math.floor((last - first) / step * (1 + 1e-12) + 1e-9) + 1
+    if count > MOST_STEPS:
+        raise InputError(field, text, f"at most {MOST_STEPS} steps")
+    return [float(f"{first + k * step:.{DIGITS}g}") for k in range(count)]
+
+
+def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
+    """Return designations, conditions or labels; of parts an entry may be a list of several designations."""
+    field = f"vary {key}"
+    entries = [x.strip() for x in values.split(",")] if isinstance(values, str) else values
+    if not isinstance(entries, (list, tuple)) or not entries:
+        raise InputError(field, values, "words with commas between them, or a list of them")
+    found: list[Value] = []
+    for entry in entries:
+        if isinstance(entry, str) and entry.strip():
+            found.append(entry)
+        elif several and isinstance(entry, (list, tuple)) and entry and all(isinstance(x, str) for x in entry):
+            found.append(tuple(entry))
+        else:
+            raise InputError(field, entry, "a word" + (", or a list of designations" if several else ""))
+    if len(set(found)) < len(found):
+        raise InputError(field, values, "each value once")
+    return tuple(found)
+
+
+# ---- the questions of a study ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``synthesize`` is asked, before a study varies it; the arguments are those of the same names."""
+
+    problem: DesignProblem
+    requirements: Mapping[str, Any]
+    catalogs: Catalogs
+    objectives: Any = None
+    points: int = 30
+    parts: Mapping[str, Any] | None = None
+    limits: Mapping[str, Any] | None = None
+    fix: Mapping[str, Any] | None = None
+    weights: Mapping[str, float] | None = None
+    gap: float = 1e-3
+    grid: bool = True
+    seed: int = 0
+
+    def pose(self) -> Question:
+        """Check the question."""
+        return pose(
+            self.problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits,
+            self.fix, self.weights, self.gap, self.grid, self.seed,
+        )  # fmt: skip
+
+    def at(self, varied: Varied, value: Value) -> Asked:
+        """Return the question with one thing at a value, which takes the place of what was said of it before."""
+        asked = varied.asked(value)
+        if varied.kind == "requirement":
+            return replace(self, requirements={**self.without(self.requirements, varied.name), varied.name: asked})
+        if varied.kind == "weight":
+            return replace(self, weights={**self.without(self.weights, varied.name), varied.name: asked})
+        if varied.kind == "part":
+            return replace(self, parts={**self.without(self.parts, varied.name), varied.name: asked})
+        if varied.kind == "option":
+            return replace(self, problem=self._with_option(varied.name, str(value)))
+        kept = self._other_limits(varied)
+        return replace(
+            self, limits={**self.without(self.limits, varied.name), varied.name: [*kept, f"{varied.sign} {asked}"]}
+        )
+
+    def _with_option(self, name: str, word: str) -> DesignProblem:
+        """Return the problem with another word for an option."""
+        problem = self.problem
+        option = problem.model(frozenset(), self.catalogs).declaration.options[name]
+        others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
+        return type(problem)(**{**others, name: word})
+
+    def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
+        """Return what is given by name or symbol, without one name."""
+        spellings = self._names()
+        return {word: value for word, value in (given or {}).items() if spellings.get(str(word)) != name}
+
+    def _names(self) -> dict[str, str]:
+        return self.problem.model(frozenset(), self.catalogs).declaration.names()
+
+    def _other_limits(self, varied: Varied) -> list[str]:
+        """Return the limits on the quantity of a varied one that point another way."""
+        spellings, kept = self._names(), list[str]()
+        for word, texts in (self.limits or {}).items():
+            if spellings.get(str(word)) == varied.name:
+                for text in texts if isinstance(texts, (list, tuple)) else [texts]:
+                    low, dots, high = str(text).partition("..")
+                    for one in [f">= {low.strip()}", f"<= {high.strip()}"] if dots else [str(text)]:
+                        sign = re.match(r"^\s*(<=|>=|==|=|<|>)", one)
+                        if sign is None or SENSES[sign.group(1)] != SENSES[varied.sign]:
+                            kept.append(one)
+        return kept
+
+
+class Steps:
+    """The questions of a study, in their order: of two things varied the second runs through for each of the first.
+
+    Parameters
+    ----------
+    asked : Asked
+        What stays.
+    vary : mapping
+        What does not.
+
+    Raises
+    ------
+    InputError
+        For whatever is wrong at any step, before anything is searched.
+    """
+
+    def __init__(self, asked: Asked, vary: Any) -> None:
+        self.asked = asked
+        names = asked.requirements if isinstance(asked.requirements, Mapping) else {}
+        spellings = asked.problem.model(frozenset(), asked.catalogs).declaration
+        keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
+        given = {spellings.names().get(str(w)) for w in [*names, *keys]} & set(spellings.requirements)
+        model = asked.problem.model(frozenset(n for n in given if n is not None), asked.catalogs)
+        self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
+        self.values = list(product(*(x.values for x in self.varied)))
+        self._problems: dict[Value, DesignProblem] = {}
+        self.combinations = 0  # of the largest step
+        self._check()
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def question(self, values: Sequence[Value]) -> Question:
+        """Return the question at some values."""
+        return replace(self._at(values).pose(), alike=len(self))
+
+    def one_best(
+        self,
+        values: Sequence[Value],
+        objective: Mapping[str, str],
+        gap: float,
+        slots: Mapping[str, list[str]],
+        pins: Mapping[str, Any],
+    ) -> Question:
+        """Return the question for the best design in one objective at some values, among some parts.
+
+        Parameters
+        ----------
+        values : list
+            One per thing varied.
+        objective : mapping
+            The objective with its sense.
+        gap : float
+        slots : mapping
+            Slot -> the designations that may fill it; others stay as they are asked.
+        pins : mapping
+            Counts and choices -> the value that they must have.
+        """
+        asked = replace(self._at(values), objectives=dict(objective), points=1, weights=None, gap=gap)
+        for slot, rows in slots.items():
+            asked = replace(asked, parts={**asked.without(asked.parts, slot), slot: rows})
+        for name, value in pins.items():
+            asked = replace(asked, fix={**asked.without(asked.fix, name), name: value})
+        question = asked.pose()
+        # The same code as for the whole question, however few combinations are left.
+        whole = len(self) * self.combinations
+        return replace(question, alike=-(-whole // max(question.instance.combinations, 1)))
+
+    def stated(self, values: Sequence[Value]) -> str:
+        """Return the values of a step for people."""
+        return ", ".join(x.stated(v) for x, v in zip(self.varied, values, strict=True))
+
+    def _at(self, values: Sequence[Value]) -> Asked:
+        asked = self.asked
+        for varied, value in zip(self.varied, values, strict=True):
+            if varied.kind == "option":
+                # One problem per word, so that each is traced once.
+                if value not in self._problems:
+                    self._problems[value] = asked.at(varied, value).problem
+                asked = replace(asked, problem=self._problems[value])
+            else:
+                asked = asked.at(varied, value)
+        return asked
+
+    def _check(self) -> None:
+        """Pose the question of every step; what is wrong with all of them is no matter of the values."""
+        faults: dict[int, InputError] = {}
+        for k, values in enumerate(self.values):
+            try:
+                self.combinations = max(self.question(values).instance.combinations, self.combinations)
+            except InputError as error:
+                faults[k] = error
+        if not faults:
+            return
+        first, fault = next(iter(faults.items()))
+        same = len({(e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
+        if same and len(faults) == len(self.values) > 1:
+            raise fault
+        raise InputError(f"vary, {self.stated(self.values[first])}: {fault.field}", fault.value, fault.expected)
+
+
+def steps_of(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    vary: Any,
+    catalogs: Any,
+    **settings: Any,
+) -> Steps:
+    """Return the questions of a study; the arguments are those of ``synth.whatif``."""
+    problem = load(p)
+    return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), **settings), vary)

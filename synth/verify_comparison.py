@@ -1,0 +1,126 @@
+"""Independent check of a saved comparison: the own front of every family, the designs listed, and the claim over all.
+
+As for a single front no proof is shared with the search: each family proves by the tree of ``synth.prooftree`` that it
+has no design that improves one of those listed, whichever family they are of.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from synth.errors import InputError
+from synth.results import ParetoFront, load_front
+from synth.verify import UNREADABLE, Verification, checked
+
+FILE = "comparison.json"
+SAME = 1e-9
+
+
+def is_comparison(folder: str | Path) -> bool:
+    """Tell whether a folder holds a comparison of families."""
+    return (Path(folder) / FILE).is_file()
+
+
+def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verification:
+    """Check a saved comparison without help of the search that made it.
+
+    Parameters
+    ----------
+    folder : path
+        What ``Comparison.save`` has written.
+    time_limit : float
+        Seconds for each family.
+
+    Returns
+    -------
+    Verification
+
+    Raises
+    ------
+    InputError
+        When there is no comparison, or a family cannot be had.
+    """
+    started = time.monotonic()
+    path = Path(folder)
+    try:
+        content = json.loads((path / FILE).read_text(encoding="utf-8"))
+        families = {x["family"]: x["folder"] for x in content["families"] if x["folder"] is not None}
+        listed, certificate = content["designs"], content["certificate"]
+        kind, gap = str(certificate["kind"]), certificate["gap"]
+    except (OSError, *UNREADABLE) as error:
+        raise InputError(
+            "comparison", str(path), f"a folder that run has written for several families ({error})"
+        ) from error
+    findings: list[str] = []
+    nodes = 0
+    values = _values(path, content, findings)
+    for label, name in families.items():
+        front = load_front(path / name)
+        check = checked(front, None, None, time.monotonic() + time_limit)
+        _among(front, label, listed, findings)
+        provable = kind == "global" and gap is not None and bool(values) and not check.findings
+        if provable and front.certificate.kind == "global" and front.designs:
+            check.deadline = time.monotonic() + time_limit
+            check.against(values, float(gap))
+        elif kind == "global" and front.certificate.kind != "global":
+            findings.append(f"{label}: its own front is not proven, so that nothing over all families can be")
+        findings += [f"{label}: {finding}" for finding in check.findings]
+        nodes += check.nodes
+    return Verification(
+        holds=not findings,
+        findings=tuple(findings),
+        certificate=kind,
+        designs=len(listed),
+        claimed_gap=gap,
+        proven_gap=gap if kind == "global" and not findings else None,
+        nodes=nodes,
+        seconds=time.monotonic() - started,
+    )
+
+
+def _values(path: Path, content: Mapping[str, Any], findings: list[str]) -> dict[str, np.ndarray]:
+    """Return the objectives of the designs listed, evaluated again from their files."""
+    from synth.analysis import evaluate
+    from synth.problem import load
+
+    rows: dict[str, list[float]] = {name: [] for name in content["objectives"]}
+    width = max(2, len(str(len(content["designs"]))))
+    for told in content["designs"]:
+        label = f"design {told['rank']}"
+        try:
+            spec = yaml.safe_load((path / f"design_{told['rank']:0{width}d}.yaml").read_text(encoding="utf-8"))
+            problem = load(spec["family"], **spec.get("options", {}))
+            design = evaluate(
+                problem, spec["requirements"], spec, catalogs=spec.get("catalogs"), limits=spec.get("limits"),
+                objectives=content["objectives"],
+            )  # fmt: skip
+        except (OSError, yaml.YAMLError, *UNREADABLE) as error:
+            findings.append(f"{label}: its file cannot be evaluated ({error})")
+            continue
+        if design.violated:
+            findings.append(f"{label}: {', '.join(design.violated)} do not hold")
+        for name, own in rows.items():
+            value = float(design.values[name])
+            own.append(value)
+            if abs(value - told["objectives"][name]) > SAME * abs(value):
+                findings.append(f"{label}: {name} is {told['objectives'][name]}, evaluated it is {value}")
+    return {name: np.array(own) for name, own in rows.items()} if all(rows.values()) else {}
+
+
+def _among(front: ParetoFront, label: str, listed: list[Any], findings: list[str]) -> None:
+    """No design of a family's own front may beat one that is listed."""
+    objectives = front.frame.objectives
+    for told in listed:
+        own = np.array([told["objectives"][n] * (1 if s == "min" else -1) for n, s in objectives.items()])
+        for design in front.designs:
+            mine = np.array([design.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
+            room = SAME * np.abs(own)
+            if np.all(mine <= own + room) and np.any(mine < own - room):
+                findings.append(f"{label}: its design {design.rank} beats design {told['rank']} of the comparison")

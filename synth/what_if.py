@@ -1,0 +1,320 @@
+"""What-if studies: the same question at many values, each step helped by those before it, kept as it is finished."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from synth.breaks import find_breaks, weight_breaks
+from synth.clock import Stopped
+from synth.errors import InputError
+from synth.fingerprint import code_digest
+from synth.pareto import rank
+from synth.problem import DesignProblem
+from synth.results import (
+    Design,
+    ParetoFront,
+    front_of_record,
+    load_front,
+    write_atomically,
+)
+from synth.search import Question, check_settings
+from synth.study import Break, Step, Study
+from synth.vary import Steps, Value, steps_of
+
+FORMAT = 1
+RECORD = "study.json"
+STEPS = "steps"
+INTERRUPTED = "interrupted"
+
+
+def whatif(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    vary: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    parts: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    fix: Mapping[str, Any] | None = None,
+    weights: Mapping[str, float] | None = None,
+    gap: float = 1e-3,
+    grid: bool = True,
+    workers: int = 1,
+    seed: int = 0,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+    breaks: bool = True,
+    folder: str | Path | None = None,
+) -> Study:
+    """Answer a question at many values of a requirement, a limit, a weight, a part or an option.
+
+    Parameters
+    ----------
+    p, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, workers, seed : optional
+        As for ``synth.synthesize``, for every step.
+    vary : mapping
+        One or two of: a requirement (``"load_torque"``), a limit on a quantity (``"mass <="``), ``"weights.mass"``,
+        ``"parts.friction_pair"``, ``"options.lubrication"``. Values are a text (``"200:300:10 mm"`` from:to:step, or
+        ``"500, 600, 700 N*m"``), a list, or ends and a count (``("200 mm", "300 mm", 11)``). Of two the second runs
+        through for each value of the first.
+    progress : callable, optional
+        Called with a mapping: stage, done (0..1), combinations, incumbents, message.
+    time_limit : float, optional
+        Seconds for the whole study; finished steps are kept.
+    breaks : bool
+        Whether to find the values at which the best parts or counts change.
+    folder : path, optional
+        Where finished steps are kept; the same study does not search them again.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the input at any step, before the first is searched.
+    """
+    check_settings(points, gap, grid, workers, seed, progress, time_limit)
+    steps = steps_of(
+        p, requirements, vary, catalogs, objectives=objectives, points=points, parts=parts, limits=limits, fix=fix,
+        weights=weights, gap=gap, grid=grid, seed=seed,
+    )  # fmt: skip
+    return _Run(steps, int(workers), progress, time_limit, None if folder is None else Path(folder)).study(breaks)
+
+
+class _Run:
+    """One study under way."""
+
+    def __init__(
+        self,
+        steps: Steps,
+        workers: int,
+        progress: Callable[[Mapping[str, Any]], None] | None,
+        time_limit: float | None,
+        folder: Path | None,
+    ) -> None:
+        self.steps, self.workers, self.progress = steps, workers, progress
+        self.started = time.monotonic()
+        self.deadline = math.inf if time_limit is None else self.started + time_limit
+        self.store = _Store(folder)
+        self.answered: list[Step] = []
+        self.same_but_weights: dict[str, ParetoFront] = {}
+        self.kept = 0
+        self.share_of_steps = 1.0
+
+    def study(self, breaks: bool) -> Study:
+        """Answer the steps, then find the breaks; what is finished when time is over is kept."""
+        stopped, found = "", list[Break]()
+        self.share_of_steps = 0.5 if breaks else 1.0
+        try:
+            for number, values in enumerate(self.steps.values, start=1):
+                self.answered.append(self._answer(number, values))
+            if breaks:
+                self._find_breaks(found)
+        except Stopped as stop:
+            stopped = stop.reason
+        except KeyboardInterrupt:
+            stopped = INTERRUPTED
+        rest = [
+            Step(k + 1, values, None, stopped=stopped)
+            for k, values in enumerate(self.steps.values)
+            if k >= len(self.answered)
+        ]
+        statistics = {"steps": len(self.steps), "answered": len(self.answered), "kept": self.kept, "breaks": len(found)}
+        seconds = {"seconds": time.monotonic() - self.started}
+        return Study(
+            tuple(self.steps.varied), (*self.answered, *rest), tuple(found), self._along(), stopped,
+            {**statistics, **seconds},
+        )  # fmt: skip
+
+    # -- steps ---------------------------------------------------------------------------------
+
+    def _answer(self, number: int, values: tuple[Value, ...]) -> Step:
+        question = self.steps.question(values)
+        before = self._neighbours(values)
+        own = _fingerprint(question, [s.fingerprint for s in before])
+        alone = _fingerprint(question, [], weights=False)
+        front = self.store.get(number, own)
+        if front is not None:
+            self.kept += 1
+        else:
+            known = self.same_but_weights.get(alone)
+            front = self._search(number, question, before) if known is None else _reranked(known, question)
+            text = front.files()["front.json"]
+            self.store.put(number, own, text)
+            # As it would be read again: a study that goes on is the same to the last digit.
+            front = front_of_record(json.loads(text), Path(RECORD))
+        front = replace(front, question=question.instance, record=None, folder=None)
+        self.same_but_weights.setdefault(alone, front)
+        return Step(number, values, front, own)
+
+    def _search(self, number: int, question: Question, before: Sequence[Step]) -> ParetoFront:
+        known = [d for s in before if s.front is not None for d in s.front.designs]
+        says = f"step {number} of {len(self.steps)}, {self.steps.stated(self.steps.values[number - 1])}"
+        share = self.share_of_steps / len(self.steps)
+        shown = self._shown(says, (number - 1) * share, share)
+        front = question.answer(self.workers, shown, self._left(), known)
+        if front.interrupted:
+            raise Stopped(front.interrupted)
+        return front
+
+    def _neighbours(self, values: tuple[Value, ...]) -> list[Step]:
+        """Return the answered steps that differ in one place by one value: their designs are ideas for this one."""
+        found = []
+        for k, varied in enumerate(self.steps.varied):
+            place = varied.values.index(values[k])
+            if place:
+                wanted = (*values[:k], varied.values[place - 1], *values[k + 1 :])
+                found += [s for s in self.answered if s.values == wanted]
+        return found
+
+    def _left(self) -> float | None:
+        """Return the seconds that are left, None where there is no limit."""
+        if math.isinf(self.deadline):
+            return None
+        left = self.deadline - time.monotonic()
+        if left <= 0:
+            raise Stopped("time limit")
+        return left
+
+    def _shown(self, says: str, begin: float, share: float) -> Callable[[Mapping[str, Any]], None] | None:
+        """Return what makes of the progress of one part that of the study; ``begin`` and ``share`` of the whole."""
+        tell = self.progress
+        if tell is None:
+            return None
+
+        def show(state: Mapping[str, Any]) -> None:
+            done = begin + share * float(state.get("done") or 0.0)
+            tell({**state, "stage": f"{says}: {state.get('stage', '')}", "done": min(done, 1.0)})
+
+        return show
+
+    # -- breaks --------------------------------------------------------------------------------
+
+    def _along(self) -> int | None:
+        """Return the position of what breaks are sought along: the first that is a number."""
+        return next((k for k, x in enumerate(self.steps.varied) if x.numeric), None)
+
+    def _find_breaks(self, found: list[Break]) -> None:
+        along = self._along()
+        if along is None:
+            return
+        if self.steps.varied[along].kind == "weight":
+            found += weight_breaks(self.steps, along, self.answered)
+            return
+        find_breaks(
+            self.steps, along, self.answered, found, self.store, self._left, self.workers,
+            self._shown("break points", self.share_of_steps, 1.0 - self.share_of_steps),
+        )  # fmt: skip
+
+
+def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
+    """Return a front with other weights: the designs are the same, their order is not."""
+    names = list(question.chosen)
+    values = np.array([[d.values[n] for n in names] for d in front.designs]).reshape(len(front.designs), len(names))
+    ranking = rank(question.chosen, values, list(question.weights.values()))
+    designs: list[Design] = [
+        replace(front.designs[k], rank=place + 1, score=float(ranking.scores[k]), note=ranking.notes[k])
+        for place, k in enumerate(ranking.order)
+    ]
+    return replace(front, designs=designs, settings=dict(question.settings))
+
+
+def _fingerprint(question: Question, before: Sequence[str], weights: bool = True) -> str:
+    """Return the hash of all that decides an answer: question, formulas, tables, code, and where ideas come from."""
+    instance, selection = question.instance, question.instance.selection
+    program = instance.model.program
+    settings = {k: v for k, v in question.settings.items() if weights or k != "weights"}
+    content = {
+        "format": FORMAT,
+        "family": instance.problem.name,
+        "options": {n: o.chosen for n, o in instance.model.declaration.options.items()},
+        "requirements": instance.requirements,
+        "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
+        "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
+        "ranges": [instance.lower.tolist(), instance.upper.tolist(), [g.tolist() for g in instance.grids()]],
+        "limits": [repr(x) for x in instance.extra],
+        "objectives": dict(question.chosen),
+        "settings": {k: repr(v) for k, v in settings.items()},
+        "formulas": hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest(),
+        "code": code_digest(),
+        "before": list(before),
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+class _Store:
+    """Answers kept in a folder, each with the fingerprint of what it answers; without a folder nothing is kept."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+        self.record: dict[str, dict[str, Any]] = {}
+        if folder is not None:
+            self.record = self._read(folder / RECORD)
+
+    @staticmethod
+    def _read(path: Path) -> dict[str, dict[str, Any]]:
+        """Return the record of an earlier run; a file that is none begins a new one."""
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return {}
+        known = content.get("known") if isinstance(content, dict) and content.get("format") == FORMAT else None
+        return known if isinstance(known, dict) else {}
+
+    def get(self, number: int, fingerprint: str) -> ParetoFront | None:
+        """Return the front of a step if it is kept, and whole."""
+        entry = self.record.get(f"step {number}")
+        if self.folder is None or not isinstance(entry, dict) or entry.get("fingerprint") != fingerprint:
+            return None
+        try:
+            front = load_front(self.folder / str(entry["file"]))
+        except (InputError, KeyError):
+            return None
+        record = dict(front.record or {})
+        digest = record.pop("digest", None)
+        return front if digest == entry.get("digest") == ParetoFront.digest_of(record) else None
+
+    def put(self, number: int, fingerprint: str, text: str) -> None:
+        """Keep the front of a step, as its front.json."""
+        if self.folder is None:
+            return
+        name = f"{STEPS}/step_{number:04d}.json"
+        self._write(self.folder / name, text)
+        digest = json.loads(text)["digest"]
+        self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": digest})
+
+    def value(self, key: str, fingerprint: str) -> Any:
+        """Return something else that is kept; None where it is not, or of another question."""
+        entry = self.record.get(key)
+        return entry.get("value") if isinstance(entry, dict) and entry.get("fingerprint") == fingerprint else None
+
+    def keep(self, key: str, fingerprint: str, value: Any) -> None:
+        """Keep something else, which JSON can hold."""
+        if self.folder is not None:
+            self._enter(key, {"fingerprint": fingerprint, "value": value})
+
+    def _enter(self, key: str, entry: dict[str, Any]) -> None:
+        assert self.folder is not None
+        self.record[key] = entry
+        text = json.dumps({"format": FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
+        self._write(self.folder / RECORD, text)
+
+    @staticmethod
+    def _write(path: Path, text: str) -> None:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(path, text)
+        except OSError as error:
+            raise InputError("output", str(path.parent), f"a folder that can be written ({error.strerror})") from error

@@ -1,0 +1,206 @@
+"""Batches of thousands of rows: time, memory, solver calls and what the job database costs; and size ranges.
+
+``python -m tests.benchmarks.batch ROWS POINTS SIZE WORKERS`` measures one batch by itself, and prints JSON.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from synth.jobs import runner
+from synth.jobs.outputs import write_outputs
+from synth.jobs.run import BatchJob
+from synth.variants.choose import Chooser
+from tests.benchmarks import cases
+from tests.benchmarks.tables import Report
+
+ROOT = Path(__file__).parents[2]
+FAMILY = "multi_plate_clutch"
+MIB = 2**20
+EMPTY_ROWS = 2000
+
+
+def case(rows: int, points: int, size: str, folder: Path) -> BatchJob:
+    """Return a batch of seeded requirement rows around the hoist.
+
+    Parameters
+    ----------
+    rows, points : int
+        One point is the least mass, to 0.1 %.
+    size : str
+        One of ``cases.SIZES``.
+    folder : Path
+        For its results.
+    """
+    question = cases.question(cases.SIZES[size])
+    spec = {}
+    for name, count in ((cases.LININGS, cases.SIZES[size].linings), (cases.PLATES, cases.SIZES[size].plates)):
+        more = cases.more_rows(name, count)
+        if len(more):
+            spec[name] = ["+", more]
+    settings = {
+        "objectives": ["mass"] if points == 1 else ["mass", "actuation_force"], "points": points, "gap": 1e-3,
+        "grid": True, "seed": 0, "time_limit": None,
+    }  # fmt: skip
+    common = {"parts": question["parts"], "limits": None, "fix": None}
+    return BatchJob(FAMILY, cases.requirement_rows(rows), folder, None, spec or None, common, None, settings)
+
+
+def measure(rows: int, points: int, size: str, workers: int | None) -> dict[str, Any]:
+    """Run a batch and return its figures; ``workers`` None works in this process."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        job = case(rows, points, size, Path(folder))
+        job.plan()
+        planned = time.monotonic()
+        job.work(workers, None, None)
+        worked = time.monotonic()
+        counts = job.write()
+        written = time.monotonic()
+        contents = [row.content for row in job.store.rows(job.id, canonical=False) if row.content is not None]
+        job.close()
+    solves = [c["nlp_solves"] for c in contents if c.get("nlp_solves") is not None]
+    unit = 1024 if sys.platform != "darwin" else 1
+    return {
+        "rows": rows,
+        "points": points,
+        "combinations": max((c.get("combinations", 0) for c in contents), default=0),
+        "workers": workers or 1,
+        "seconds": written - begin,
+        "check and plan s": planned - begin,
+        "rows per second": rows / max(worked - planned, 1e-9),
+        "write s": written - worked,
+        "NLPs, median": float(statistics.median(solves)) if solves else None,
+        "global": sum(c.get("certificate") == "global" for c in contents),
+        "with designs": counts.get("optimal", 0) + counts.get("feasible", 0),
+        "MiB, master": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / MIB,
+        "MiB, worker": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit / MIB,
+    }
+
+
+def _answered_at_once(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    content = {
+        "certificate": "global",
+        "gap": 1e-3,
+        "rows": [["1.2345678901234567"] * 70],
+        "designs": [],
+        "nlp_solves": 1,
+    }
+    layout = {
+        "family": FAMILY,
+        "senses": {},
+        **{group: [] for group in ("objectives", "choices", "parts", "derived", "limits")},
+    }
+    layout["searched"] = [f"column {k} [mm]" for k in range(64)]
+    return {
+        key: {"status": "optimal", "seconds": 0.0, "layout": layout, "content": content} for key in work["questions"]
+    }
+
+
+def overhead(rows: int) -> dict[str, Any]:
+    """Return what claiming, writing and reading cost per row, where solving costs nothing."""
+    known = runner.solve_unit
+    runner.solve_unit = _answered_at_once
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            job = case(rows, 1, "tiny", Path(folder))
+            begin = time.monotonic()
+            job.plan()
+            planned = time.monotonic()
+            job.work(None, None, None)
+            worked = time.monotonic()
+            write_outputs(job.store, job.id, job.folder)
+            written = time.monotonic()
+            job.close()
+    finally:
+        runner.solve_unit = known
+    return {
+        "rows": rows,
+        "check and plan ms": 1e3 * (planned - begin) / rows,
+        "claim and keep ms": 1e3 * (worked - planned) / rows,
+        "write ms": 1e3 * (written - worked) / rows,
+    }
+
+
+def in_a_process(rows: int, points: int, size: str, workers: int, most: float) -> dict[str, Any]:
+    """Measure a batch in a process of its own."""
+    command = [sys.executable, "-m", "tests.benchmarks.batch", str(rows), str(points), size, str(workers)]
+    print(f"... batch {rows} rows, {points} points, {size}", file=sys.stderr, flush=True)
+    try:
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=most, check=False)
+    except subprocess.TimeoutExpired:
+        return {"rows": rows, "points": points, "seconds": None, "note": f"ended after {most:.0f} s"}
+    if done.returncode:
+        return {"rows": rows, "points": points, "note": (done.stderr.strip().splitlines() or ["?"])[-1]}
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def batches(quick: bool) -> list[Report]:
+    """Return the figures of whole batches, of two sizes to see that memory does not grow with the rows."""
+    if quick:
+        table = [in_a_process(4, 1, "tiny", 1, 300.0)]
+        spent = [overhead(40)]
+    else:
+        table = [
+            in_a_process(1_000, 1, "110k", 2, 3600.0),
+            in_a_process(10_000, 1, "110k", 2, 7200.0),
+            in_a_process(1_000, 20, "110k", 2, 7200.0),
+        ]
+        spent = [overhead(EMPTY_ROWS)]
+    return [
+        Report("batch", table, ["least mass, or mass against force, to 0.1 %, makeable sizes; rows around the hoist"]),
+        Report(
+            "job database", spent, ["per row on SQLite, with answers that cost nothing; rows are checked in the first"]
+        ),
+    ]
+
+
+def ranges(quick: bool) -> list[Report]:
+    """Return the time of choosing variants: rows that need a capacity in a room, and points in the plane."""
+    rows, columns = (60, 30) if quick else (1000, 500)
+    table = []
+    for kind, costs in (("capacity and room", _capacities(rows, columns)), ("plane", _plane(rows, columns))):
+        begin = time.monotonic()
+        chooser = Chooser(costs, np.ones(len(costs)), 1e-3)
+        fewest, _ = chooser.fewest(begin + 60.0)
+        number = max(12, len(fewest))
+        choice = chooser.best(number, begin + 60.0, fewest)
+        table.append({
+            "kind": kind, "rows": len(costs), "candidates": columns, "not dominated": chooser.columns,
+            "fewest": len(fewest), "variants": number, "gap": choice.gap, "seconds": time.monotonic() - begin,
+        })  # fmt: skip
+    return [Report("ranges", table, ["gap 0.1 % asked, 60 s at most"])]
+
+
+def _capacities(rows: int, columns: int) -> np.ndarray:
+    rng = np.random.default_rng(7)
+    need, have = np.exp(rng.normal(5, 1, rows)), np.exp(rng.normal(5, 1, columns))
+    room = need**0.33 * np.exp(rng.normal(0.5, 0.25, rows))
+    size, mass = have**0.33 * np.exp(rng.normal(0.2, 0.2, columns)), have**0.8 * np.exp(rng.normal(0, 0.2, columns))
+    fits = (have[None, :] >= need[:, None]) & (size[None, :] <= room[:, None])
+    costs = np.where(fits, mass[None, :], np.inf)[fits.any(axis=1)]
+    return np.asarray(costs - costs.min(axis=1, keepdims=True))
+
+
+def _plane(rows: int, columns: int) -> np.ndarray:
+    rng = np.random.default_rng(7)
+    a, b = rng.random((rows, 2)), rng.random((columns, 2))
+    costs = np.hypot(*(a[:, None] - b[None]).transpose(2, 0, 1))
+    costs[costs > np.maximum(0.45, costs.min(axis=1, keepdims=True))] = np.inf
+    return np.asarray(costs - costs.min(axis=1, keepdims=True))
+
+
+if __name__ == "__main__":
+    print(json.dumps(measure(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], int(sys.argv[4]))))

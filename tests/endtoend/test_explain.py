@@ -1,0 +1,102 @@
+"""Why nothing is feasible: what is listed helps, a little less does not, and what conflicts does so minimally."""
+
+import json
+
+import pytest
+
+import synth
+from synth.explanation import _rounded
+from synth.search import synthesize
+from synth.units import parse_quantity
+from tests.conformance.cases import CASES
+
+FAMILIES = ("wrap_spring", "roller_coupling")
+
+
+@pytest.fixture(scope="module", params=FAMILIES)
+def explained(request):
+    case = CASES[request.param].infeasible
+    problem = synth.load(request.param, **case.options)
+    settings = {k: v for k, v in case.settings.items() if k in ("parts", "limits", "fix", "grid")}
+    return problem, case, settings, synth.explain(problem, case.requirements, **settings)
+
+
+def feasible(problem, requirements, settings):
+    front = synthesize(problem, requirements, points=1, objectives=["outer_diameter"], **settings)
+    assert front.certificate.kind == "global"
+    return bool(front.designs)
+
+
+def test_applying_a_relaxation_is_feasible_and_one_per_cent_less_is_not(explained):
+    problem, case, settings, explanation = explained
+    ways = [w for w in explanation.single if w.kind == "requirement"]
+    assert ways
+    for way in ways:
+        assert way.proven
+        assert not way.design.violated
+        assert feasible(problem, {**case.requirements, way.name: way.requirement()}, settings), way.sentence
+        less = way.given + 0.99 * (way.needed - way.given)
+        unit = way.unit
+        shown = _rounded(less, unit, way.sense)
+        assert parse_quantity(shown, unit, way.name) != pytest.approx(way.needed, rel=1e-6)
+        assert not feasible(problem, {**case.requirements, way.name: shown}, settings), way.sentence
+
+
+def test_the_conflict_is_one_and_every_limit_of_it_counts(explained):
+    _, _, _, explanation = explained
+    assert not explanation.feasible
+    assert explanation.minimal
+    assert len(explanation.conflict) >= 2
+    # Whatever helps alone has to do with a limit of the conflict; the joint one widens all of them.
+    assert explanation.joint is not None
+    assert set(explanation.joint.design.violated) & set(explanation.conflict)
+
+
+def test_a_value_of_a_part_that_would_do(explained):
+    problem, case, settings, explanation = explained
+    if problem.name != "roller_coupling":
+        assert explanation.parts == []
+        return
+    way = next(w for w in explanation.parts if w.name == "roller.bore")
+    # The next larger rollers of the table have such a bore, and with them it works.
+    larger = {**settings, "parts": {**settings["parts"], "roller": "bore >= '20 mm'"}}
+    assert way.needed < 0.020
+    assert feasible(problem, case.requirements, larger)
+
+
+def test_a_feasible_question_needs_no_explanation():
+    case = CASES["wrap_spring"].infeasible
+    asked = {**case.requirements, "required_torque": "10 N*m"}
+    explanation = synth.explain("wrap_spring", asked, parts=case.settings["parts"])
+    assert explanation.feasible
+    assert explanation.ways == []
+    assert "nothing to explain" in explanation.message
+
+
+def test_own_limits_are_explained_as_well(tmp_path):
+    case = CASES["wrap_spring"].infeasible
+    asked = {"required_torque": "10 N*m", "bore_diameter": "20 mm"}
+    explanation = synth.explain(
+        "wrap_spring", asked, parts=case.settings["parts"], limits={"outer_diameter": "<= 25 mm"}, time_limit=120
+    )
+    assert explanation.conflict == ("outer_diameter <= 25 mm",)
+    (way,) = explanation.single
+    assert way.sentence == "limit outer_diameter <= 28 mm instead of 25 mm (12 % more)"
+    files = explanation.save(tmp_path / "out")
+    told = json.loads(files[1].read_text())
+    assert told["conflict"] == list(explanation.conflict)
+    assert len(files[0].read_text().splitlines()) == 1 + len(explanation.ways)
+
+
+def test_time_that_is_over_is_said():
+    case = CASES["wrap_spring"].infeasible
+    explanation = synth.explain("wrap_spring", case.requirements, time_limit=0.01)
+    assert explanation.interrupted == "time limit"
+    assert "Stopped early" in explanation.message
+
+
+def test_bad_input_is_one_sentence():
+    with pytest.raises(synth.InputError, match="required_torque"):
+        synth.explain("wrap_spring", {"required_torque": "-3 N*m", "bore_diameter": "20 mm"})
+    with pytest.raises(synth.InputError, match="time_limit"):
+        synth.explain("wrap_spring", {"required_torque": "3 N*m", "bore_diameter": "20 mm"}, time_limit=-1)
