@@ -56,9 +56,12 @@ class CentrifugalBallRamp(DesignProblem):
             d, ball_ramp.clamp_speed_ratio(at_contact, needed),
             "Speed at which required_torque with its reserve is reached, over the contact speed",
         )  # fmt: skip
+        # The two clamp forces share their terms, so that a bound of one bounds the other.
+        gain = centrifugal.axial_gain(balls.mass, end, balls.ratio, balls.outward)
+        at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
+        clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
         full = d.derive(
-            "full_speed_torque", "N*m",
-            lining.torque(ball_ramp.clamp_force(at_contact, duty.full_torque_speed, speed)), symbol="M_full",
+            "full_speed_torque", "N*m", lining.torque(at_full_speed), symbol="M_full",
             text="Torque at full_torque_speed, worn-in lining", source=f"{S4}, analysis 1, eq. (12), corrected",
         )  # fmt: skip
         d.at_least(
@@ -66,7 +69,6 @@ class CentrifugalBallRamp(DesignProblem):
             text="At full_torque_speed the clutch carries required_torque with its reserve",
             source=f"{S4}, analysis 1, eq. (12), corrected",
         )  # fmt: skip
-        clamp = ball_ramp.clamp_force(at_contact, duty.top_speed, speed)
         blocks.declare_clamp(
             d, lining, clamp, "Clamp force at top_speed, the largest", f"{S4}, analysis 1, eq. (12), corrected"
         )

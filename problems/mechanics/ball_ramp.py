@@ -154,13 +154,13 @@ def radius_at_speed(
     return (preload - rate * rest_radius / ratio) / (pull - rate / ratio)
 
 
-def clamp_force(spring_force: Quantity, speed: Quantity, contact_speed: Quantity) -> Quantity:
-    """Clamp force above the contact speed, F_N = F_R1 ((omega/omega_contact)**2 - 1).
+def clamp_force(gain: Quantity, speed: Quantity, contact_speed: Quantity) -> Quantity:
+    """Clamp force above the contact speed, F_N = g (omega**2 - omega_contact**2).
 
     Parameters
     ----------
-    spring_force : scalar, array or symbol
-        Force of the springs at contact F_R1 = F_R0 + s h [N].
+    gain : scalar, array or symbol
+        Axial force over the square of the speed at r1, g = m i eta r1 [kg m].
     speed : scalar, array or symbol
         Speed of the flyweight carrier omega [rad/s].
     contact_speed : scalar, array or symbol
@@ -173,7 +173,7 @@ def clamp_force(spring_force: Quantity, speed: Quantity, contact_speed: Quantity
 
     Notes
     -----
-    At contact the balls push with F_R1; their push grows with the square of the speed at the radius r1 that stays.
+    The spring force at contact F_R0 + s h is g omega_contact**2, because there the balls just balance it.
 
     References
     ----------
@@ -181,12 +181,12 @@ def clamp_force(spring_force: Quantity, speed: Quantity, contact_speed: Quantity
 
     Examples
     --------
-    Computed here, 400 N of spring force, twice the contact speed:
+    Computed here, 0.04 kg m, twice the contact speed:
 
-    >>> clamp_force(400.0, 200.0, 100.0)
+    >>> clamp_force(0.04, 200.0, 100.0)
     1200.0
     """
-    return spring_force * ((speed / contact_speed) ** 2 - 1)
+    return gain * (speed**2 - contact_speed**2)
 
 
 def clamp_speed_ratio(spring_force: Quantity, clamp_force: Quantity) -> Quantity:
@@ -210,9 +210,42 @@ def clamp_speed_ratio(spring_force: Quantity, clamp_force: Quantity) -> Quantity
 
     Examples
     --------
-    Computed here, the inverse of :func:`clamp_force`:
+    Computed here, 1200 N over 400 N of spring force, as in :func:`clamp_force`:
 
     >>> float(clamp_speed_ratio(400.0, 1200.0))
     2.0
     """
     return np.sqrt(1 + clamp_force / spring_force)
+
+
+def faster_clamp_force(clamp_force: Quantity, gain: Quantity, speed: Quantity, faster: Quantity) -> Quantity:
+    """Clamp force at a higher speed, F_N + g (omega2**2 - omega**2).
+
+    Parameters
+    ----------
+    clamp_force : scalar, array or symbol
+        Clamp force at some speed [N].
+    gain : scalar, array or symbol
+        Axial force over the square of the speed at r1 [kg m].
+    speed : scalar, array or symbol
+        Speed of the flyweight carrier omega [rad/s].
+    faster : scalar, array or symbol
+        A higher speed [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_N [N].
+
+    References
+    ----------
+    S4, analysis 1, eq. (12): in contact the springs do not move any more.
+
+    Examples
+    --------
+    Computed here, from 200 to 300 rad/s:
+
+    >>> faster_clamp_force(1200.0, 0.04, 200.0, 300.0)
+    3200.0
+    """
+    return clamp_force + gain * (faster**2 - speed**2)

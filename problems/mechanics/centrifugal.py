@@ -265,6 +265,39 @@ def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quanti
     return centrifugal_force * ratio * efficiency
 
 
+def axial_gain(mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0) -> Quantity:
+    """Axial force over the square of the speed, g = m i eta r.
+
+    Parameters
+    ----------
+    mass : scalar, array or symbol
+        Total mass of the flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+    ratio : scalar, array or symbol, optional
+        Transmission i = dr/dx [-]; 1 for a force at the flyweights themselves.
+    efficiency : scalar, array or symbol, optional
+        Axial force over F_C i [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        g [kg m].
+
+    References
+    ----------
+    S4, analysis 1, eq. (4): F = g omega**2.
+
+    Examples
+    --------
+    S4, practice 1 (1 kg at 199.919 mm, tan 60 degrees; 84 N at 15.5752 rad/s):
+
+    >>> axial_gain(1.0, 0.199919, 3**0.5) * 15.5752**2
+    84.000
+    """
+    return mass * ratio * efficiency * radius
+
+
 def speed_for_force(
     force: Quantity, mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0
 ) -> Quantity:
@@ -304,7 +337,7 @@ def speed_for_force(
     >>> float(speed_for_force(84.0, 1.0, 0.199919, 3**0.5))
     15.5752
     """
-    return np.sqrt(force / (mass * ratio * efficiency * radius))
+    return np.sqrt(force / axial_gain(mass, radius, ratio, efficiency))
 
 
 def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Quantity:
