@@ -10,48 +10,15 @@ it; then the rod unloads at constant angle; then the spring alone clamps.
 *Reversed lever*: the pivot sits on a disc 1 that the clamp springs press against the housing. The short leg l_p pushes
 the plate; once it pushes harder than the springs do, disc 1 lifts and the springs clamp.
 
-Source: S1 (lecture on centrifugal clutches), figures 2-24 to 2-26 and practice 3. The source describes both in words
+Source: S4 (notes on centrifugal clutches), figures 2-24 to 2-26 and practice 3. The source describes both in words
 only; the relations are derived from them.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
 from problems.mechanics import Quantity
 
 # -- both levers -----------------------------------------------------------------------------------
-
-
-def flyweight_radius(rest_radius: Quantity, flyweight_arm: Quantity, angle: Quantity) -> Quantity:
-    """Radius of the flyweight centre, r = r0 + l_c phi.
-
-    Parameters
-    ----------
-    rest_radius : scalar, array or symbol
-        r0 [m].
-    flyweight_arm : scalar, array or symbol
-        l_c [m].
-    angle : scalar, array or symbol
-        Lever angle phi from rest [rad].
-
-    Returns
-    -------
-    scalar, array or symbol
-        r [m].
-
-    References
-    ----------
-    Derived; small angles.
-
-    Examples
-    --------
-    Practice 3 at the stop, in mm:
-
-    >>> flyweight_radius(152, 100, 0.3)
-    182.0
-    """
-    return rest_radius + flyweight_arm * angle
 
 
 def contact_angle(contact_travel: Quantity, plate_arm: Quantity) -> Quantity:
@@ -79,68 +46,6 @@ def contact_angle(contact_travel: Quantity, plate_arm: Quantity) -> Quantity:
     0.2
     """
     return contact_travel / plate_arm
-
-
-def border_speed(force: Quantity, mass: Quantity, radius: Quantity) -> Quantity:
-    """Speed at which the flyweights pull with a force, omega = sqrt(F_C/(m r)).
-
-    Parameters
-    ----------
-    force : scalar, array or symbol
-        Centrifugal force F_C of all flyweights [N].
-    mass : scalar, array or symbol
-        Mass of all flyweights m [kg].
-    radius : scalar, array or symbol
-        Radius of their centres r [m].
-
-    Returns
-    -------
-    scalar, array or symbol
-        omega [rad/s].
-
-    References
-    ----------
-    F_C = m r omega**2.
-
-    Examples
-    --------
-    Practice 3, start and stop:
-
-    >>> float(border_speed(600, 1, 0.152)), float(border_speed(3200, 1, 0.182))
-    (62.8281, 132.599)
-    """
-    return np.sqrt(force / (mass * radius))
-
-
-def weight_thickness(mass: Quantity, weights: Quantity, density: Quantity, width: Quantity) -> Quantity:
-    """Radial size of a flyweight that is as high as long, t_w = sqrt(m/(n_w rho b_w)).
-
-    Parameters
-    ----------
-    mass : scalar, array or symbol
-        Mass of all flyweights m [kg].
-    weights : scalar, array or symbol
-        Number of flyweights n_w [-].
-    density : scalar, array or symbol
-        rho [kg/m3].
-    width : scalar, array or symbol
-        Axial width of a weight b_w [m].
-
-    Returns
-    -------
-    scalar, array or symbol
-        t_w [m].
-
-    References
-    ----------
-    Geometry; the square cross-section is an assumption.
-
-    Examples
-    --------
-    >>> float(weight_thickness(0.942, 4, 7850, 0.030))
-    0.031623
-    """
-    return np.sqrt(mass / (weights * density * width))
 
 
 # -- lever with a headed rod -----------------------------------------------------------------------
@@ -390,7 +295,8 @@ def travel_angle(
     Returns
     -------
     scalar, array or symbol
-        phi [rad]. Singular at the snap limit; a design program takes phi as the parameter and `border_speed` instead.
+        phi [rad]. Singular at the snap limit; a design program takes phi as the parameter and the speed that a force
+        belongs to (:func:`problems.mechanics.centrifugal.speed_for_force`).
 
     References
     ----------
@@ -461,6 +367,68 @@ def clamp_angle(
     return (pull * rest_radius - (preload - rate * contact_travel) * spring_arm) / (
         rate * spring_arm**2 - pull * flyweight_arm
     )
+
+
+# -- reversed lever --------------------------------------------------------------------------------
+
+
+def return_force(preload: Quantity, rate: Quantity, travel: Quantity) -> Quantity:
+    """Force of the springs that draw the plate back, F_ret = F_ret0 + s_ret x.
+
+    Parameters
+    ----------
+    preload : scalar, array or symbol
+        F_ret0 [N].
+    rate : scalar, array or symbol
+        s_ret [N/m].
+    travel : scalar, array or symbol
+        Travel of the plate x, at contact x0 [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_ret [N].
+
+    References
+    ----------
+    Statics.
+
+    Examples
+    --------
+    >>> return_force(210, 3e4, 0.003)
+    300.0
+    """
+    return preload + rate * travel
+
+
+def plate_force(flyweight_force: Quantity, flyweight_arm: Quantity, plate_arm: Quantity) -> Quantity:
+    """Force of the short leg on the plate, P = F_C l_c/l_p.
+
+    Parameters
+    ----------
+    flyweight_force : scalar, array or symbol
+        F_C [N].
+    flyweight_arm : scalar, array or symbol
+        l_c [m].
+    plate_arm : scalar, array or symbol
+        l_p [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        P [N]. The plate is pressed with P less the force of the return springs; the springs press disc 1 on the housing
+        with F_R0 - P, and from P = F_R0 on disc 1 lifts.
+
+    References
+    ----------
+    Derived: moments about the pivot.
+
+    Examples
+    --------
+    >>> plate_force(600, 0.060, 0.025)
+    1440.0
+    """
+    return flyweight_force * flyweight_arm / plate_arm
 
 
 # -- no snap ---------------------------------------------------------------------------------------
