@@ -432,7 +432,7 @@ def declare_contact(
     release : symbol, optional
         Speed at which they part again; without it the contact speed (no friction is modelled) [rad/s].
     needs : str or tuple of str
-        Guards without which the release speed does not exist.
+        Guards without which the release speed (and a contact speed that is the release speed too) does not exist.
 
     Returns
     -------
@@ -440,7 +440,7 @@ def declare_contact(
         Symbols of the block.
     """
     d.derive(
-        "contact_speed", "1/min", contact, symbol="omega_contact",
+        "contact_speed", "1/min", contact, symbol="omega_contact", needs=needs if release is None else (),
         text="Speed at which the plates touch when the driver speeds up", source=f"{S4}, analyses 1 and 2",
     )  # fmt: skip
     text = "Speed at which the plates part when the driver slows down"
@@ -463,13 +463,19 @@ def declare_contact(
     return Contact(contact, release)
 
 
-def declare_band(d: Declaration, band: Any, text: str) -> None:
-    """Declare the engagement band [-], a speed over the contact speed."""
-    d.derive("engagement_band", "-", band, symbol="band", text=text, source="definition")
+def declare_band(d: Declaration, band: Any, text: str, needs: str | tuple[str, ...] = ()) -> None:
+    """Declare the engagement band [-], a speed over the contact speed; ``needs`` are guards without which it is not."""
+    d.derive("engagement_band", "-", band, symbol="band", text=text, source="definition", needs=needs)
 
 
 def declare_full_clamp(
-    d: Declaration, duty: Duty, lining: Lining, worn_force: Any, full_clamp_speed: Any, source: str
+    d: Declaration,
+    duty: Duty,
+    lining: Lining,
+    worn_force: Any,
+    full_clamp_speed: Any,
+    source: str,
+    needs: str | tuple[str, ...] = (),
 ) -> None:
     """Declare worn torque and full-clamp speed of the types with capped clamp force, and their limits.
 
@@ -487,13 +493,15 @@ def declare_full_clamp(
         Speed from which on the mechanism lies at its stop [rad/s].
     source : str
         Where the full-clamp speed comes from.
+    needs : str or tuple of str
+        Guards without which the full-clamp speed does not exist.
     """
     torque = d.derive(
         "worn_torque", "N*m", lining.torque(worn_force), symbol="M_worn",
         text="Torque with full clamp force and worn lining", source=SHIGLEY,
     )  # fmt: skip
     d.derive(
-        "full_clamp_speed", "1/min", full_clamp_speed, symbol="omega_stop",
+        "full_clamp_speed", "1/min", full_clamp_speed, symbol="omega_stop", needs=needs,
         text="Speed from which on the mechanism lies at its stop and the clamp force does not grow", source=source,
     )  # fmt: skip
     d.at_least(
@@ -507,6 +515,14 @@ def declare_full_clamp(
 
 
 # -- clamp force -----------------------------------------------------------------------------------
+
+
+def declare_wear(d: Declaration) -> Any:
+    """Declare the wear of the linings that the types with capped clamp force must stand, and return it [m]."""
+    return d.requirement(
+        "lining_wear", "mm", 0.6, lower=0, upper=10, symbol="wear",
+        text="Wear of all linings together, by which the pressure plate travels further", source="practice",
+    )  # fmt: skip
 
 
 def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source: str) -> None:
@@ -665,7 +681,11 @@ def declare_weights(d: Declaration, duty: Duty) -> Weights:
         "weights", 2, 6, symbol="n_w",
         text="Number of weights, each on a lever", source=f"{S4}, levers around the shaft",
     )  # fmt: skip
-    return Weights(mass, count, arm, centrifugal.weight_thickness(mass, count, duty.steel_density, width), angle)
+    thickness = d.derive(
+        "weight_thickness", "mm", centrifugal.weight_thickness(mass, count, duty.steel_density, width), symbol="t_w",
+        text="Radial size of a weight of square section", source=f"geometry; {DERIVED}",
+    )  # fmt: skip
+    return Weights(mass, count, arm, thickness, angle)
 
 
 def limit_weight_room(d: Declaration, duty: Duty, weights: Weights, rest_radius: Any, pivot_arm: Any = 0.0) -> None:
