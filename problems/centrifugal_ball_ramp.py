@@ -47,7 +47,7 @@ class CentrifugalBallRamp(DesignProblem):
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)
-        speed = centrifugal.speed_for_force(at_contact, balls.mass, end, balls.ratio, balls.outward)
+        speed = centrifugal.speed_for_force(at_contact, balls.mass, end, balls.push)
         # The same force at the same radius: written with the contact speed, the two speeds bound each other.
         release = speed * balls.release_ratio
         blocks.declare_contact(d, duty, speed, release, needs="ramp_returns")
@@ -57,7 +57,7 @@ class CentrifugalBallRamp(DesignProblem):
             "Speed at which required_torque with its reserve is reached, over the contact speed",
         )  # fmt: skip
         # The two clamp forces share their terms, so that a bound of one bounds the other.
-        gain = centrifugal.axial_gain(balls.mass, end, balls.ratio, balls.outward)
+        gain = centrifugal.axial_gain(balls.mass, end, balls.push)
         at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
         clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
         full = d.derive(
@@ -87,7 +87,7 @@ class CentrifugalBallRamp(DesignProblem):
         ball_blocks.declare_ball_pressure(d, duty, balls, end)
         ball_blocks.limit_circle_room(d, wants, rest, balls, [springs])
         blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(balls.mass, end, balls.radius), [springs])
-        start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.ratio, balls.outward)
+        start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
         blocks.advise_gravity(d, rest, start)
         blocks.advise_release_gap(d, gap, lining)
         blocks.advise_springs(d, duty, springs, rest, deflection, gap, "the return springs")

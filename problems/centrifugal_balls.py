@@ -23,14 +23,14 @@ HYSTERESIS_RATIO = 0.95
 
 @dataclass(frozen=True)
 class Balls:
-    """Balls in ramps."""
+    """Balls in ramps; ``push`` is the axial over the centrifugal force of balls that move out."""
 
     count: Any
     part: Part
     ratio: Any
     mass: Any
     pressure_limit: Any
-    outward: Any
+    push: Any
     release_ratio: Any
 
     @property
@@ -155,7 +155,7 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
         ratio=ratio,
         mass=mass,
         pressure_limit=pressure_limit,
-        outward=centrifugal.outward_efficiency(loss),
+        push=centrifugal.ramp_gain(ratio, friction),
         release_ratio=release_ratio,
     )
 
