@@ -78,8 +78,9 @@ def test_intervals_of_independent_draws_cover_the_yield_as_often_as_they_say():
 @pytest.mark.parametrize("seed", range(6))
 def test_proven_corners_are_the_worst_of_a_dense_grid(seed):
     rng = np.random.default_rng(seed)
+    radius, force = f"{rng.uniform(60, 190):.6g} mm", f"{rng.uniform(500, 3000):.6g} N"
     of = design(
-        pair=["firm", "soft"][seed % 2], radius=f"{rng.uniform(60, 190):.6g} mm", force=f"{rng.uniform(500, 3000):.6g} N",
+        pair=["firm", "soft"][seed % 2], radius=radius, force=force,
         limits={"braking_torque": "<= 150 N*m"}, requirements={**NEEDED, "torque_limit": "180 N*m"},
     )  # fmt: skip
     block = {"friction": "catalogue range", "torque": "+-10 %", "speed": "1100 .. 1300 1/min", "wear": "new and worn"}
