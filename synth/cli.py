@@ -397,12 +397,16 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
+    if any(design.robust for design in front.designs):
+        from synth.robust_console import print_robust
+
+        print_robust(front, console)
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
     files = sorted(path.name for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
     designs = [name for name in files if name.startswith("design_")]
-    shown = [name for name in files if name not in designs and name in ("designs.csv", "front.json", "explanation.txt")]
+    shown = [name for name in files if name in ("designs.csv", "front.json", "robust.csv", "explanation.txt")]
     if designs:
         shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
     console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Progress = Callable[[Mapping[str, Any]], None]
 SEARCHES = 5  # at most so many, each with more points at which limits are posed
 SCENARIOS = 4  # new points per limit
-SHORTEST = 1e-3  # seconds
+SHORTEST, GRACE = 1e-3, 2.0  # seconds
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,8 @@ def robust_front(
         question = pose(posed(problem, asked, limits))
         left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
         front = question.answer(workers, progress, left, known)
-        ratings, stopped = rater.rate(front.designs, progress, deadline)
+        # Designs that nobody rated are of little use: that takes a moment even where the time is over.
+        ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         failing = [j for j, told in enumerate(ratings) if not told["holds"]]
         if asked.mode == RATE or not failing or front.interrupted or stopped or k == SEARCHES:
             break
@@ -265,4 +266,8 @@ def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
             replace(kept[k], rank=position, score=float(ranking.scores[k]), note=ranking.notes[k])
             for position, k in enumerate(ranking.order, start=1)
         ]
-    return replace(front, designs=kept, complete=False, status=front.status if kept else Status.NOT_SOLVED)
+    if not kept:
+        # Nothing says that there is no robust design; there is none here that anything could be proven of.
+        certificate = replace(front.certificate, kind="heuristic", gap=None)
+        return replace(front, designs=[], complete=False, status=Status.NOT_SOLVED, certificate=certificate)
+    return replace(front, designs=kept, complete=False)

@@ -82,7 +82,7 @@ class Spec:
         """
         if self.robust and not robust:
             expected = "no robust block here: clutchsynth run (one family), rate, check and explain take one"
-            raise InputError(f"{self.file}: robust", ", ".join(self.robust), expected)
+            raise InputError("robust", ", ".join(self.robust), expected)
         names = (
             "objectives",
             "limits",
