@@ -587,13 +587,14 @@ class Formulation:
         low: np.ndarray | None = None,
         high: np.ndarray | None = None,
         skipped: np.ndarray | None = None,
+        data: Sequence[Any] | None = None,
     ) -> Solutions:
         """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
 
-        ``skipped`` marks limits that are left out.
+        ``skipped`` marks limits that are left out; ``data``: in place of that of the question.
         """
         count = len(combinations)
-        data = self.instance.data(combinations)
+        data = self.instance.data(combinations) if data is None else data
         self.solved_combinations.update(np.unique(combinations).tolist())
         self.nlp_solves += count
         low = np.broadcast_to(self.lower, (count, self.n)) if low is None else low
