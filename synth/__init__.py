@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from synth.hooks import curves, second_opinion, simulate
     from synth.jobs.run import BatchResult, batch
     from synth.near import NearEquals, near_equals
+    from synth.price_list import Price, Prices
+    from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
     from synth.search import synthesize
@@ -36,6 +38,8 @@ __all__ = [
     "InputError",
     "NearEquals",
     "ParetoFront",
+    "Price",
+    "Prices",
     "Relaxation",
     "SizeRange",
     "Study",
@@ -49,6 +53,7 @@ __all__ = [
     "load",
     "load_front",
     "near_equals",
+    "prices",
     "second_opinion",
     "simulate",
     "size_range",
@@ -66,6 +71,8 @@ _HOME = {
     "FamilyOutcome": "synth.comparison",
     "NearEquals": "synth.near",
     "ParetoFront": "synth.results",
+    "Price": "synth.price_list",
+    "Prices": "synth.price_list",
     "Relaxation": "synth.explanation",
     "SizeRange": "synth.variants.run",
     "Study": "synth.study",
@@ -79,6 +86,7 @@ _HOME = {
     "load": "synth.problem",
     "load_front": "synth.results",
     "near_equals": "synth.near",
+    "prices": "synth.pricing",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
     "size_range": "synth.variants.run",

@@ -266,12 +266,13 @@ class Formulation:
             np.zeros(n, dtype=np.int32),
         )
 
-    def not_refused(self, combinations: np.ndarray) -> np.ndarray:
-        """Tell which combinations no refusal over several slots forbids."""
-        keep = np.ones(len(combinations), dtype=bool)
-        for refusal in self.instance.joint_refusals:
+    def not_refused(self, combinations: np.ndarray, moved: Instance | None = None) -> np.ndarray:
+        """Tell which combinations no refusal over several slots forbids; ``moved``: or over one, where it differs."""
+        keep, instance, d = np.ones(len(combinations), dtype=bool), moved or self.instance, self.model.declaration
+        every = [r for r, kinds in zip(d.refusals, self.model.refusal_kinds, strict=True) if kinds]
+        for refusal in instance.joint_refusals if moved is None else every:
             refused = self._refusal_function(refusal)
-            keep &= ~(np.asarray(refused([None] * self.n + self.instance.data(combinations))[0]) > 0.5)
+            keep &= ~(np.asarray(refused([None] * self.n + instance.data(combinations))[0]) > 0.5)
         return keep
 
     def _refusal_function(self, refusal: Refusal) -> Any:
