@@ -212,6 +212,8 @@ class _Case:
             return [self._withheld(up, why) for up in self.again.moves[: self.again.count : 2]]
         own = self._own()
         better = self._elsewhere(own)
+        if self.already:
+            self.compared += f"; {self._ahead()}"
         return [self._row(number, own, better) for number in range(0, self.again.count, 2)]
 
     # -- re-solves -----------------------------------------------------------------------------
@@ -228,54 +230,54 @@ class _Case:
         total = self.again.instance.combinations
         if total == 1:
             self.compared = "no other parts are offered"
+        if not len(self.others):
             return best
-        whole = len(self.others) + 1 >= min(total, ALL + 1) and total <= ALL
+        whole = total <= ALL
         self.compared = (
-            f"over all {total} combinations" if whole
-            else f"over the {len(self.others) + 1} combinations tried of {total}"
+            f"over all {total} combinations tried" if whole
+            else f"over the {len(self.others) + 1} combinations tried, of {total}"
         )  # fmt: skip
-        near, values, start = self._near()
-        if not len(near):
-            return best
-        moves = range(self.again.count)
-        chosen = np.repeat(np.arange(len(near)), len(moves))
-        repeated = np.tile(np.array(moves), len(near))
-        found, kept, _ = self.again.solved(near[chosen], start[chosen], repeated, self.phi, self.k)
-        reached = np.where(kept, found.phi[:, self.k], np.inf).reshape(len(near), len(moves))
+        values, start, near = self._without_a_step()
+        # Where a step leaves nothing of these parts, others may be far worse and still the best.
+        refused = np.array([bool(m.refused) for m in self.again.moves])
+        tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
+        rows, moves = np.nonzero(tried)
+        found, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
+        reached = np.full(tried.shape, np.inf)
+        reached[rows[kept], moves[kept]] = found.phi[kept, self.k]
         ahead = (values - self.base) * self.unit < -EVEN
-        self.already = {int(near[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
+        self.already = {int(self.others[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
         reached[ahead] = np.inf
-        mine = np.where(own[1], own[0].phi[:, self.k], np.inf)
-        for number in moves:
+        for number in range(self.again.count):
             c = int(np.argmin(reached[:, number]))
             if reached[c, number] == np.inf:
                 continue
-            price = abs(self._price(float(mine[number]), number)) if math.isfinite(mine[number]) else 0.0
-            if (mine[number] - reached[c, number]) * self.unit > self.again.step * (SHARE * price + ROOM):
-                best[number] = float(reached[c, number]), int(near[c])
+            room = np.inf
+            if own[1][number]:
+                mine = float(own[0].phi[number, self.k])
+                room = (mine - reached[c, number]) * self.unit / self.again.step
+                room -= SHARE * abs(self._price(mine, number)) + ROOM
+            if room > 0:
+                best[number] = float(reached[c, number]), int(self.others[c])
         return best
 
-    def _near(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the other combinations that a step may bring within reach, how good they are without, and where."""
-        form, k, others = self.again.form, self.k, self.others
-        count = len(others)
-        if not count:
-            return others, np.empty(0), np.empty((0, form.n))
+    def _without_a_step(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how good the other combinations are, where, and which of them a step may bring within reach."""
+        form, k, count = self.again.form, self.k, len(self.others)
         still = np.full(count, -1)
-        found, kept, _ = self.again.solved(others, np.repeat(self.best.variables, count, axis=0), still, self.phi, k)
-        values = np.where(kept, found.phi[:, k], np.inf)
+        start = np.repeat(self.best.variables, count, axis=0)
+        found, kept, _ = self.again.solved(self.others, start, still, self.phi, k)
+        values, start = np.where(kept, found.phi[:, k], np.inf), found.variables.copy()
         reach = self.again.step * REACH / self.unit
-        start = found.variables.copy()
         near = values - self.base <= reach
         lost = np.flatnonzero(~kept)
         if len(lost) and form.n:
-            looser = self._looser(others[lost], start[lost], reach)
-            close = np.isfinite(looser.violation) & (looser.violation <= MISSED)
-            close &= looser.t <= LOOSER * self.again.step
-            near[lost], start[lost] = close, looser.variables
+            looser = self._looser(self.others[lost], start[lost], reach)
+            near[lost] = (looser.violation <= MISSED) & (looser.t <= LOOSER * self.again.step)
+            start[lost] = looser.variables
         elif len(lost):
             near[lost] = True
-        return others[near], values[near], start[near]
+        return values, start, near
 
     def _looser(self, combinations: np.ndarray, start: np.ndarray, reach: float) -> Solutions:
         """Solve for the least by which limits and objectives would have to give way."""
@@ -325,8 +327,6 @@ class _Case:
         words = [up.reason] if up.reason == down.reason else [
             f"{side}wards {x.reason}" for side, x in (("up", up), ("down", down)) if x.reason
         ]  # fmt: skip
-        if self.already and status in (FIXED, NOTHING):
-            words.append(self._ahead())
         shares = (up.share, down.share)
         return self._told(move, slope, up.price, down.price, status, "; ".join(w for w in words if w),
                           (up.change, down.change), shares)  # fmt: skip
@@ -345,33 +345,43 @@ class _Case:
         self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray],
         better: tuple[float, int] | None,
     ) -> _Side:  # fmt: skip
-        found, kept, broken = own
         move = self.again.moves[number]
-        way = f"{percent(self.again.step)} {'more' if move.factor > 1 else 'less'}"
+        way = self._way(move)
         if move.refused:
             return _Side(None, f"{way} {move.refused}")
         if better is not None:
             reached, other = better
             parts = self.again.difference(self.own, other)
-            why = "" if kept[number] else " as these parts keep no longer all limits"
-            return _Side(self._price(reached, number), f"other parts become better{why}: {parts}", parts)
+            kept = bool(own[1][number])
+            why = "other parts become better" if kept else f"with {way} these parts keep not all limits, others do"
+            return _Side(self._price(reached, number), f"{why}: {parts}", parts)
+        why = self._trouble(number, slope, own)
+        if not why:
+            return _Side(slope)
+        fine = number + self.again.count
+        again = self._trouble(fine, slope, own)
+        if not again:
+            return _Side(slope, f"holds for {percent(FINE * self.again.step)}; {why}", share=FINE)
+        told = f"the multipliers say {slope:.3g}, but " if own[1][number] else ""
+        return _Side(None, f"{told}{why}" if again == why else f"{told}{why}, {again}")
+
+    def _way(self, move: Move) -> str:
+        return f"{percent(abs(move.factor - 1.0))} {'more' if move.factor > 1 else 'less'}"
+
+    def _trouble(self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray]) -> str:
+        """Return why solving again with the parts of the design does not confirm a price; nothing where it does."""
+        found, kept, broken = own
+        way = self._way(self.again.moves[number])
+        if not kept[number] and broken[number] >= 0:
+            return f"{way} breaks {self.again.limit_names[broken[number]]}, which no size of these parts can restore"
         if not kept[number]:
-            if broken[number] >= 0:
-                name = self.again.limit_names[broken[number]]
-                return _Side(None, f"{way} breaks {name}, which no size of these parts can restore")
-            return _Side(None, f"with {way} no design of these parts was found that keeps all limits")
+            return f"with {way} no design of these parts was found that keeps all limits"
         if not bool(found.converged[number]):
-            return _Side(None, f"with {way} the solver does not confirm the optimum")
+            return f"with {way} the solver does not confirm the optimum"
         again = self._price(float(found.phi[number, self.k]), number)
         if self._agree(again, slope):
-            return _Side(slope)
-        why = f"solving again with {way} gives {again:.3g}{self._what_binds(found, number)}"
-        fine = number + self.again.count
-        near = self._price(float(found.phi[fine, self.k]), fine) if kept[fine] and found.converged[fine] else math.nan
-        if self._agree(near, slope):
-            return _Side(slope, f"holds for {percent(FINE * self.again.step)}; {why}", share=FINE)
-        less = "" if math.isnan(near) else f", with {percent(FINE * self.again.step)} {near:.3g}"
-        return _Side(None, f"the multipliers say {slope:.3g}, but {why}{less}")
+            return ""
+        return f"solving again with {way} gives {again:.3g}{self._what_binds(found, number)}"
 
     @staticmethod
     def _agree(again: float, slope: float) -> bool:
@@ -405,7 +415,7 @@ class _Case:
         within = (
             "with sizes that need not be makeable" if self.again.form.gridded.any() else "within the gap of the front"
         )
-        return f"for these parts alone: {within}, {parts} is {share} better already{more}"
+        return f"{within}, {parts} is {share} better already{more}"
 
     # -- rows ----------------------------------------------------------------------------------
 
