@@ -49,10 +49,9 @@ def print_prices(found: Prices, console: Console, every: bool = False) -> None:
         for objective in frame.objectives:
             rows = [r for r in found.rows if (r.design, r.objective) == (rank, objective)]
             console.print()
-            table = plain_table(objective, f"{size} more", f"{size} less", "status", "why", right=(1, 2), wide=4)
+            table = plain_table(objective, "up", "down", "status", "why", right=(1, 2), wide=4)
             for row in sorted((r for r in rows if r.status != NOTHING), key=_dearness, reverse=True):
-                sides = (_change(row.up, found.step), _change(row.down, -found.step))
-                table.add_row(_priced(row), *sides, row.status, row.reason)
+                table.add_row(_priced(row), _shown(row.up), _shown(row.down), row.status, row.reason)
             console.print(table)
             idle = [_priced(r) for r in rows if r.status == NOTHING]
             if idle:
@@ -61,12 +60,13 @@ def print_prices(found: Prices, console: Console, every: bool = False) -> None:
                 console.print(f"other parts: {words}" if "combinations" in words else words)
         console.print()
     if len(shown) < len(found.finished):
-        console.print(f"{len(found.finished) - len(shown)} more designs with --all, and in prices.csv")
-    told = "prices hold the other objectives" if len(frame.objectives) > 1 else "prices"
-    if found.makeable:
-        console.print(f"{told}{' and' if len(frame.objectives) > 1 else ''} take makeable sizes as continuous")
-    elif len(frame.objectives) > 1:
-        console.print(told)
+        more = len(found.finished) - len(shown)
+        console.print(f"{more} more design{'' if more == 1 else 's'} with --all, and in prices.csv")
+    console.print(f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}")
+    held = ["the other objectives are held"] if len(frame.objectives) > 1 else []
+    held += ["makeable sizes are taken as continuous"] if found.makeable else []
+    if held:
+        console.print("; ".join(held))
     if found.interrupted:
         done, asked = len(found.finished), len(found.asked)
         console.print(f"stopped: {found.interrupted}; {done} of {asked} designs are kept, run again to go on")
@@ -77,12 +77,11 @@ def _priced(row: Price) -> str:
 
 
 def _dearness(row: Price) -> float:
-    return max(abs(x) if x is not None else -1.0 for x in (row.up, row.down))
+    return max(round(abs(x), 4) if x is not None else -1.0 for x in (row.up, row.down))
 
 
-def _change(price: float | None, step: float) -> str:
-    """Return by how many per cent the objective changes."""
-    return "withheld" if price is None else f"{100 * price * step:+.3g} %" if price else "0 %"
+def _shown(price: float | None) -> str:
+    return "withheld" if price is None else f"{price:+.3g}" if price else "0"
 
 
 def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:

@@ -297,6 +297,12 @@ class _Case:
         worse = (reached - self.base) * self.unit
         return self.goal.sign * worse / math.log(self.again.moves[number].factor)
 
+    def _jump(self, reached: float, number: int) -> float:
+        """Return the whole change over the step, per cent per per cent: with other parts there is no slope."""
+        worse = (reached - self.base) * self.unit
+        share = math.expm1(worse) if self.again.form.log_goals[self.k] else worse
+        return float(self.goal.sign * share / (self.again.moves[number].factor - 1.0))
+
     def _slope(self, move: Move) -> float:
         """Return the price by the multipliers."""
         slopes = self.best.limits if move.kind == "limit" else self.best.requirements
@@ -353,8 +359,8 @@ class _Case:
             reached, other = better
             parts = self.again.difference(self.own, other)
             kept = bool(own[1][number])
-            why = "other parts become better" if kept else f"with {way} these parts keep not all limits, others do"
-            return _Side(self._price(reached, number), f"{why}: {parts}", parts)
+            why = "other parts become better" if kept else f"with {way} these parts cannot keep all limits, others can"
+            return _Side(self._jump(reached, number), f"{why}: {parts}", parts)
         why = self._trouble(number, slope, own)
         if not why:
             return _Side(slope)
