@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
+    from synth.robust import Ratings, rate
     from synth.search import synthesize
     from synth.study import Study
     from synth.variants.run import SizeRange, size_range
@@ -40,6 +41,7 @@ __all__ = [
     "ParetoFront",
     "Price",
     "Prices",
+    "Ratings",
     "Relaxation",
     "SizeRange",
     "Study",
@@ -54,6 +56,7 @@ __all__ = [
     "load_front",
     "near_equals",
     "prices",
+    "rate",
     "second_opinion",
     "simulate",
     "size_range",
@@ -73,6 +76,7 @@ _HOME = {
     "ParetoFront": "synth.results",
     "Price": "synth.price_list",
     "Prices": "synth.price_list",
+    "Ratings": "synth.robust",
     "Relaxation": "synth.explanation",
     "SizeRange": "synth.variants.run",
     "Study": "synth.study",
@@ -87,6 +91,7 @@ _HOME = {
     "load_front": "synth.results",
     "near_equals": "synth.near",
     "prices": "synth.pricing",
+    "rate": "synth.robust",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
     "size_range": "synth.variants.run",

@@ -13,7 +13,7 @@ import pytest
 import yaml
 from test_cli import HEAVY, HOIST, LECTURE, at_once, clutchsynth, quantity, refused
 
-from synth import cli
+from synth import terminal
 
 SIMULATED = ["second_opinion.csv", "startup.csv", "startup.svg", "temperature.csv", "temperature.svg"]
 
@@ -179,7 +179,7 @@ def test_a_folder_that_cannot_be_one_is_refused(tmp_path: Path) -> None:
 
 
 def test_tables_are_written_where_no_drawing_is_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cli, "REPORTS", "clutchsynth.reports_of_nobody")
+    monkeypatch.setattr(terminal, "REPORTS", "clutchsynth.reports_of_nobody")
     assert at_once("curves", "multi_plate_clutch", LECTURE, "-o", tmp_path / "out").returncode == 0
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".csv"}
 

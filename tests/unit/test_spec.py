@@ -64,7 +64,7 @@ def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> No
         ("- family\n- x\n", ["got a list", "family:"]),
         ("just words\n", ["just words"]),
         ("requirements: {a: 1}\n", ["family", "is missing", "clutchsynth families"]),
-        ("family: [a]\n", ["family", "got a list", "a name"]),
+        ("family: [1]\n", ["family", "entry 1", "got 1", "a name"]),
         ("family: f\nrequirements: [1, 2]\n", ["hoist.yaml: requirements", "got a list", "a mapping"]),
         ("family: f\nrequirements: {a: [1]}\n", ["requirements: a", "got a list", "one value"]),
         ("family: f\nrequirement: {a: 1}\n", ["key", "'requirement'", "requirements"]),
