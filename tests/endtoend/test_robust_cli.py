@@ -165,7 +165,8 @@ def test_a_folder_that_is_used_again_keeps_nothing_of_the_range(saved: Path, rob
 def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new: str, words: list[str]) -> None:
     assert old in ROBUST
     text = ROBUST.replace(old, new)
-    (tmp_path / "robust.yaml").write_text(text.replace("samples: 256}", "samples: 256]") if "robust: [" in new else text)
+    text = text.replace("256}", "256]") if "robust: [" in new else text
+    (tmp_path / "robust.yaml").write_text(text)
     done = clutchsynth("run", tmp_path / "robust.yaml", "-o", tmp_path / "out")
     assert done.returncode == 2
     assert all(word in done.stderr for word in ["robust.yaml", *words]), done.stderr
