@@ -381,7 +381,8 @@ class _Case:
         if not kept[number] and broken[number] >= 0:
             return f"{way} breaks {self.again.limit_names[broken[number]]}, which no size of these parts can restore"
         if not kept[number]:
-            return f"with {way} no design of these parts was found that keeps all limits"
+            others = " and the other objectives" if self.again.m > 1 else ""
+            return f"with {way} no design of these parts was found that keeps all limits{others}"
         if not bool(found.converged[number]):
             return f"with {way} the solver does not confirm the optimum"
         again = self._price(float(found.phi[number, self.k]), number)
