@@ -345,6 +345,7 @@ def test_a_question_without_sizes():
 def test_of_many_combinations_some_are_tried_and_it_is_said(monkeypatch):
     monkeypatch.setattr(resolve, "ALL", 1)
     monkeypatch.setattr(pricing, "ALL", 1)
+    monkeypatch.setattr(pricing, "PARENTS", 1)
     metals = ("weak", "strong", "heavy")
     price = synth.prices(rod(0.997 * EVEN / 1e3, metals)).of(1, "mass", "load")
     assert price.compared == "over the 3 combinations tried, of 3"
