@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from synth.errors import InputError
-from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, tell
 
 if TYPE_CHECKING:
     from synth.spec import Spec
@@ -76,7 +76,11 @@ def prices(
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
     front = load_front(source)
     with progress_display(quiet) as progress:
-        found = find(front, design or None, step, progress=progress, time_limit=seconds, folder=folder)
+        try:
+            found = find(front, design or None, step, progress=progress, time_limit=seconds, folder=folder)
+        except KeyboardInterrupt:
+            tell("stopped before the first design was begun; nothing is written")
+            raise typer.Exit(STOPPED) from None
     found.save(folder)
     if not quiet:
         print_prices(found, output(), every)

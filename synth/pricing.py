@@ -34,6 +34,7 @@ from synth.units import parse_quantity
 LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
 # By how much a price and a re-solve may differ: a share of the price, and per cent per per cent.
 SHARE, ROOM = 0.03, 0.003
+PARENTS = 8  # of those tried, the best, of which again one part is exchanged
 REACH = 10.0  # combinations worse by more than this times the step are not tried again
 LOOSER = 5.0  # ... nor those that need limits looser by more than this times the step
 EVEN = 1e-6  # relative; what is better by more is better without a step
@@ -232,12 +233,17 @@ class _Case:
             self.compared = "no other parts are offered"
         if not len(self.others):
             return best
-        whole = total <= ALL
+        values, start, near = self._without_a_step(self.others)
+        whole, parents = total <= ALL, np.argsort(values, kind="stable")[:PARENTS]
+        if not whole:
+            further = self.again.beside(self.others[parents[near[parents]]], np.append(self.others, self.own))
+            more = self._without_a_step(further)
+            values, start, near = (np.concatenate(pair) for pair in zip((values, start, near), more, strict=True))
+            self.others = np.concatenate([self.others, further])
         self.compared = (
             f"over all {total} combinations tried" if whole
             else f"over the {len(self.others) + 1} combinations tried, of {total}"
         )  # fmt: skip
-        values, start, near = self._without_a_step()
         # Where a step leaves nothing of these parts, others may be far worse and still the best.
         refused = np.array([bool(m.refused) for m in self.again.moves])
         tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
@@ -261,18 +267,18 @@ class _Case:
                 best[number] = float(reached[c, number]), int(self.others[c])
         return best
 
-    def _without_a_step(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how good the other combinations are, where, and which of them a step may bring within reach."""
-        form, k, count = self.again.form, self.k, len(self.others)
+    def _without_a_step(self, others: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how good other combinations are, where, and which of them a step may bring within reach."""
+        form, k, count = self.again.form, self.k, len(others)
         still = np.full(count, -1)
         start = np.repeat(self.best.variables, count, axis=0)
-        found, kept, _ = self.again.solved(self.others, start, still, self.phi, k)
+        found, kept, _ = self.again.solved(others, start, still, self.phi, k)
         values, start = np.where(kept, found.phi[:, k], np.inf), found.variables.copy()
         reach = self.again.step * REACH / self.unit
         near = values - self.base <= reach
         lost = np.flatnonzero(~kept)
         if len(lost) and form.n:
-            looser = self._looser(self.others[lost], start[lost], reach)
+            looser = self._looser(others[lost], start[lost], reach)
             near[lost] = (looser.violation <= MISSED) & (looser.t <= LOOSER * self.again.step)
             start[lost] = looser.variables
         elif len(lost):
@@ -381,7 +387,8 @@ class _Case:
         if not kept[number] and broken[number] >= 0:
             return f"{way} breaks {self.again.limit_names[broken[number]]}, which no size of these parts can restore"
         if not kept[number]:
-            return f"with {way} no design of these parts was found that keeps all limits"
+            others = " and the other objectives" if self.again.m > 1 else ""
+            return f"with {way} no design of these parts was found that keeps all limits{others}"
         if not bool(found.converged[number]):
             return f"with {way} the solver does not confirm the optimum"
         again = self._price(float(found.phi[number, self.k]), number)

@@ -86,9 +86,17 @@ class Resolver:
         if total <= ALL:
             tried = np.arange(total, dtype=np.int64)
         else:
-            tried = np.unique(np.concatenate([self.instance.neighbours(own), self.known]))
-        tried = tried[tried != own]
-        kept: np.ndarray = tried[self.form.not_refused(tried)]
+            tried = np.concatenate([self.instance.neighbours(own), self.known])
+        return self._offered(tried, np.array([own]))
+
+    def beside(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
+        """Return the combinations that differ in one part from some, but for those known."""
+        near = [self.instance.neighbours(int(c)) for c in combinations]
+        return self._offered(np.concatenate([np.empty(0, dtype=np.int64), *near]), known)
+
+    def _offered(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
+        new = np.setdiff1d(combinations, known)
+        kept: np.ndarray = new[self.form.not_refused(new)]
         return kept
 
     # -- solving -------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 import synth
 from synth import pricing, resolve
 from tests.unit.strut import RODS, Strut
+from tests.unit.test_elasticity import Followed, Hung
 
 # -- one bar: the parts stay ---------------------------------------------------------------------------
 
@@ -241,6 +242,46 @@ def test_what_cannot_be_moved_is_withheld():
     assert span.down == pytest.approx(1 - 2 / own, rel=1e-5)
 
 
+def test_an_equality_has_a_price():
+    # The cube: surface goes with volume to 2/3. Neither side of the limit enters by logarithm.
+    found = synth.prices(synth.synthesize(Hung, {"volume": "1 dm3"}, gap=1e-5))
+    for kind in ("requirement", "limit"):
+        price = found.of(1, "surface", "volume", kind)
+        assert (price.status, price.up) == ("confirmed", price.down)
+        assert price.up == pytest.approx(2 / 3, rel=1e-3)
+    # The flattest box is the widest, so that -width goes with the root of the volume: down, by half a per cent.
+    below = synth.prices(synth.synthesize(Hung, {"volume": "1 dm3"}, objectives=["below"], gap=1e-5))
+    price = below.of(1, "below", "volume")
+    assert price.up == price.down == pytest.approx(-0.5, rel=1e-4)
+    assert price.sentence == "1 % more volume saves 0.5 % below"
+
+
+@pytest.mark.parametrize(("stated", "expected"), [({}, 1.0), ({"peak": 20.0}, -0.6), ({"jolt": 40.0}, 0.2)])
+def test_what_a_default_makes_of_a_requirement_moves_along(stated, expected):
+    price = synth.prices(synth.synthesize(Followed, {"load": 10.0, **stated}, gap=1e-5)).of(1, "mass", "load")
+    assert price.status == "confirmed"
+    assert price.up == pytest.approx(expected, rel=1e-4)
+
+
+class Warm(synth.DesignProblem):
+    """A block that must hold heat above the ambient temperature."""
+
+    name = "warm"
+
+    def declare(self, d):
+        ambient = d.requirement("ambient", "degC", 26.85, lower=-50, upper=200)
+        size = d.variable("size", "mm", 1, 5000)
+        d.derive("mass", "kg", 1e2 * size)
+        d.at_least("warmth", size * 300, ambient, "K")
+        d.objective("mass")
+
+
+def test_temperatures_count_from_absolute_zero():
+    price = synth.prices(synth.synthesize(Warm, {}, gap=1e-5)).of(1, "mass", "ambient")
+    assert price.up == pytest.approx(1.0, rel=1e-6)
+    assert price.sentence == "1 % more ambient (in kelvin) costs 1 % mass"
+
+
 class Vertex(synth.DesignProblem):
     """A width that two limits hold at the same place: the multipliers do not tell which."""
 
@@ -304,6 +345,7 @@ def test_a_question_without_sizes():
 def test_of_many_combinations_some_are_tried_and_it_is_said(monkeypatch):
     monkeypatch.setattr(resolve, "ALL", 1)
     monkeypatch.setattr(pricing, "ALL", 1)
+    monkeypatch.setattr(pricing, "PARENTS", 1)
     metals = ("weak", "strong", "heavy")
     price = synth.prices(rod(0.997 * EVEN / 1e3, metals)).of(1, "mass", "load")
     assert price.compared == "over the 3 combinations tried, of 3"
