@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from synth import choice_commands
+from synth import choice_commands, robust_commands
 from synth import study_commands as studies
 from synth.errors import InputError
+from synth.given import given_design, must_be_a_design
 from synth.jobs import commands as batches
 from synth.terminal import (
     BAD_INPUT,
@@ -34,9 +35,8 @@ from synth.variants import commands as size_ranges
 
 if TYPE_CHECKING:
     from synth.problem import DesignProblem
-    from synth.results import Design, ParetoFront
+    from synth.results import ParetoFront
     from synth.spec import Spec
-    from synth.tables import Catalogs
 
 EXPLAINED = ("parts", "limits", "fix", "grid", "seed", "time_limit")  # what counts when a question is explained
 
@@ -196,6 +196,7 @@ def explain(
     from synth.console import output, print_explanation, progress_display
     from synth.explanation import explain as explain_question
     from synth.instance import catalogs_for
+    from synth.posed import posed
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(time_limit=time_limit)
@@ -203,8 +204,8 @@ def explain(
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        problem = _load(asked.family, asked.options)
-        settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
+        problem = posed(_load(asked.family, asked.options), asked.robust or None, asked.limits)
+        settings = {k: v for k, v in asked.search_settings(robust=True).items() if k in EXPLAINED}
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
     if not quiet:
@@ -230,11 +231,11 @@ def check(
     from synth.spec import read_spec
 
     asked = read_spec(design)
-    _must_be_a_design(asked)
+    must_be_a_design(asked)
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file):
-        problem, catalogs, result = _given_design(asked)
+        problem, catalogs, result = given_design(asked)
         details = describe_problem(problem, catalogs).to_dict("records")
     print_check(result, details, output())
     if folder is not None:
@@ -258,14 +259,14 @@ def simulate(
     from synth.spec import read_spec
 
     asked = read_spec(design)
-    _must_be_a_design(asked)
+    must_be_a_design(asked)
     check_output(folder)
     pairs = [pair("--set", text) for text in setting or []]
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise InputError("--set", name, "each setting once")
     with blamed_on(asked.file):
-        problem, catalogs, result = _given_design(asked)
+        problem, catalogs, result = given_design(asked)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
     files = frame_files(frames)
@@ -299,8 +300,8 @@ def curves(
             catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
             frames = curves_of(problem, asked.requirements, catalogs=catalogs)
         else:
-            _must_be_a_design(asked)
-            problem, catalogs, result = _given_design(asked)
+            must_be_a_design(asked)
+            problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
     files = frame_files(frames)
     write_all(folder, files)
@@ -336,6 +337,7 @@ batches.register(app)
 size_ranges.register(app)
 choice_commands.register(app)
 studies.register(app)
+robust_commands.register(app)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------
@@ -357,51 +359,6 @@ def _must_be_a_question(asked: Spec) -> None:
         )
 
 
-def _must_be_a_design(asked: Spec) -> None:
-    """Refuse a spec of several families, without values, or with something left to fix."""
-    if asked.compares:
-        raise InputError(
-            f"{asked.file}: family", "several", "one family: a design is of one (clutchsynth run compares)"
-        )
-    if asked.values is None:
-        raise InputError(
-            f"{asked.file}: values",
-            None,
-            "the variables, counts and choices of the design (clutchsynth run takes a question)",
-        )
-    if asked.fix:
-        raise InputError(
-            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
-        )
-
-
-def _given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
-    """Load the problem and evaluate the design that a spec with values describes."""
-    from synth.analysis import evaluate
-    from synth.instance import catalogs_for
-
-    problem = _load(asked.family, asked.options)
-    catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-    design = evaluate(
-        problem, asked.requirements, values=asked.values, parts=_one_each(asked),
-        catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
-    )  # fmt: skip
-    return problem, catalogs, design
-
-
-def _one_each(asked: Spec) -> dict[str, str]:
-    """Return the designation per slot; a list of one counts as that one."""
-    result = {}
-    for slot, rule in asked.parts.items():
-        rows = [rule] if isinstance(rule, str) else list(rule)
-        if len(rows) != 1:
-            raise InputError(
-                f"{asked.file}: parts: {slot}", rows, "one designation: a given design has one part in each slot"
-            )
-        result[slot] = rows[0]
-    return result
-
-
 def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
     from synth.console import progress_display
     from synth.instance import catalogs_for
@@ -412,8 +369,9 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         try:
             return synthesize(
-                problem, asked.requirements, catalogs=catalogs, progress=progress, **asked.search_settings()
-            )
+                problem, asked.requirements, catalogs=catalogs, progress=progress,
+                **asked.search_settings(robust=True),
+            )  # fmt: skip
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None
@@ -439,12 +397,16 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
+    if any(design.robust for design in front.designs):
+        from synth.robust_console import print_robust
+
+        print_robust(front, console)
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
     files = sorted(path.name for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
     designs = [name for name in files if name.startswith("design_")]
-    shown = [name for name in files if name not in designs and name in ("designs.csv", "front.json", "explanation.txt")]
+    shown = [name for name in files if name in ("designs.csv", "front.json", "robust.csv", "explanation.txt")]
     if designs:
         shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
     console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)
