@@ -203,7 +203,7 @@ def inward_efficiency(loss: Quantity) -> Quantity:
     return 1 / (1 - loss)
 
 
-@special((0.0, 1.0), (-1.0, 0.0))
+@special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def ramp_gain(ratio: Quantity, ball_friction: Quantity) -> Quantity:
     """Axial over centrifugal force of balls that move out, i eta_out = i/(1 + mu_b (i + sqrt(1 + i**2))).
 

@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+import problems.centrifugal_ball_ramp
 import problems.cone_clutch
 import problems.multi_plate_clutch  # noqa: F401 - fills the table
 from problems.mechanics import startup
