@@ -119,7 +119,7 @@ class MagneticPowderClutch(DesignProblem):
             other_heat=slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
         )
-        copper = coil_block.declare_winding(d, iron, unknowns, ampere_turns, layout.coil_radius, around)
+        copper = coil_block.declare_winding(d, iron, unknowns, ampere_turns, layout.bore, around)
         _declare_size(d, wants, part, coil, layout, rim, copper)
         _declare_remarks(d, wants, coil, part, layout)
         d.objective("coil_power")
@@ -251,10 +251,9 @@ def _declare_circuit(
     rim: Any,
 ) -> Any:
     """Declare the flux densities of the iron and return the ampere-turns that the circuit needs."""
-    outside = powder.yoke_flux_density(
-        iron.leakage_factor, flux_density, layout.pole_length, layout.yoke_ratio, layout.thickness
-    )
-    inside = powder.rotor_flux_density(flux_density, layout.pole_length, rim)
+    line_flux = flux_density * layout.pole_length
+    outside = powder.yoke_flux_density(iron.leakage_factor, line_flux, layout.yoke_ratio, layout.thickness)
+    inside = powder.rotor_flux_density(line_flux, rim)
     densest = np.maximum(outside, inside)
     coil_block.declare_saturation(d, iron, densest)
     d.at_most(

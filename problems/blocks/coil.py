@@ -139,7 +139,7 @@ def declare_winding(
     wants: CoilRequirements,
     unknowns: CoilUnknowns,
     ampere_turns: Any,
-    mean_radius: Any,
+    bore_radius: Any,
     around: Surroundings,
 ) -> Any:
     """Declare winding, current, voltage, temperature and power of the coil with their limits.
@@ -154,8 +154,8 @@ def declare_winding(
         Window and wire.
     ampere_turns : symbol
         What the circuit needs [A].
-    mean_radius : symbol
-        Of the coil [m].
+    bore_radius : symbol
+        Inside of the coil [m].
     around : Surroundings
         What heats and cools the body.
 
@@ -166,9 +166,12 @@ def declare_winding(
     """
     wire = unknowns.wire
     needs = "iron_saturation"
+    window = unknowns.length * unknowns.height
+    # Of one row of the table alone, so that it is known per wire.
+    copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
     turns = d.derive(
         "turns", "-",
-        magnetics.turns(wants.winding_factor, unknowns.length * unknowns.height, wire.overall_diameter),
+        magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
         symbol="N_t", text="Turns of the coil, a real number", source=f"{S4} [P6]",
     )  # fmt: skip
     ampere_turns = d.derive(
@@ -180,10 +183,10 @@ def declare_winding(
         text="Current of the coil", source=f"{S4} [P6]",
     )  # fmt: skip
     density = d.derive(
-        "current_density", "A/mm2", current / wire.copper_area, symbol="J_c", needs=needs,
+        "current_density", "A/mm2", ampere_turns / (copper_share * window), symbol="J_c", needs=needs,
         text="Current per copper area", source=f"{S4} [P6]",
     )  # fmt: skip
-    cold = magnetics.cold_copper_loss(ampere_turns, density, mean_radius)
+    cold = magnetics.cold_copper_loss(ampere_turns, bore_radius, unknowns.height, unknowns.length, copper_share)
     runaway = magnetics.runaway_loss(around.heat_transfer, around.surface)
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
     brushes = around.brush_drop * current
@@ -199,7 +202,7 @@ def declare_winding(
         text="Coil and body over ambient, steady", source=f"{S4} [P7]",
     )  # fmt: skip
     # R20 I with the turns cancelled, so that bounds use the ampere-turns once.
-    cold_voltage = magnetics.coil_resistance(mean_radius, 1.0, wire.copper_area) * ampere_turns
+    cold_voltage = magnetics.coil_resistance(bore_radius + unknowns.height / 2, 1.0, wire.copper_area) * ampere_turns
     voltage = d.derive(
         "coil_voltage", "V",
         cold_voltage * (ratio + magnetics.COPPER_COEFFICIENT * rise) + around.brush_drop,
@@ -231,4 +234,4 @@ def declare_winding(
         "turns", turns, 1.0, "-",
         text="The window holds the wire at least once", source=f"{S4}, section 9",
     )  # fmt: skip
-    return turns * wire.copper_area
+    return copper_share * window

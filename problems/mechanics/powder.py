@@ -141,11 +141,7 @@ def torque(stress: Quantity, gap_radius: Quantity, pole_length: Quantity) -> Qua
 
 
 def yoke_flux_density(
-    leakage_factor: Quantity,
-    flux_density: Quantity,
-    pole_length: Quantity,
-    radius_ratio: Quantity,
-    thickness: Quantity,
+    leakage_factor: Quantity, line_flux: Quantity, radius_ratio: Quantity, thickness: Quantity
 ) -> Quantity:
     """Flux density of the yoke outside the coil, leak B A_p/(2 pi r t) = leak B l_p/(t r/r_g).
 
@@ -153,10 +149,8 @@ def yoke_flux_density(
     ----------
     leakage_factor : scalar, array or symbol
         Flux of the yoke over flux of the working gap [-].
-    flux_density : scalar, array or symbol
-        B in the working gap [T].
-    pole_length : scalar, array or symbol
-        l_p [m].
+    line_flux : scalar, array or symbol
+        Flux per circumference of the gap, B l_p [T m].
     radius_ratio : scalar, array or symbol
         Mean radius of the yoke over that of the gap, r/r_g [-].
     thickness : scalar, array or symbol
@@ -175,10 +169,10 @@ def yoke_flux_density(
     --------
     By hand, 1.15 x 0.6 x 0.02/(0.008 x 1.4):
 
-    >>> round(float(yoke_flux_density(1.15, 0.6, 0.02, 1.4, 0.008)), 3)
+    >>> round(float(yoke_flux_density(1.15, 0.6 * 0.02, 1.4, 0.008)), 3)
     1.232
     """
-    return leakage_factor * flux_density * pole_length / (thickness * radius_ratio)
+    return leakage_factor * line_flux / (thickness * radius_ratio)
 
 
 @special((0.0, 1.0), (0.0, 1.0), curvature="log-concave")
@@ -214,15 +208,13 @@ def rim_section_width(outer_radius: Quantity, thickness: Quantity) -> Quantity:
     return depth * (1 - depth / (2 * outer_radius))
 
 
-def rotor_flux_density(flux_density: Quantity, pole_length: Quantity, section_width: Quantity) -> Quantity:
+def rotor_flux_density(line_flux: Quantity, section_width: Quantity) -> Quantity:
     """Flux density in the rim of the rotor, B A_p/[pi (r_g**2 - (r_g - t)**2)].
 
     Parameters
     ----------
-    flux_density : scalar, array or symbol
-        B in the working gap [T].
-    pole_length : scalar, array or symbol
-        l_p [m].
+    line_flux : scalar, array or symbol
+        Flux per circumference of the gap, B l_p [T m].
     section_width : scalar, array or symbol
         Of :func:`rim_section_width` [m].
 
@@ -237,10 +229,10 @@ def rotor_flux_density(flux_density: Quantity, pole_length: Quantity, section_wi
 
     Examples
     --------
-    >>> round(float(rotor_flux_density(0.6, 0.02, 9.375e-3)), 3)
+    >>> round(float(rotor_flux_density(0.6 * 0.02, 9.375e-3)), 3)
     1.28
     """
-    return flux_density * pole_length / section_width
+    return line_flux / section_width
 
 
 def powder_mass(
@@ -345,7 +337,7 @@ def rotor_mass(
     By hand, 7850 pi ((0.08**2 - 0.07**2) 0.07 + 0.07**2 x 0.008):
 
     >>> round(float(rotor_mass(7850, 0.08, 9.375e-3, 0.07, 0.008)), 4)
-    3.5561
+    3.5562
     """
     # The web is a full disc and the rim as much shorter, so that the section stands here once.
     rim = 2 * section_width * (length - web_thickness)
