@@ -166,11 +166,11 @@ def _declare_requirements(d: Declaration) -> Wants:
             text="Torque at full current over required_torque", source=f"{S4}, section 6.1",
         ),
         driver_speed=d.requirement(
-            "driver_speed", "1/min", 1432.3944878, lower=1, upper=60000, symbol="omega_in",
-            text=f"Speed of the driving side ({TYPICAL}, 150 rad/s); cools a rotating coil", source=f"{S4}, section 6.1",
+            "driver_speed", "1/min", 1432.39, lower=1, upper=60000, symbol="omega_in",
+            text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil", source=f"{S4}, section 6.1",
         ),
         slip_speed=d.requirement(
-            "slip_speed", "1/min", 9.5492965855, lower=0, upper=60000, symbol="omega_slip",
+            "slip_speed", "1/min", 9.549, lower=0, upper=60000, symbol="omega_slip",
             text=f"Continuous slip ({TYPICAL}, 1 rad/s)", source=f"{S4} [P9]",
         ),
         ambient_temperature=d.requirement(

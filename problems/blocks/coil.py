@@ -196,8 +196,9 @@ def declare_winding(
         text="A hotter coil has more resistance; at 1 it heats up without end under constant current",
         source=f"{S4} [P7]",
     )  # fmt: skip
+    resistance_rise = magnetics.resistance_rise(cold, runaway, ratio, heat)
     rise = d.derive(
-        "coil_temperature_rise", "K", magnetics.coil_temperature_rise(cold, runaway, ratio, heat),
+        "coil_temperature_rise", "K", resistance_rise / magnetics.COPPER_COEFFICIENT,
         symbol="dT_c", needs=(needs, "thermal_stability"),
         text="Coil and body over ambient, steady", source=f"{S4} [P7]",
     )  # fmt: skip
@@ -205,7 +206,7 @@ def declare_winding(
     cold_voltage = magnetics.coil_resistance(bore_radius + unknowns.height / 2, 1.0, wire.copper_area) * ampere_turns
     voltage = d.derive(
         "coil_voltage", "V",
-        cold_voltage * (ratio + magnetics.COPPER_COEFFICIENT * rise) + around.brush_drop,
+        cold_voltage * (ratio + resistance_rise) + around.brush_drop,
         symbol="U", needs=(needs, "thermal_stability"),
         text="Voltage of the hot coil, with brushes where there are any", source=f"{S4} [P8]",
     )  # fmt: skip

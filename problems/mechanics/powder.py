@@ -5,8 +5,8 @@ twice, under two cylindrical pole faces. Every function takes floats, arrays or 
 
 Sources: equation numbers [P..] are those of the notes on centrifugal clutches (S4), section 3.5. The shear curve of
 the powder is an unverified engineering calibration: its form follows Chen, Tian et al., Smart Mater. Struct. 22 (2013)
-115036 (rises with the field, independent of the slip speed), its figures are chosen so that the powder volume of S4 gives
-about 75 N m at 80 mm.
+115036 (rises with the field, independent of the slip speed), its figures are chosen so that the powder volume of S4
+gives about 75 N m at 80 mm.
 """
 
 from __future__ import annotations
