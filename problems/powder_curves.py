@@ -250,13 +250,12 @@ def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], des
         "constant voltage [N*m]": body.torque(body.flux_density(current * value["turns"])),
         "constant current [N*m]": np.full_like(temperature, value["torque"]),
         "constant voltage [A]": current,
-        "constant current [A]": np.full_like(temperature, value["current"]),
     })  # fmt: skip
     frame.attrs = {
         "title": f"{problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
         "panels": [
             {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
-            {"label": "current [A]", "columns": ["constant voltage [A]", "constant current [A]"]},
+            {"label": "current [A]", "columns": ["constant voltage [A]"]},
         ],
         "marks": [
             {"x": heat.ambient + value["coil_temperature_rise"] - ZERO_CELSIUS, "label": "steady"},

@@ -91,6 +91,34 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
     return iron_reluctance * flux_density / (1 - flux_density / iron_saturation)
 
 
+@special((0.0, 1.0), (0.0, 1.0), curvature="log-convex")
+def densest(first: Quantity, second: Quantity) -> Quantity:
+    """Return the larger of two flux densities, the one that governs the iron path.
+
+    One section is denser nearly everywhere, so that the search need not look at both pieces: hence one node.
+
+    Parameters
+    ----------
+    first, second : scalar, array or symbol
+        B of two sections [T].
+
+    Returns
+    -------
+    scalar, array or symbol
+        B [T].
+
+    References
+    ----------
+    S4 [P4], max(H(B_out), H(B_in)).
+
+    Examples
+    --------
+    >>> float(densest(1.2, 1.3))
+    1.3
+    """
+    return np.maximum(first, second)
+
+
 def pole_force(flux_density: Quantity, area: Quantity) -> Quantity:
     """Pull of a pole face across an air gap, B**2 A/(2 mu0).
 

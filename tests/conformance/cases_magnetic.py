@@ -50,11 +50,17 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                     requirements={**WINDER, "outer_diameter_limit": "280 mm"},
                     settings={
                         "parts": {
-                            "powder": ["carbonyl_graphite", "carbonyl_glass"],
+                            "powder": ["carbonyl_graphite"],
                             "winding_wire": ["Cu 0.5 class 155", "Cu 1.25 class 155"],
                         },
-                        "fix": {"powder_gap": "1.25 mm", "coil_height": "24 mm", "yoke_thickness": "14 mm"},
-                        "limits": {"coil_length": "40 mm .. 70 mm"},
+                        "fix": {
+                            "powder_gap": "1.25 mm",
+                            "coil_height": "24 mm",
+                            "coil_length": "50 mm",
+                            "pole_length": "25 mm",
+                            "yoke_thickness": "14 mm",
+                        },
+                        "limits": {"gap_radius": "60 mm .. 90 mm"},
                     },
                     tighten={
                         "required_torque": "32 N*m",

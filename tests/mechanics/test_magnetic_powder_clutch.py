@@ -263,7 +263,7 @@ def test_a_gap_that_the_powder_is_not_made_for():
     ("torque", "power", "mass", "values"),
     [
         (7.5, 14, 5, {"gap_radius": "46 mm", "pole_length": "10 mm", "coil_length": "30 mm"}),
-        (75.9, 35, 17, {"gap_radius": "92 mm", "pole_length": "29 mm", "coil_length": "34 mm"}),
+        (75.9, 35, 17, {"gap_radius": "92 mm", "pole_length": "26 mm", "coil_length": "34 mm"}),
     ],
 )
 def test_orders_of_magnitude_of_a_catalogue(torque, power, mass, values):
