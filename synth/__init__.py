@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     from synth.hooks import curves, second_opinion, simulate
     from synth.jobs.run import BatchResult, batch
     from synth.near import NearEquals, near_equals
+    from synth.price_list import Price, Prices
+    from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
+    from synth.robust import Ratings, rate
     from synth.search import synthesize
     from synth.study import Study
     from synth.variants.run import SizeRange, size_range
@@ -36,6 +39,9 @@ __all__ = [
     "InputError",
     "NearEquals",
     "ParetoFront",
+    "Price",
+    "Prices",
+    "Ratings",
     "Relaxation",
     "SizeRange",
     "Study",
@@ -49,6 +55,8 @@ __all__ = [
     "load",
     "load_front",
     "near_equals",
+    "prices",
+    "rate",
     "second_opinion",
     "simulate",
     "size_range",
@@ -66,6 +74,9 @@ _HOME = {
     "FamilyOutcome": "synth.comparison",
     "NearEquals": "synth.near",
     "ParetoFront": "synth.results",
+    "Price": "synth.price_list",
+    "Prices": "synth.price_list",
+    "Ratings": "synth.robust",
     "Relaxation": "synth.explanation",
     "SizeRange": "synth.variants.run",
     "Study": "synth.study",
@@ -79,6 +90,8 @@ _HOME = {
     "load": "synth.problem",
     "load_front": "synth.results",
     "near_equals": "synth.near",
+    "prices": "synth.pricing",
+    "rate": "synth.robust",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
     "size_range": "synth.variants.run",

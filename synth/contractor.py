@@ -13,7 +13,7 @@ here, the C in :mod:`synth.native_boxes`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
@@ -99,7 +99,6 @@ class Hold:
     """A node is held within what limits tell of it over the whole question, if they tell more than its arguments."""
 
     node: int
-    narrowed: bool
 
 
 @dataclass(frozen=True)
@@ -140,16 +139,24 @@ class Sweeps:
 
 @dataclass
 class Code:
-    """The generated function of one sign pattern.
+    """The generated code of one sign pattern.
 
-    ``compiled`` is the same in machine code, if there is any; ``hopeless``: there will be none.
+    ``compiled`` is machine code, if there is any; ``hopeless``: there will be none.
     """
 
     contractor: Contractor
     sweeps: Sweeps
-    function: Callable[..., Any]
     compiled: Any = None
     hopeless: bool = False
+    _functions: dict[bytes, Callable[..., Any]] = field(default_factory=dict)
+
+    def function(self, root: Root) -> Callable[..., Any]:
+        """Return the code as a Python function; it holds those nodes alone of which the root tells more."""
+        key = root.narrowed.tobytes()
+        if key not in self._functions:
+            text = python_text(self.sweeps, root.narrowed)
+            self._functions[key] = python_function(text, self.contractor.program)
+        return self._functions[key]
 
 
 class Contractor:
@@ -185,7 +192,7 @@ class Contractor:
         self.inner = [k for k in self.order if self.kind[k] == INNER]
         self.tabulate = program.compile(self.tables)
         self.constant_values = program.compile(self.constants)
-        self._codes: dict[str, Code] = {}
+        self._codes: dict[object, Code] = {}
 
     def _kinds(self) -> tuple[list[int], list[int]]:
         """Return, per node, what it is and (for tables) of which factor."""
@@ -306,12 +313,13 @@ class Contractor:
     # -- the code ------------------------------------------------------------------------------
 
     def code(self, root: Root, capped: bool) -> Code:
-        """Return the generated code for the signs that hold over the question; compiled once per text."""
-        writer = _Writer(self, root, capped)
-        text = python_text(writer.sweeps)
-        if text not in self._codes:
-            self._codes[text] = Code(self, writer.sweeps, python_function(text, self.program))
-        return self._codes[text]
+        """Return the generated code for the signs that hold over the question; written once per sign pattern."""
+        sides = [(k, c.scale) for c in self.cuts for k in (c.value, c.limit) if k is not None]
+        large = tuple(bool(root.low[k] > scale) for k, scale in sides)
+        key = (capped, (root.low > 0).tobytes(), (root.low >= 0).tobytes(), large)
+        if key not in self._codes:
+            self._codes[key] = Code(self, _Writer(self, root, capped).sweeps)
+        return self._codes[key]
 
 
 def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interval:
@@ -399,7 +407,7 @@ class _Writer:
         self._set(f"l{k}", low)
         self._set(f"h{k}", high)
         if not later:
-            self.out.append(Hold(k, bool(self.root.narrowed[k])))
+            self.out.append(Hold(k))
 
     def _natural(self, k: int, later: bool) -> tuple[str, str]:
         """Return the code of both ends.
@@ -591,20 +599,21 @@ class _Writer:
             self._set(f"l{a}", f"choose({before}, m, l{a})")
 
 
-def python_text(sweeps: Sweeps) -> str:
+def python_text(sweeps: Sweeps, narrowed: np.ndarray) -> str:
     """Return the code of ``contract(V, L, K, B, C, RL, RH, passes, n) -> (dead, goals, open)``.
 
     V: ends of the variables (tightened in place), L: ends of tables, K: constants, B: constant right
-    sides, C: caps of the goals, RL and RH: what holds over the whole question.
+    sides, C: caps of the goals, RL and RH: what holds over the whole question. Only nodes that are
+    ``narrowed`` are held within it.
     """
     out = ["def contract(V, L, K, B, C, RL, RH, passes, n):"]
     out += [f"    l{k} = h{k} = K[{i}]" for i, k in enumerate(sweeps.constants)]
     out += [f"    l{k}, h{k} = L[{i}]" for i, k in enumerate(sweeps.tables)]
     out += [f"    l{k}, h{k} = V[{i}]" for k, i in sweeps.variables]
     out.append("    dead = np.zeros(n, dtype=bool)")
-    out += [f"    {line}" for statement in sweeps.first for line in _in_python(statement)]
+    out += [f"    {line}" for statement in sweeps.first for line in _in_python(statement, narrowed)]
     out.append("    for _ in range(1, passes):")
-    out += [f"        {line}" for statement in sweeps.later for line in _in_python(statement)]
+    out += [f"        {line}" for statement in sweeps.later for line in _in_python(statement, narrowed)]
     out.append("        pass")
     out += [f"    V[{i}] = l{k}, h{k}" for k, i in sweeps.variables]
     opens = ", ".join(f"o{j}" for j in range(sweeps.limits))
@@ -612,14 +621,14 @@ def python_text(sweeps: Sweeps) -> str:
     return "\n".join(out)
 
 
-def _in_python(statement: Statement) -> list[str]:
+def _in_python(statement: Statement, narrowed: np.ndarray) -> list[str]:
     if isinstance(statement, Assign):
         return [f"{statement.target} = {statement.value}"]
     if isinstance(statement, Kill):
         return [f"dead |= {statement.condition}"]
     if isinstance(statement, Enclose):
         return [f"s, t = {statement.function}({', '.join(f'(l{a}, h{a})' for a in statement.args)})"]
-    if isinstance(statement, Hold) and statement.narrowed:
+    if isinstance(statement, Hold) and narrowed[statement.node]:
         k = statement.node
         return [f"l{k} = v_fmax(l{k}, RL[{k}])", f"h{k} = v_fmin(h{k}, RH[{k}])"]
     if isinstance(statement, Narrow):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import math
 import re
@@ -280,6 +281,25 @@ class Instance:
         """Return the options that are not at their default: what a refusal without requirements speaks of."""
         options = self.model.declaration.options.values()
         return ", ".join(f"{o.name} = {o.chosen}" for o in options if o.chosen != o.default)
+
+    def moved(self, name: str, value: float) -> Instance:
+        """Return this question with another value of a requirement, and of those whose default is made of it.
+
+        The combinations keep their numbers; some may be refused there that are not here.
+
+        Raises
+        ------
+        InputError
+            When the requirement cannot have that value.
+        """
+        other, declared = copy.copy(self), self.model.declaration.requirements
+        values = {n: self.requirements[n] for n in self.given} | {name: value}
+        other.requirements = other._requirement_values(
+            {n: format_quantity(v, declared[n].unit, None) for n, v in values.items()}
+        )
+        other.given = self.given | {name}
+        other._refuse_requirements()
+        return other
 
     # -- limits and fix ------------------------------------------------------------------------
 

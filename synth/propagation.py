@@ -267,37 +267,37 @@ class Propagation:
             inputs += [np.broadcast_to(np.asarray(v, dtype=float), (SAMPLES,)) for v in at_pivots(inputs)]
         moving += range(len(inputs) - len(self.pivots), len(inputs))
         result = np.zeros((len(self.cuts) + len(self.goals), len(inputs)))
+        scales = np.ones(len(moving))
+        # The points as they are, and with one input after the other a little larger: all in one evaluation.
+        moved = [np.tile(x, (1 + len(moving), 1)) for x in inputs]
+        for row, i in enumerate(moving):
+            step = inputs[i] * STEP if np.all(inputs[i] > 0) else np.full(SAMPLES, STEP * np.ptp(inputs[i]))
+            # Variables are measured as widths() does, columns as clusters do.
+            scales[row] = STEP if np.all(inputs[i] > 0) or i < n else step[0]
+            moved[i][1 + row] += step
         with np.errstate(all="ignore"):
-            before = self._sizes(evaluate(inputs))
-            goals = [np.abs(np.asarray(v, dtype=float)) for v in evaluate(inputs)[len(nodes) - len(self.goals) :]]
-            sizes = [np.median(v[np.isfinite(v) & (v > 0)]) if np.any(np.isfinite(v) & (v > 0)) else 1.0 for v in goals]
-            self.goal_sizes = np.array(sizes)
-            for i in moving:
-                step = inputs[i] * STEP if np.all(inputs[i] > 0) else STEP * np.ptp(inputs[i])
-                # Variables are measured as widths() does, columns as clusters do.
-                scale = STEP if np.all(inputs[i] > 0) or i < n else step
-                if np.all(step == 0):
-                    continue
-                after = self._sizes(evaluate([*inputs[:i], inputs[i] + step, *inputs[i + 1 :]]))
-                for j, (a, b) in enumerate(zip(before, after, strict=True)):
-                    steep = np.abs(b - a) / scale
-                    steep = steep[np.isfinite(steep)]
-                    result[j, i] = min(float(np.median(steep)), LARGEST_INFLUENCE) if len(steep) else 0.0
+            values = [np.broadcast_to(np.asarray(v, dtype=float), moved[0].shape) for v in evaluate(moved)]
+            goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]])
+            sizes = _medians(np.where(goals > 0, goals, np.nan))
+            self.goal_sizes = np.where(sizes > 0, sizes, 1.0)
+            for j, size in enumerate(self._sizes(values)):
+                steep = _medians(np.abs(size[1:] - size[0]) / scales[:, None])
+                result[j, moving] = np.minimum(steep, LARGEST_INFLUENCE)
         return result
 
-    def _sizes(self, values: Sequence[Any]) -> list[np.ndarray]:
+    def _sizes(self, values: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Return limits as log(value/limit) and objectives as logarithms, or as scaled differences."""
-        sides = iter([np.broadcast_to(np.asarray(v, dtype=float), (SAMPLES,)) for v in values])
+        sides = iter(values)
         result = []
         for cut in self.cuts:
             value = next(sides)
-            limit = np.full(SAMPLES, cut.bound) if cut.limit is None else next(sides)
+            limit = np.full(value.shape, cut.bound) if cut.limit is None else next(sides)
             size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
             result.append(np.where((value > 0) & (limit > 0), np.log(value / limit), (value - limit) / size))
         for _ in self.goals:
             value = next(sides)
-            size = np.nanmedian(np.abs(value)) if np.isfinite(value).any() else 1.0
-            result.append(np.where(value > 0, np.log(value), value / (size or 1.0)))
+            size = _medians(np.abs(value))[:, None]
+            result.append(np.where(value > 0, np.log(value), value / np.where(size > 0, size, 1.0)))
         return result
 
     def surely_positive(self, node: int) -> bool:
@@ -334,7 +334,7 @@ class Propagation:
             Whether objectives that only settle ties count.
         """
         count = len(cell)
-        function = self._code(every, caps is not None).function
+        function = self._code(every, caps is not None).function(self._roots[every])
         variables = [(low[:, i], high[:, i]) for i in range(self.width)]
         tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
         root = self._roots[every]
@@ -390,11 +390,16 @@ class Propagation:
             self._prepared[every] = Prepared(self._contractors[every], self._question(every, margins))
         return code.contract(self._prepared[every], cell, low, high, bounds, tag, caps, self.weights, passes, workers)
 
+    @property
+    def compiled_at_once(self) -> bool:
+        """Tell whether code for capped boxes is compiled from the first: by the question alone."""
+        return self._compiled and self.instance.combinations * self._alike >= COMPILED_FROM
+
     def _to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
-        """Tell whether code is to be compiled for so many boxes more: by the question alone, see ``COMPILED_FROM``."""
+        """Tell whether code is to be compiled for so many boxes more."""
         self._contracted[every, capped] += boxes
-        large = self.instance.combinations * self._alike >= COMPILED_FROM and capped and not every
-        return self._compiled and (large or self._contracted[every, capped] > COMPILE_AFTER)
+        many = self._compiled and self._contracted[every, capped] > COMPILE_AFTER
+        return many or (self.compiled_at_once and capped and not every)
 
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
         instance = self.instance
@@ -486,3 +491,13 @@ class Propagation:
         with np.errstate(all="ignore"):
             result: np.ndarray = np.where(self.positive, np.log(high / low), (high - low) / self._range)
         return result
+
+
+def _medians(values: np.ndarray) -> np.ndarray:
+    """Return the median of what is finite in each row, 0 where nothing is."""
+    ordered = np.sort(np.where(np.isfinite(values), values, np.nan), axis=-1)
+    count = np.isfinite(ordered).sum(axis=-1, keepdims=True)
+    middle = [np.take_along_axis(ordered, np.maximum(k, 0), axis=-1) for k in ((count - 1) // 2, count // 2)]
+    with np.errstate(all="ignore"):
+        result: np.ndarray = np.where(count > 0, 0.5 * (middle[0] + middle[1]), 0.0)[..., 0]
+    return result

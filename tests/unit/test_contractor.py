@@ -83,7 +83,7 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
         tables.append((np.fmax(least[cell[:, f], 0], root.low[k]), np.fmin(most[cell[:, f], 0], root.high[k])))
     variables = [(low[:, i].copy(), high[:, i].copy()) for i in range(n)]
     count = len(low)
-    function = contractor.code(root, caps is not None).function
+    function = contractor.code(root, caps is not None).function(root)
     with np.errstate(all="ignore"):
         dead, goals, opens = function(variables, tables, constants, right, caps, root.low, root.high, passes, count)
     return Contracted(

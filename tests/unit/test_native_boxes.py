@@ -106,7 +106,7 @@ class Case:
             tables = [(x[self.cell[b, f]][None], y[self.cell[b, f]][None]) for f, x, y in self.tables]
             caps = [self.caps[b : b + 1, j] for j in range(len(self.goals))] if capped else None
             with np.errstate(all="ignore"):
-                dead, least, flags = code.function(
+                dead, least, flags = code.function(self.root)(
                     ends, tables, self.constants, self.bounds, caps, self.root.low, self.root.high, passes, 1
                 )
             alive[b] = not dead[0]

@@ -1,0 +1,837 @@
+"""Centrifugal clutches: what ball ramps, levers, spring sets, linings and envelopes have in common.
+
+Every function takes floats, arrays or CasADi symbols. Masses, rates and preloads are those of all flyweights and of all
+springs of a set together. The transmission i is radial travel over axial travel, dr/dx: the tangent of the ramp angle
+measured from the shaft axis, or the ratio of two lever arms.
+
+Sources: S4 (notes on centrifugal clutches); friction at the balls, limits and sizes are extensions of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from problems.mechanics import Quantity
+
+STANDARD_GRAVITY = 9.80665  # m/s2
+
+
+# -- flyweights -------------------------------------------------------------------------------------
+
+
+def centrifugal_force(mass: Quantity, radius: Quantity, speed: Quantity) -> Quantity:
+    """Centrifugal force of all flyweights together, F_C = m r omega**2.
+
+    Parameters
+    ----------
+    mass : scalar, array or symbol
+        Total mass of the flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+    speed : scalar, array or symbol
+        Speed of the flyweight carrier omega [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_C [N].
+
+    References
+    ----------
+    S4 (notes on centrifugal clutches), the force on the balls.
+
+    Examples
+    --------
+    S4, practice 3 (1 kg at 152 mm, 62.8281 rad/s; 600 N):
+
+    >>> centrifugal_force(1.0, 0.152, 62.8281)
+    600.00
+    """
+    return mass * radius * speed**2
+
+
+def orbit_radius(rest_radius: Quantity, ratio: Quantity, travel: Quantity) -> Quantity:
+    """Radius of the flyweights after some travel, r = r0 + i x.
+
+    Parameters
+    ----------
+    rest_radius : scalar, array or symbol
+        Radius of the flyweight centres at rest r0 [m].
+    ratio : scalar, array or symbol
+        Transmission i = dr/dx [-].
+    travel : scalar, array or symbol
+        Axial travel x [m]; for a lever with i as its arm the angle [rad].
+
+    Returns
+    -------
+    scalar, array or symbol
+        r [m].
+
+    References
+    ----------
+    S4, analysis 1, eq. (5) and (8): x = (r - r0)/tan(alpha).
+
+    Examples
+    --------
+    S4, practice 1 (contact after 11.5 mm on a ramp with tan 60 degrees), computed here in mm:
+
+    >>> 1000 * orbit_radius(0.18, 3**0.5, 0.0115)
+    199.919
+    """
+    return rest_radius + ratio * travel
+
+
+def ramp_angle(ratio: Quantity) -> Quantity:
+    """Angle of a ramp from the shaft axis, alpha = arctan(i).
+
+    Parameters
+    ----------
+    ratio : scalar, array or symbol
+        Transmission of the ramp i = dr/dx [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        alpha [rad], measured from the shaft axis.
+
+    References
+    ----------
+    S4, analysis 1: tan(alpha) = (r - r0)/x.
+
+    Examples
+    --------
+    60 degrees, as in S4, practice 1:
+
+    >>> float(np.degrees(ramp_angle(3**0.5)))
+    60.000
+    """
+    return np.arctan(ratio)
+
+
+def contact_loss(ball_friction: Quantity, ratio: Quantity) -> Quantity:
+    """Share that friction at the balls takes, c_b = mu_b (i + sqrt(1 + i**2)).
+
+    Parameters
+    ----------
+    ball_friction : scalar, array or symbol
+        Friction at the contacts of a ball mu_b [-].
+    ratio : scalar, array or symbol
+        Transmission of the ramp i [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        c_b [-].
+
+    Notes
+    -----
+    A ball between ramp and plate cannot roll on both. At the speed v along the ramp it slips with v (1 + sin(alpha))
+    wherever it slips, and does so at the plate, where the normal force F is the smaller one (F/sin(alpha) at the ramp).
+    Power going out: F_C v sin(alpha) = F v cos(alpha) + mu_b F v (1 + sin(alpha)); divided by F v cos(alpha),
+    F_C i/F = 1 + mu_b (1 + sin(alpha))/cos(alpha) = 1 + c_b.
+
+    References
+    ----------
+    Derived; not in S4, which has no friction at the balls.
+
+    Examples
+    --------
+    Computed here, a ramp of 45 degrees: 0.03 (1 + 1.41421):
+
+    >>> float(contact_loss(0.03, 1.0))
+    0.072426
+    """
+    return ball_friction * (ratio + np.sqrt(1 + ratio**2))
+
+
+def outward_efficiency(loss: Quantity) -> Quantity:
+    """Axial force over F_C i while the balls move out, eta_out = 1/(1 + c_b).
+
+    Parameters
+    ----------
+    loss : scalar, array or symbol
+        Share of the friction at the contacts c_b [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        eta_out [-].
+
+    References
+    ----------
+    Derived; not in S4.
+
+    Examples
+    --------
+    Computed here, mu_b = 0.03 on a ramp of 45 degrees:
+
+    >>> float(outward_efficiency(contact_loss(0.03, 1.0)))
+    0.932465
+    """
+    return 1 / (1 + loss)
+
+
+def inward_efficiency(loss: Quantity) -> Quantity:
+    """Axial force over F_C i while the balls move in, eta_in = 1/(1 - c_b).
+
+    Parameters
+    ----------
+    loss : scalar, array or symbol
+        Share of the friction at the contacts c_b [-], below 1.
+
+    Returns
+    -------
+    scalar, array or symbol
+        eta_in [-].
+
+    Notes
+    -----
+    From c_b = 1 on the balls do not come back by themselves: the ramp locks.
+
+    References
+    ----------
+    Derived; not in S4.
+
+    Examples
+    --------
+    Computed here, mu_b = 0.03 on a ramp of 45 degrees:
+
+    >>> float(inward_efficiency(contact_loss(0.03, 1.0)))
+    1.078082
+    """
+    return 1 / (1 - loss)
+
+
+def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quantity = 1.0) -> Quantity:
+    """Axial force that the flyweights exert, F = F_C i eta.
+
+    Parameters
+    ----------
+    centrifugal_force : scalar, array or symbol
+        F_C [N].
+    ratio : scalar, array or symbol
+        Transmission i = dr/dx [-].
+    efficiency : scalar, array or symbol, optional
+        Axial force over F_C i: eta_out going out, eta_in coming in [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F [N].
+
+    References
+    ----------
+    S4, analysis 1, eq. (4) and (11), there without friction; virtual work F_C dr = F dx.
+
+    Examples
+    --------
+    S4, practice 1 (48.5 N at contact on tan 60 degrees; 84 N):
+
+    >>> axial_force(48.4974, 3**0.5)
+    84.000
+    """
+    return centrifugal_force * ratio * efficiency
+
+
+def speed_for_force(
+    force: Quantity, mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0
+) -> Quantity:
+    """Speed at which the flyweights exert a force, omega = sqrt(F/(m i eta r)).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Axial force F [N].
+    mass : scalar, array or symbol
+        Total mass of the flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+    ratio : scalar, array or symbol, optional
+        Transmission i = dr/dx [-]; 1 for a force at the flyweights themselves.
+    efficiency : scalar, array or symbol, optional
+        Axial force over F_C i [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        omega [rad/s].
+
+    Notes
+    -----
+    The closed form for every border of a regime: force and radius are known there, the speed follows. The explicit
+    forms x(omega) of S4 are singular where the flyweights snap and are not needed.
+
+    References
+    ----------
+    S4, analysis 1, eq. (4), solved for omega.
+
+    Examples
+    --------
+    S4, practice 1 (84 N at 199.919 mm, 1 kg, tan 60 degrees; 15.5752 rad/s):
+
+    >>> float(speed_for_force(84.0, 1.0, 0.199919, 3**0.5))
+    15.5752
+    """
+    return np.sqrt(force / (mass * ratio * efficiency * radius))
+
+
+def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Quantity:
+    """Mass of all balls, n_b rho_b pi d_b**3/6.
+
+    Parameters
+    ----------
+    count : scalar, array or symbol
+        Number of balls n_b [-].
+    density : scalar, array or symbol
+        Density rho_b [kg/m3].
+    diameter : scalar, array or symbol
+        Diameter d_b [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        m [kg].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Computed here, eight steel balls of 20 mm, 8 x 32.8 g:
+
+    >>> ball_set_mass(8, 7830, 0.020)
+    0.26239
+    """
+    return count * density * np.pi * diameter**3 / 6
+
+
+def weight_thickness(mass: Quantity, count: Quantity, density: Quantity, width: Quantity) -> Quantity:
+    """Side of a square weight, t_w = sqrt(m/(n_w rho b_w)).
+
+    Parameters
+    ----------
+    mass : scalar, array or symbol
+        Mass of all weights m [kg].
+    count : scalar, array or symbol
+        Number of weights n_w [-].
+    density : scalar, array or symbol
+        Density of the weights rho [kg/m3].
+    width : scalar, array or symbol
+        Axial width of a weight b_w [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_w [m].
+
+    References
+    ----------
+    Geometry: a bar of square section t_w x t_w and length b_w.
+
+    Examples
+    --------
+    Computed here, three weights of 1 kg together, steel, 30 mm wide:
+
+    >>> float(1000 * weight_thickness(1.0, 3, 7850, 0.030))
+    37.622
+    """
+    return np.sqrt(mass / (count * density * width))
+
+
+def gravity_ratio(rest_radius: Quantity, start_speed: Quantity) -> Quantity:
+    """Centrifugal acceleration over gravity where the flyweights start, r0 omega**2/g.
+
+    Parameters
+    ----------
+    rest_radius : scalar, array or symbol
+        Radius of the flyweight centres at rest r0 [m].
+    start_speed : scalar, array or symbol
+        Speed at which the flyweights leave their rest [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Centrifugal acceleration over that of gravity [-].
+
+    References
+    ----------
+    Derived; not in S4. Below about 10 the flyweights move once per turn, up and down.
+
+    Examples
+    --------
+    S4, practice 1 (180 mm, 12.6639 rad/s): 2.9, so that the exercise is no real clutch:
+
+    >>> gravity_ratio(0.18, 12.6639)
+    2.94
+    """
+    return rest_radius * start_speed**2 / STANDARD_GRAVITY
+
+
+# -- springs ----------------------------------------------------------------------------------------
+
+
+def set_rate(count: Quantity, rate: Quantity) -> Quantity:
+    """Rate of a spring set, s = N k.
+
+    Parameters
+    ----------
+    count : scalar, array or symbol
+        Number of springs side by side N [-].
+    rate : scalar, array or symbol
+        Rate of one spring k [N/m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        s [N/m].
+
+    References
+    ----------
+    Statics of parallel springs.
+
+    Examples
+    --------
+    Computed here:
+
+    >>> set_rate(6, 10.0)
+    60.0
+    """
+    return count * rate
+
+
+def spring_force(rate: Quantity, deflection: Quantity) -> Quantity:
+    """Force of a spring or a spring set, F = s delta.
+
+    Parameters
+    ----------
+    rate : scalar, array or symbol
+        Rate s of the set, or k of one spring [N/m].
+    deflection : scalar, array or symbol
+        Deflection from the free length [m]: preload deflection, more what the parts have travelled.
+
+    Returns
+    -------
+    scalar, array or symbol
+        F [N].
+
+    References
+    ----------
+    Statics; S4 writes F_R0 + s x with F_R0 = s delta.
+
+    Examples
+    --------
+    S4, practice 3 (10**5 N/m, preload 1200 N, 10 mm further; 2200 N):
+
+    >>> spring_force(1e5, 0.012 + 0.010)
+    2200.0
+    """
+    return rate * deflection
+
+
+def series_rate(first: Quantity, second: Quantity) -> Quantity:
+    """Rate of two spring sets in series, 1/(1/s1 + 1/s2).
+
+    Parameters
+    ----------
+    first : scalar, array or symbol
+        Rate of the first set s1 [N/m].
+    second : scalar, array or symbol
+        Rate of the second set s2 [N/m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Rate [N/m].
+
+    References
+    ----------
+    Statics; S4, analysis 2, where one set presses on the other.
+
+    Examples
+    --------
+    S4, practice 1 (8 and 4 N/mm), computed here:
+
+    >>> series_rate(8000.0, 4000.0)
+    2666.67
+    """
+    return 1 / (1 / first + 1 / second)
+
+
+# -- lining -----------------------------------------------------------------------------------------
+
+
+def lining_radius(inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
+    """Friction radius of a worn-in lining, r_f = (r_i + r_o)/2.
+
+    Parameters
+    ----------
+    inner_radius : scalar, array or symbol
+        Inner radius of the lining r_i [m].
+    outer_radius : scalar, array or symbol
+        Outer radius of the lining r_o [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        r_f [m].
+
+    References
+    ----------
+    Shigley, Mechanical Engineering Design, disc clutch with uniform wear; a new lining has a little more.
+
+    Examples
+    --------
+    Computed here:
+
+    >>> lining_radius(0.06, 0.09)
+    0.075
+    """
+    return (inner_radius + outer_radius) / 2
+
+
+def lining_pressure(force: Quantity, inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
+    """Pressure at the inner edge of a worn-in lining, p = F_N/(2 pi r_i (r_o - r_i)).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Axial force F_N [N].
+    inner_radius : scalar, array or symbol
+        Inner radius of the lining r_i [m].
+    outer_radius : scalar, array or symbol
+        Outer radius of the lining r_o [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        p [Pa].
+
+    References
+    ----------
+    Shigley, Mechanical Engineering Design, disc clutch with uniform wear; the same as
+    :func:`problems.mechanics.ring.worn_peak_pressure`, with each radius named less often.
+
+    Examples
+    --------
+    Computed here, ring of 3.5 and 4.7 cm radius under 1 kN: 1000/(2 pi 0.035 0.012):
+
+    >>> lining_pressure(1000.0, 0.035, 0.047)
+    378940.
+    """
+    return force / (2 * np.pi * inner_radius * (outer_radius - inner_radius))
+
+
+def lining_area(surfaces: Quantity, inner_radius: Quantity, outer_radius: Quantity) -> Quantity:
+    """Area of all friction surfaces, A = z_f pi (r_o**2 - r_i**2).
+
+    Parameters
+    ----------
+    surfaces : scalar, array or symbol
+        Number of friction surfaces z_f [-].
+    inner_radius : scalar, array or symbol
+        Inner radius of the lining r_i [m].
+    outer_radius : scalar, array or symbol
+        Outer radius of the lining r_o [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        A [m2].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Computed here, two surfaces of 60 and 90 mm radius, in cm2:
+
+    >>> 1e4 * lining_area(2, 0.06, 0.09)
+    282.74
+    """
+    return surfaces * np.pi * (outer_radius**2 - inner_radius**2)
+
+
+def force_for_torque(torque: Quantity, friction: Quantity, surfaces: Quantity, friction_radius: Quantity) -> Quantity:
+    """Axial force that a torque needs, F_N = M/(mu z_f r_f).
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        M [N m].
+    friction : scalar, array or symbol
+        Sliding friction of the lining mu [-].
+    surfaces : scalar, array or symbol
+        Number of friction surfaces z_f [-].
+    friction_radius : scalar, array or symbol
+        r_f [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_N [N].
+
+    References
+    ----------
+    Shigley, Mechanical Engineering Design, disc clutch.
+
+    Examples
+    --------
+    Computed here, the inverse of :func:`problems.mechanics.ring.friction_torque`:
+
+    >>> force_for_torque(105.0, 0.35, 2, 0.075)
+    2000.0
+    """
+    return torque / (friction * surfaces * friction_radius)
+
+
+def engagement_energy(inertia: Quantity, speed: Quantity) -> Quantity:
+    """Heat of one engagement, Q = J omega**2/2.
+
+    Parameters
+    ----------
+    inertia : scalar, array or symbol
+        Driven inertia J_load [kg m2].
+    speed : scalar, array or symbol
+        Speed that it is brought to omega [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Q [J].
+
+    References
+    ----------
+    Energy balance: at constant speed of the driver and without load torque as much heat arises as
+    the driven side gains; with a load torque M_L under a constant clutch torque M it is M/(M - M_L) times as much.
+
+    Examples
+    --------
+    Computed here:
+
+    >>> engagement_energy(0.5, 200.0)
+    10000.0
+    """
+    return inertia * speed**2 / 2
+
+
+# -- contact of a ball ------------------------------------------------------------------------------
+
+
+def ramp_normal_force(centrifugal_force: Quantity, ratio: Quantity) -> Quantity:
+    """Force of a ball across the ramp, Q = F_C sqrt(1 + i**2).
+
+    Parameters
+    ----------
+    centrifugal_force : scalar, array or symbol
+        F_C of one ball [N].
+    ratio : scalar, array or symbol
+        Transmission of the ramp i [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Q [N].
+
+    References
+    ----------
+    Statics without friction, Q = F_C/cos(alpha): on the safe side, friction makes it smaller.
+
+    Examples
+    --------
+    Computed here, 500 N on a ramp of 45 degrees:
+
+    >>> float(ramp_normal_force(500.0, 1.0))
+    707.1
+    """
+    return centrifugal_force * np.sqrt(1 + ratio**2)
+
+
+def ball_pressure(normal_force: Quantity, ball_diameter: Quantity, contact_modulus: Quantity) -> Quantity:
+    """Peak pressure of a ball on a flat ramp, p0 = (6 Q (E*)**2/(pi**3 R**2))**(1/3).
+
+    Parameters
+    ----------
+    normal_force : scalar, array or symbol
+        Q [N].
+    ball_diameter : scalar, array or symbol
+        d_b = 2 R [m].
+    contact_modulus : scalar, array or symbol
+        E* [Pa], of :func:`problems.mechanics.roller_coupling.contact_modulus`.
+
+    Returns
+    -------
+    scalar, array or symbol
+        p0 [Pa].
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics (1985), eq. (4.24). A groove that fits the ball lowers it.
+
+    Examples
+    --------
+    Computed here, a steel ball of 20 mm under 1 kN (E* = 115.385 GPa), in GPa:
+
+    >>> ball_pressure(1000.0, 0.020, 115.385e9) / 1e9
+    2.953
+    """
+    return (24 * normal_force * contact_modulus**2 / (np.pi**3 * ball_diameter**2)) ** (1 / 3)
+
+
+# -- size -------------------------------------------------------------------------------------------
+
+
+def outside_diameter(lining_reach: Quantity, flyweight_reach: Quantity) -> Quantity:
+    """Outside diameter over linings and flyweights, twice the larger reach.
+
+    Parameters
+    ----------
+    lining_reach : scalar, array or symbol
+        Outer radius of the lining and the rim around it [m].
+    flyweight_reach : scalar, array or symbol
+        Outermost radius of the flyweights and the wall around them [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        D [m].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Computed here:
+
+    >>> float(outside_diameter(0.095, 0.090))
+    0.19
+    """
+    return 2 * np.maximum(lining_reach, flyweight_reach)
+
+
+def plates_mass(density: Quantity, diameter: Quantity, hub_radius: Quantity, thickness: Quantity) -> Quantity:
+    """Mass of all plates as one ring, rho pi (D**2/4 - r_hub**2) t.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        Density of steel rho [kg/m3].
+    diameter : scalar, array or symbol
+        Outside diameter D [m].
+    hub_radius : scalar, array or symbol
+        Inner radius r_hub [m].
+    thickness : scalar, array or symbol
+        Steel thickness that all plates together amount to [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry, with an equivalent thickness.
+
+    Examples
+    --------
+    Computed here, 200 mm across, hub of 20 mm radius, 25 mm thick:
+
+    >>> plates_mass(7850, 0.200, 0.020, 0.025)
+    5.919
+    """
+    return density * np.pi * (diameter**2 / 4 - hub_radius**2) * thickness
+
+
+def clutch_inertia(
+    plates_mass: Quantity,
+    diameter: Quantity,
+    hub_radius: Quantity,
+    flyweight_mass: Quantity,
+    flyweight_radius: Quantity,
+    spring_mass: Quantity,
+    spring_radius: Quantity,
+) -> Quantity:
+    """Inertia of plates, flyweights and springs, m_d (D**2/4 + r_hub**2)/2 + m r**2 + m_s r_s**2.
+
+    Parameters
+    ----------
+    plates_mass : scalar, array or symbol
+        Mass of the plates [kg].
+    diameter : scalar, array or symbol
+        Outside diameter D [m].
+    hub_radius : scalar, array or symbol
+        Inner radius of the plates r_hub [m].
+    flyweight_mass : scalar, array or symbol
+        m [kg].
+    flyweight_radius : scalar, array or symbol
+        Outermost radius of the flyweight centres [m].
+    spring_mass : scalar, array or symbol
+        Mass of all springs [kg].
+    spring_radius : scalar, array or symbol
+        Radius on which they stand [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        J [kg m2].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Computed here, 5.919/2 (0.01 + 0.0004) + 0.26 0.0064 + 0.05 0.0049:
+
+    >>> clutch_inertia(5.919, 0.200, 0.020, 0.26, 0.080, 0.05, 0.070)
+    0.03269
+    """
+    disc = plates_mass * (diameter**2 / 4 + hub_radius**2) / 2
+    return disc + flyweight_mass * flyweight_radius**2 + spring_mass * spring_radius**2
+
+
+def spring_bow_load(
+    density: Quantity,
+    wire_diameter: Quantity,
+    mean_diameter: Quantity,
+    active_coils: Quantity,
+    radius: Quantity,
+    speed: Quantity,
+) -> Quantity:
+    """Load across a spring that turns with the clutch: its active coils' own centrifugal force.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        Density of the wire rho [kg/m3].
+    wire_diameter : scalar, array or symbol
+        d [m].
+    mean_diameter : scalar, array or symbol
+        Mean coil diameter D [m].
+    active_coils : scalar, array or symbol
+        n [-].
+    radius : scalar, array or symbol
+        Radius on which the spring stands [m].
+    speed : scalar, array or symbol
+        omega [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Load [N].
+
+    References
+    ----------
+    Derived; not in S4: rho (pi d**2/4) (pi D n) r omega**2.
+
+    Examples
+    --------
+    Computed here, wire of 2 mm, coils of 16 mm, 5.5 of them, at 70 mm and 500 rad/s:
+
+    >>> spring_bow_load(7850, 0.002, 0.016, 5.5, 0.070, 500.0)
+    119.3
+    """
+    wire_mass = density * np.pi**2 * wire_diameter**2 * mean_diameter * active_coils / 4
+    return wire_mass * radius * speed**2
