@@ -107,8 +107,8 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.results import write_atomically
     from synth.tables import Catalogs
 
-    settings = asked.search_settings()
     with blamed_on(asked.file), progress_display(quiet) as progress:
+        settings = asked.search_settings()
         found = compare(
             asked.family if isinstance(asked.family, str) else list(asked.family),
             asked.requirements,

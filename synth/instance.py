@@ -307,7 +307,7 @@ class Instance:
         model = self.model
         unit = model.units[name]
         for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
-            for sense, bound in self._read_limit(name, unit, text):
+            for sense, bound in self.read_limit(name, unit, text):
                 self._apply_limit(name, unit, sense, bound)
 
     def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
@@ -315,13 +315,14 @@ class Instance:
         unit = self.model.units[name]
         result = []
         for text in texts if isinstance(texts, (list, tuple)) else [texts]:
-            for sense, bound in self._read_limit(name, unit, text):
+            for sense, bound in self.read_limit(name, unit, text):
                 label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
                 result.append(ExtraLimit(label, name, sense, bound, unit))
         return result
 
     @staticmethod
-    def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+    def read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+        """Return what a text says of a quantity: sense and SI value of each limit."""
         label = f"limits: {name}"
         if isinstance(text, str) and ".." in text:
             first, last = text.split("..", 1)
