@@ -397,7 +397,7 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
-    if any(design.robust for design in front.designs):
+    if "robust" in front.statistics and (front.designs or not explanation):
         from synth.robust_console import print_robust
 
         print_robust(front, console)
