@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_lever_blocks as lever_blocks
 from problems.centrifugal_blocks import DERIVED, S4
@@ -76,14 +78,18 @@ class CentrifugalLever(DesignProblem):
         contact_angle = formulas.contact_angle(travel, rod_arm)
         at_contact = formulas.travel_spring_force(preload, springs.rate, spring_arm, rod_arm, contact_angle)
         full = formulas.clamp_spring_force(preload, springs.rate, spring_arm, travel, lever.stop_angle)
-        contact = lever.speed(formulas.travel_flyweight_force(at_contact, spring_arm, rod_arm, arm), contact_angle)
         stop_flyweight = formulas.clamp_flyweight_force(full, spring_arm, arm)
         stop = lever.speed(stop_flyweight, lever.stop_angle)
+        after = lever.stop_angle - contact_angle
+        spring_gain = 1 + spring_arm * after / (lever.deflection + lead * contact_angle)
+        radius_gain = 1 + arm * after / (lever.rest_radius + arm * contact_angle)
+        band = np.sqrt(spring_gain / ((1 - rod_arm / spring_arm) * radius_gain))
+        contact = stop / band
         blocks.declare_contact(d, duty, contact, needs="rod_inside_spring")
         blocks.declare_full_clamp(
             d, duty, lining, full - springs.rate * lever.wear, stop, RECONSTRUCTED, "clamp_spring_squeezed"
         )
-        blocks.declare_band(d, stop / contact, "Full-clamp speed over contact speed; small is sharp", guards)
+        blocks.declare_band(d, band, "Full-clamp speed over contact speed; small is sharp", guards)
         blocks.declare_clamp(d, lining, full, "Clamp force from full_clamp_speed on, new lining", RECONSTRUCTED)
         stop_force = blocks.declare_stop_force(
             d, centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed) - stop_flyweight,
