@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from synth.near import NearEquals, near_equals
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
+    from synth.robust import Ratings, rate
     from synth.search import synthesize
     from synth.study import Study
     from synth.variants.run import SizeRange, size_range
@@ -36,6 +37,7 @@ __all__ = [
     "InputError",
     "NearEquals",
     "ParetoFront",
+    "Ratings",
     "Relaxation",
     "SizeRange",
     "Study",
@@ -49,6 +51,7 @@ __all__ = [
     "load",
     "load_front",
     "near_equals",
+    "rate",
     "second_opinion",
     "simulate",
     "size_range",
@@ -66,6 +69,7 @@ _HOME = {
     "FamilyOutcome": "synth.comparison",
     "NearEquals": "synth.near",
     "ParetoFront": "synth.results",
+    "Ratings": "synth.robust",
     "Relaxation": "synth.explanation",
     "SizeRange": "synth.variants.run",
     "Study": "synth.study",
@@ -79,6 +83,7 @@ _HOME = {
     "load": "synth.problem",
     "load_front": "synth.results",
     "near_equals": "synth.near",
+    "rate": "synth.robust",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
     "size_range": "synth.variants.run",

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from synth import choice_commands
+from synth import choice_commands, robust_commands
 from synth import study_commands as studies
 from synth.errors import InputError
+from synth.given import given_design, must_be_a_design
 from synth.jobs import commands as batches
 from synth.terminal import (
     BAD_INPUT,
@@ -34,9 +35,8 @@ from synth.variants import commands as size_ranges
 
 if TYPE_CHECKING:
     from synth.problem import DesignProblem
-    from synth.results import Design, ParetoFront
+    from synth.results import ParetoFront
     from synth.spec import Spec
-    from synth.tables import Catalogs
 
 EXPLAINED = ("parts", "limits", "fix", "grid", "seed", "time_limit")  # what counts when a question is explained
 
@@ -230,11 +230,11 @@ def check(
     from synth.spec import read_spec
 
     asked = read_spec(design)
-    _must_be_a_design(asked)
+    must_be_a_design(asked)
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file):
-        problem, catalogs, result = _given_design(asked)
+        problem, catalogs, result = given_design(asked)
         details = describe_problem(problem, catalogs).to_dict("records")
     print_check(result, details, output())
     if folder is not None:
@@ -258,14 +258,14 @@ def simulate(
     from synth.spec import read_spec
 
     asked = read_spec(design)
-    _must_be_a_design(asked)
+    must_be_a_design(asked)
     check_output(folder)
     pairs = [pair("--set", text) for text in setting or []]
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise InputError("--set", name, "each setting once")
     with blamed_on(asked.file):
-        problem, catalogs, result = _given_design(asked)
+        problem, catalogs, result = given_design(asked)
     frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
     opinion = second_opinion(result, frames)
     files = frame_files(frames)
@@ -299,8 +299,8 @@ def curves(
             catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
             frames = curves_of(problem, asked.requirements, catalogs=catalogs)
         else:
-            _must_be_a_design(asked)
-            problem, catalogs, result = _given_design(asked)
+            must_be_a_design(asked)
+            problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
     files = frame_files(frames)
     write_all(folder, files)
@@ -336,6 +336,7 @@ batches.register(app)
 size_ranges.register(app)
 choice_commands.register(app)
 studies.register(app)
+robust_commands.register(app)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------
@@ -355,51 +356,6 @@ def _must_be_a_question(asked: Spec) -> None:
             ", ".join(asked.values),
             "a question without values; clutchsynth check reads a given design",
         )
-
-
-def _must_be_a_design(asked: Spec) -> None:
-    """Refuse a spec of several families, without values, or with something left to fix."""
-    if asked.compares:
-        raise InputError(
-            f"{asked.file}: family", "several", "one family: a design is of one (clutchsynth run compares)"
-        )
-    if asked.values is None:
-        raise InputError(
-            f"{asked.file}: values",
-            None,
-            "the variables, counts and choices of the design (clutchsynth run takes a question)",
-        )
-    if asked.fix:
-        raise InputError(
-            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
-        )
-
-
-def _given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
-    """Load the problem and evaluate the design that a spec with values describes."""
-    from synth.analysis import evaluate
-    from synth.instance import catalogs_for
-
-    problem = _load(asked.family, asked.options)
-    catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-    design = evaluate(
-        problem, asked.requirements, values=asked.values, parts=_one_each(asked),
-        catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
-    )  # fmt: skip
-    return problem, catalogs, design
-
-
-def _one_each(asked: Spec) -> dict[str, str]:
-    """Return the designation per slot; a list of one counts as that one."""
-    result = {}
-    for slot, rule in asked.parts.items():
-        rows = [rule] if isinstance(rule, str) else list(rule)
-        if len(rows) != 1:
-            raise InputError(
-                f"{asked.file}: parts: {slot}", rows, "one designation: a given design has one part in each slot"
-            )
-        result[slot] = rows[0]
-    return result
 
 
 def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:

@@ -17,6 +17,7 @@ import yaml
 
 from synth.errors import InputError
 from synth.feasibility import Status
+from synth.rated import COLUMNS, limits_table, rating_row
 from synth.units import format_quantity, from_si, header
 
 if TYPE_CHECKING:
@@ -79,7 +80,9 @@ class Design:
     """One evaluated design.
 
     ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
-    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI.
+    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``robust`` tells,
+    where that was asked, how the design stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and
+    ``yield_high``, ``worst_limit``, and per limit its worst point.
     """
 
     frame: Frame
@@ -101,6 +104,7 @@ class Design:
     advice: tuple[str, ...] = ()
     violated: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
+    robust: Mapping[str, Any] = field(default_factory=dict)
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""
@@ -142,6 +146,7 @@ class Design:
             "advice": list(self.advice),
             "violated": list(self.violated),
             "not_checked": list(self.not_checked),
+            **({"robust": _plain(self.robust)} if self.robust else {}),
         }
 
 
@@ -218,6 +223,8 @@ class ParetoFront:
         """Return what ``save`` writes: file name -> text."""
         width = max(2, len(str(len(self.designs))))
         found = {"designs.csv": self._csv(), "front.json": self._json()}
+        if any(design.robust for design in self.designs):
+            found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
             found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
         return found
@@ -256,6 +263,9 @@ class ParetoFront:
             [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *design_row(self.frame, d)]
             for d in self.designs
         ]
+        if any(d.robust for d in self.designs):
+            columns += COLUMNS
+            rows = [[*row, *rating_row(d)] for row, d in zip(rows, self.designs, strict=True)]
         return columns, rows
 
     def _csv(self) -> str:
@@ -405,6 +415,7 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         advice=tuple(d["advice"]),
         violated=tuple(d["violated"]),
         not_checked=tuple(d["not_checked"]),
+        robust=d.get("robust", {}),
     )
 
 

@@ -35,6 +35,7 @@ FILL_EFFORT = 20_000
 TIE_EFFORT = 8_000
 COARSE = 0.1
 COARSE_EFFORT = 20_000
+FIRST_EFFORT = 1_000  # for one objective a first design is enough to begin with
 FINE = 2.0  # every design is covered within so many times the mean distance of the points asked for
 ROUNDS = 4
 POLISHINGS = 3
@@ -520,7 +521,10 @@ class FrontSearch:
 
     def _look_round(self) -> bool:
         """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
-        outcome = self._covered(self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0)), COARSE_EFFORT)
+        coarse = self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0))
+        outcome = self._covered(coarse, FIRST_EFFORT if self.m == 1 else COARSE_EFFORT)
+        if not len(self.form.archive) and not outcome.closed and self.m == 1:
+            outcome = self._covered(coarse, COARSE_EFFORT)
         if len(self.form.archive):
             self._seek(self._fine())
         elif outcome.closed:

@@ -52,7 +52,7 @@ class Seeker:
         phi = form.phi_of(batch.bounds)
         space, along = self.purpose.room(phi), phi[:, self.purpose.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, PROBES)))
-        if form.n:
+        if form.n and self._worth_solving():
             most = MOST_NLPS if len(self.purpose.columns) > 1 else LEAST_NLPS
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
             chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds)) > 0)
@@ -62,6 +62,10 @@ class Seeker:
         if found and len(self.purpose.columns) == 1:
             self._settle_best()
         self.failures = 0 if found else self.failures + 1
+
+    def _worth_solving(self) -> bool:
+        """Tell whether boxes are worth a solver: for one objective, where designs are known, points say as much."""
+        return len(self.purpose.columns) > 1 or self.form.conflict or not len(self.form.archive)
 
     def _settle_best(self) -> None:
         """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""

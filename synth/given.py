@@ -1,0 +1,59 @@
+"""A given design, read from a DESIGN.yaml and evaluated, for the commands that take one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from synth.errors import InputError
+
+if TYPE_CHECKING:
+    from synth.problem import DesignProblem
+    from synth.results import Design
+    from synth.spec import Spec
+    from synth.tables import Catalogs
+
+
+def must_be_a_design(asked: Spec) -> None:
+    """Refuse a spec of several families, without values, or with something left to fix."""
+    if asked.compares:
+        raise InputError(
+            f"{asked.file}: family", "several", "one family: a design is of one (clutchsynth run compares)"
+        )
+    if asked.values is None:
+        raise InputError(
+            f"{asked.file}: values",
+            None,
+            "the variables, counts and choices of the design (clutchsynth run takes a question)",
+        )
+    if asked.fix:
+        raise InputError(
+            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
+        )
+
+
+def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
+    """Load the problem and evaluate the design that a spec with values describes."""
+    from synth.analysis import evaluate
+    from synth.instance import catalogs_for
+    from synth.problem import load
+
+    problem = load(asked.family, **asked.options)
+    catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+    design = evaluate(
+        problem, asked.requirements, values=asked.values, parts=_one_each(asked),
+        catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
+    )  # fmt: skip
+    return problem, catalogs, design
+
+
+def _one_each(asked: Spec) -> dict[str, str]:
+    """Return the designation per slot; a list of one counts as that one."""
+    result = {}
+    for slot, rule in asked.parts.items():
+        rows = [rule] if isinstance(rule, str) else list(rule)
+        if len(rows) != 1:
+            raise InputError(
+                f"{asked.file}: parts: {slot}", rows, "one designation: a given design has one part in each slot"
+            )
+        result[slot] = rows[0]
+    return result

@@ -1,0 +1,111 @@
+"""``clutchsynth rate``, and ``run`` with a robust block, as a person meets them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import pytest
+
+from synth.cli import main
+
+SPEC = """
+family: multi_plate_clutch
+options: {guide_model: cz}
+requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
+fix: {ramp_time: 2 s, pair: seed_multiplate_ref, inner_plate: core 3, outer_plate: core 2, d_in: 158 mm}
+limits: {friction_surfaces: 10 .. 14}
+points: 2
+"""
+
+
+def clutchsynth(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run the entry point in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    texts = [str(word) for word in words]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.setattr(sys, "argv", ["clutchsynth", *texts])
+        with pytest.raises(SystemExit) as end:
+            main()
+    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("robust")
+    (folder / "spec.yaml").write_text(SPEC)
+    done = clutchsynth("run", folder / "spec.yaml", "-o", folder / "out", "--quiet")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_a_saved_front_is_rated(saved: Path) -> None:
+    folder = saved / "rated"
+    done = clutchsynth("rate", saved / "out", "-o", folder, "--over", "friction=+-10 %", "--samples", 256)
+    assert done.returncode == 3, done.stderr
+    assert "none of 2 designs keeps all limits over the whole range" in done.stdout
+    assert max(len(line) for line in done.stdout.splitlines() if not line.startswith("written")) <= 100
+    rated = rows(folder / "rating.csv")
+    assert [row["rank"] for row in rated] == ["1", "2"]
+    assert {row["robust"] for row in rated} == {"no"}
+    assert float(rated[0]["yield low"]) <= float(rated[0]["yield"]) <= float(rated[0]["yield high"]) < 1
+    limits = rows(folder / "robust.csv")
+    own = next(row for row in limits if row["rank"] == "1" and row["limit"] == rated[0]["worst limit"])
+    assert own["robust"] == "no"
+    assert float(own["utilisation"]) == float(rated[0]["worst utilisation"]) > 1
+    told = json.loads((folder / "rating.json").read_text())
+    assert told["robust"]["samples"] == 256
+    assert len(told["designs"]) == 2
+
+
+def test_a_given_design_is_rated_and_what_hardly_scatters_is_kept(saved: Path) -> None:
+    design = saved / "out" / "design_01.yaml"
+    done = clutchsynth(
+        "rate", design, "-o", saved / "one", "--over", "friction_pair.density=+-10 %", "--confidence", "99 %"
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 of 1 design keeps all limits over the whole range (proven)" in done.stdout
+    assert rows(saved / "one" / "rating.csv")[0]["yield low"] == "1.0"
+
+
+def test_out_of_time_ends_with_four(saved: Path) -> None:
+    done = clutchsynth(
+        "rate", saved / "out", "-o", saved / "late", "--over", "friction=+-10 %", "--time-limit", "1e-9", "--quiet"
+    )
+    assert done.returncode == 4
+    assert rows(saved / "late" / "rating.csv") == []
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ([], ["robust", "ranges"]),
+        (["--over", "friction"], ["--over", "name=value"]),
+        (["--over", "friction=+-5 %", "--over", "friction=+-6 %"], ["--over", "once"]),
+        (["--over", "friction=rough"], ["friction", "rough", "catalogue range"]),
+        (["--over", "friction=+-5 %", "--samples", "100"], ["samples", "power of 2"]),
+        (["--over", "friction=+-5 %", "--confidence", "3"], ["confidence"]),
+        (["--over", "wear=new and worn"], ["wear", "lining_wear"]),
+    ],
+)
+def test_careless_flags_are_refused_and_nothing_is_written(saved: Path, words: list[str], expected: list[str]) -> None:
+    done = clutchsynth("rate", saved / "out", "-o", saved / "never", *words)
+    assert done.returncode == 2
+    assert all(word in done.stderr for word in expected), done.stderr
+    assert not (saved / "never").exists()
+
+
+def test_the_front_is_not_written_over(saved: Path) -> None:
+    done = clutchsynth("rate", saved / "out", "-o", saved / "out", "--over", "friction=+-5 %")
+    assert done.returncode == 2
+    assert "another folder" in done.stderr
