@@ -10,13 +10,14 @@ from problems.centrifugal_blocks import DERIVED, S4, TYPICAL
 from problems.mechanics import centrifugal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from synth.declaration import Declaration
 
 RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
 # Range of the stop angle [rad] and of the rest radius [mm]; refusals reason with them.
 STOP_ANGLE_MIN, STOP_ANGLE_MAX = 0.05, 0.35
 REST_RADIUS_MAX = 250.0
-GAP_PER_SURFACE = 0.3e-3  # m, least release gap of a friction surface that keeps it from dragging
 
 
 @dataclass(frozen=True)
@@ -38,12 +39,15 @@ class Lever:
     @property
     def end_radius(self) -> Any:
         """Radius of the flyweights at the stop [m]."""
-        return centrifugal.orbit_radius(self.rest_radius, self.weights.arm, self.stop_angle)
+        return self.radius(self.stop_angle)
+
+    def radius(self, angle: Any) -> Any:
+        """Return the radius of the flyweights at an angle [m]."""
+        return centrifugal.orbit_radius(self.rest_radius, self.weights.arm, angle)
 
     def speed(self, force: Any, angle: Any) -> Any:
         """Return the speed at which the flyweights pull with a force at an angle [rad/s]."""
-        radius = centrifugal.orbit_radius(self.rest_radius, self.weights.arm, angle)
-        return centrifugal.speed_for_force(force, self.weights.mass, radius)
+        return centrifugal.speed_for_force(force, self.weights.mass, self.radius(angle))
 
 
 def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
@@ -151,16 +155,10 @@ def refuse_room(d: Declaration, duty: blocks.Duty, least_leg: Any, name: str) ->
         )
 
 
-def advise_lever(
-    d: Declaration,
-    duty: blocks.Duty,
-    lining: blocks.Lining,
-    lever: Lever,
-    start_speed: Any,
-    stop_force: Any,
-    clamp: Any,
+def declare_size(
+    d: Declaration, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet]
 ) -> None:
-    """Remark what rests on assumptions, and what the design must be watched for.
+    """Declare outside diameter, mass and inertia with the weights of the lever.
 
     Parameters
     ----------
@@ -172,25 +170,54 @@ def advise_lever(
         Lining.
     lever : Lever
         Lever.
-    start_speed : symbol
-        Speed at which the lever leaves its rest [rad/s].
-    stop_force, clamp : symbol
-        Force on the stop at top speed, and largest clamp force [N].
+    springs : sequence of SpringSet
+        All springs.
     """
+    weights = lever.weights
+    flyweights = blocks.Flyweights(weights.mass, lever.end_radius, weights.thickness / 2)
+    blocks.declare_size(d, duty, lining, lever.rest_radius, flyweights, springs)
+
+
+def advise_lever(
+    d: Declaration,
+    duty: blocks.Duty,
+    lining: blocks.Lining,
+    lever: Lever,
+    start_pull: Any,
+    stop_pull: Any,
+    clamp: Any,
+) -> None:
+    """Declare the force on the stop, and remark what rests on assumptions and what must be watched for.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    lining : Lining
+        Lining.
+    lever : Lever
+        Lever.
+    start_pull, stop_pull : symbol
+        Centrifugal force of all flyweights where the lever leaves its rest, and where it meets its stop [N].
+    clamp : symbol
+        Largest clamp force [N].
+    """
+    pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
+    stop_force = blocks.declare_stop_force(
+        d, pull - stop_pull,
+        "Force of all levers on their stops at top_speed, at flyweight_arm", RECONSTRUCTED,
+    )  # fmt: skip
     d.advise(
         "assumed_values",
         True,
-        "the figure of this lever is lost: its arms, and with them speeds, forces and stop_force, rest on an arrangement "
-        "reconstructed from words; outer_diameter, mass and inertia rest on hub_radius, wall_thickness, "
-        "equivalent_plate_thickness and weight_width, engagement_heat on driven_inertia, all travels on contact_travel: "
+        "the figure of this lever is lost: speeds, forces and stop_force rest on an arrangement of its arms that is "
+        "reconstructed from words; outer_diameter, mass and inertia rest on hub_radius, wall_thickness, weight_width "
+        "and equivalent_plate_thickness, engagement_heat rests on driven_inertia, all travels on contact_travel: "
         "their defaults are typical values, not those of your drive",
         source=RECONSTRUCTED,
     )
-    d.advise(
-        "released_clutch_drags",
-        lever.contact_travel < GAP_PER_SURFACE * lining.surfaces,
-        "contact_travel leaves less than 0.3 mm for each friction surface: the released clutch drags",
-        source="practice, 0.3 to 0.5 mm for each surface and the run-out",
-    )
-    blocks.advise_gravity(d, lever.rest_radius, start_speed)
+    blocks.advise_release_gap(d, lever.contact_travel, lining)
+    blocks.advise_gravity(d, lever.rest_radius, lever.speed(start_pull, 0.0))
     blocks.advise_stop_load(d, stop_force, clamp)

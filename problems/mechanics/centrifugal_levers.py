@@ -16,6 +16,8 @@ only; the relations are derived from them.
 
 from __future__ import annotations
 
+import numpy as np
+
 from problems.mechanics import Quantity
 
 # -- both levers -----------------------------------------------------------------------------------
@@ -469,3 +471,71 @@ def gradual_radius(deflection: Quantity, flyweight_arm: Quantity, resisting_arm:
     (0.024, 22.857143)
     """
     return deflection * flyweight_arm / resisting_arm
+
+
+# -- engagement ------------------------------------------------------------------------------------
+
+
+def growth(start: Quantity, arm: Quantity, angle: Quantity) -> Quantity:
+    """Growth of a length that an arm makes longer, 1 + l phi/x.
+
+    Parameters
+    ----------
+    start : scalar, array or symbol
+        Length before: deflection of the springs, or radius of the flyweights [m].
+    arm : scalar, array or symbol
+        Arm l [m].
+    angle : scalar, array or symbol
+        Angle by which it swings on phi [rad].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Length after over length before [-].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Practice 3 from contact to the stop, springs (12 + 10 mm, 3200/2200 N) and radius (182/172 mm):
+
+    >>> growth(22, 100, 0.1), growth(172, 100, 0.1)
+    (1.454545, 1.058140)
+    """
+    return 1 + arm * angle / start
+
+
+def engagement_band(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quantity = 0.0) -> Quantity:
+    """Speed at the stop over speed at contact, sqrt((F2/F1)/((r2/r1) (1 - l_r/l_s))).
+
+    Both speeds are sqrt(F_C/(m r)); mass and arm of the flyweights cancel, and so does the rate of the springs where
+    the same springs resist at contact and at the stop.
+
+    Parameters
+    ----------
+    force_ratio : scalar, array or symbol
+        Force at the stop over force at contact: of the springs, or of the short leg on the plate [-].
+    radius_ratio : scalar, array or symbol
+        Radius of the flyweights at the stop over that at contact [-].
+    rod_ratio : scalar, array or symbol, optional
+        l_r/l_s of a lever with a rod; it is taut at contact and slack at the stop [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        omega_stop/omega_contact [-].
+
+    References
+    ----------
+    Derived.
+
+    Examples
+    --------
+    Practice 3 (132.599/79.9709):
+
+    >>> float(engagement_band(3200 / 2200, 182 / 172, 0.5))
+    1.65809
+    """
+    return np.sqrt(force_ratio / (radius_ratio * (1 - rod_ratio)))
