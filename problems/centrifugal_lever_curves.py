@@ -165,7 +165,7 @@ def _over_speed(
         "torque [N*m]": capacity,
         "gap [mm]": motion.gap / MM,
         **{header: getattr(motion, name) / unit for header, name, unit in own if unit != 1.0},
-        "radius of the flyweights [mm]": motion.radius / MM,
+        "radius [mm]": motion.radius / MM,
         "lever angle [rad]": motion.angle,
     }
     frame = pd.DataFrame(columns)
@@ -174,14 +174,14 @@ def _over_speed(
     edges = (0.0, *borders.speeds, top)
     title = f"{problem.title}: {words}"
     if _runs_back(motion):
-        title += "; where the curve runs back the lever jumps across it"
+        title += "; where the curve runs back the lever jumps, outwards at the higher speed and home at the lower"
     frame.attrs = {
         "title": title,
         "panels": [
             {"label": "force [N]", "columns": forces, "height": 2},
             {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
             {"label": "gap [mm]" if len(gaps) == 1 else "travel [mm]", "columns": gaps},
-            {"label": "radius [mm]", "columns": ["radius of the flyweights [mm]"]},
+            {"label": "radius [mm]", "columns": ["radius [mm]"]},
         ],
         "marks": [
             {"x": spec[name] / RPM, "label": name} for name in ("idle_speed", "contact_speed_max", "full_torque_speed")

@@ -261,12 +261,12 @@ CASES: dict[str, Family] = {
                 requirements=ENGINE,
                 settings={
                     "parts": {"clamp_spring": ["CS-3.2x16x12.5", "CS-4x20x12.5"], "friction_pair": ["moulded_dry"]},
-                    "limits": {"clamp_springs": "6 .. 8", "outer_diameter": "<= 200 mm"},
+                    "limits": {"clamp_springs": "7 .. 8", "outer_diameter": "<= 200 mm"},
                     "fix": {**LEVERS, "rod_arm": "11 mm"},
                     "objectives": ["outer_diameter", "engagement_band"],
                     "points": 2,
                 },
-                tighten={"required_torque": "95 N*m", "rod_ratio_max": 0.5, "hub_radius": "24 mm"},
+                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
             ),
         },
         infeasible=Case(
