@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from synth.hooks import curves, second_opinion, simulate
     from synth.jobs.run import BatchResult, batch
     from synth.near import NearEquals, near_equals
+    from synth.price_list import Price, Prices
+    from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
     from synth.results import Design, ParetoFront, load_front
     from synth.robust import Ratings, rate
@@ -37,6 +39,8 @@ __all__ = [
     "InputError",
     "NearEquals",
     "ParetoFront",
+    "Price",
+    "Prices",
     "Ratings",
     "Relaxation",
     "SizeRange",
@@ -51,6 +55,7 @@ __all__ = [
     "load",
     "load_front",
     "near_equals",
+    "prices",
     "rate",
     "second_opinion",
     "simulate",
@@ -69,6 +74,8 @@ _HOME = {
     "FamilyOutcome": "synth.comparison",
     "NearEquals": "synth.near",
     "ParetoFront": "synth.results",
+    "Price": "synth.price_list",
+    "Prices": "synth.price_list",
     "Ratings": "synth.robust",
     "Relaxation": "synth.explanation",
     "SizeRange": "synth.variants.run",
@@ -83,6 +90,7 @@ _HOME = {
     "load": "synth.problem",
     "load_front": "synth.results",
     "near_equals": "synth.near",
+    "prices": "synth.pricing",
     "rate": "synth.robust",
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",

@@ -51,7 +51,7 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
 
 def _restated(instance: Instance) -> dict[str, Any]:
     """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
-    restated: dict[str, Any] = {}
+    restated: dict[str, Any] = dict(instance.problem.restated)
     if instance.asked_limits:
         restated["limits"] = {n: c if isinstance(c, str) else list(c) for n, c in instance.asked_limits.items()}
     files = instance.catalogs.files()

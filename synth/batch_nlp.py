@@ -45,6 +45,8 @@ class Tasks:
         0: t is held at 0.
     elastic : float
         How much one unit of t loosens every limit but the guards.
+    moved : array (problems, limits), optional
+        By how much the row of each limit may be exceeded: the limit itself is another one.
     """
 
     weights: np.ndarray
@@ -53,6 +55,7 @@ class Tasks:
     goal_scales: np.ndarray
     t_weight: float = 1.0
     elastic: float = 0.0
+    moved: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -162,7 +165,7 @@ class BatchNlp:
                 self._solve_part(
                     Tasks(
                         tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
-                        tasks.t_weight, tasks.elastic,
+                        tasks.t_weight, tasks.elastic, None if tasks.moved is None else tasks.moved[rows],
                     ),
                     [x if x.ndim == 0 else x[rows] for x in columns],
                     start[rows], low[rows], high[rows], bounds, void[rows],
@@ -259,7 +262,8 @@ class BatchNlp:
     def _rights(self, tasks: Tasks) -> np.ndarray:
         margin = np.where(self.guard, -GUARD_MARGIN, 0.0)
         caps = np.where(np.isfinite(tasks.caps), tasks.caps, 0.0)
-        return np.concatenate([np.broadcast_to(margin, (len(caps), len(margin))), caps], axis=1).T
+        allowed = np.broadcast_to(margin, (len(caps), len(margin))) + (0.0 if tasks.moved is None else tasks.moved)
+        return np.concatenate([allowed, caps], axis=1).T
 
     def _finished(
         self,

@@ -1,4 +1,4 @@
-"""The commands that help to choose: near-equals, and run where several families are asked."""
+"""The commands that help to choose: near-equals, prices, and run where several families are asked."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from synth.errors import InputError
-from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, tell
 
 if TYPE_CHECKING:
     from synth.spec import Spec
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 def register(app: typer.Typer) -> None:
     """Add the commands to the command line."""
     app.command(name="near-equals")(near_equals)
+    app.command(name="prices")(prices)
 
 
 def near_equals(
@@ -53,6 +54,41 @@ def near_equals(
         raise typer.Exit(INFEASIBLE)
 
 
+def prices(
+    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
+    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    design: Annotated[
+        list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
+    ] = None,
+    step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
+    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+) -> None:
+    """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
+    check_output(folder)
+    from synth.choice_console import print_prices
+    from synth.console import output, progress_display
+    from synth.pricing import prices as find
+    from synth.results import load_front
+    from synth.units import parse_quantity
+
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    front = load_front(source)
+    with progress_display(quiet) as progress:
+        try:
+            found = find(front, design or None, step, progress=progress, time_limit=seconds, folder=folder)
+        except KeyboardInterrupt:
+            tell("stopped before the first design was begun; nothing is written")
+            raise typer.Exit(STOPPED) from None
+    found.save(folder)
+    if not quiet:
+        print_prices(found, output(), every)
+        print(f"written to {folder}: {', '.join(sorted(found.files()))}")
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+
+
 def show_common() -> None:
     """Show the requirements that may stand in a sheet for several families, with those that understand them."""
     from synth.sheet import understood
@@ -71,8 +107,8 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.results import write_atomically
     from synth.tables import Catalogs
 
-    settings = asked.search_settings()
     with blamed_on(asked.file), progress_display(quiet) as progress:
+        settings = asked.search_settings()
         found = compare(
             asked.family if isinstance(asked.family, str) else list(asked.family),
             asked.requirements,

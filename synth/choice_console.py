@@ -1,4 +1,4 @@
-"""What the command line shows of near-equal designs and of families that are compared."""
+"""What the command line shows of near-equal designs, of prices, and of families that are compared."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from synth.console import explanation_text, plain_table
+from synth.price_list import NOTHING, percent
 from synth.units import format_quantity
 
 if TYPE_CHECKING:
     from synth.comparison import Comparison
     from synth.near import NearEquals
+    from synth.price_list import Price, Prices
 
 SHOWN = 10  # designs on one screen
 
@@ -36,6 +38,50 @@ def print_near_equals(found: NearEquals, console: Console) -> None:
     console.print(found.sentence())
     if len(found.designs) < found.found:
         console.print(f"shown are {len(found.designs)} that differ most from the chosen one and from each other")
+
+
+def print_prices(found: Prices, console: Console, every: bool = False) -> None:
+    """Print what a per cent costs in each objective, the dearest first, and what costs nothing."""
+    frame, size = found.frame, percent(found.step)
+    shown = found.finished if every else found.finished[:1]
+    for rank in shown:
+        console.print(f"{frame.title} ({frame.family}): prices of design {rank}")
+        for objective in frame.objectives:
+            rows = [r for r in found.rows if (r.design, r.objective) == (rank, objective)]
+            console.print()
+            table = plain_table(objective, "up", "down", "status", "why", right=(1, 2), wide=4)
+            for row in sorted((r for r in rows if r.status != NOTHING), key=_dearness, reverse=True):
+                table.add_row(_priced(row), _shown(row.up), _shown(row.down), row.status, row.reason)
+            console.print(table)
+            idle = [_priced(r) for r in rows if r.status == NOTHING]
+            if idle:
+                console.print(f"no influence: {', '.join(idle)}")
+            for words in dict.fromkeys(r.compared for r in rows if r.compared):
+                console.print(f"other parts: {words}" if "combinations" in words else words)
+        console.print()
+    if len(shown) < len(found.finished):
+        more = len(found.finished) - len(shown)
+        console.print(f"{more} more design{'' if more == 1 else 's'} with --all, and in prices.csv")
+    console.print(f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}")
+    held = ["the other objectives are held"] if len(frame.objectives) > 1 else []
+    held += ["makeable sizes are taken as continuous"] if found.makeable else []
+    if held:
+        console.print("; ".join(held))
+    if found.interrupted:
+        done, asked = len(found.finished), len(found.asked)
+        console.print(f"stopped: {found.interrupted}; {done} of {asked} designs are kept, run again to go on")
+
+
+def _priced(row: Price) -> str:
+    return f"limit {row.quantity}" if row.kind == "limit" else row.quantity
+
+
+def _dearness(row: Price) -> float:
+    return max(round(abs(x), 4) if x is not None else -1.0 for x in (row.up, row.down))
+
+
+def _shown(price: float | None) -> str:
+    return "withheld" if price is None else f"{price:+.3g}" if price else "0"
 
 
 def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:

@@ -196,6 +196,7 @@ def explain(
     from synth.console import output, print_explanation, progress_display
     from synth.explanation import explain as explain_question
     from synth.instance import catalogs_for
+    from synth.posed import posed
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(time_limit=time_limit)
@@ -203,8 +204,8 @@ def explain(
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        problem = _load(asked.family, asked.options)
-        settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
+        problem = posed(_load(asked.family, asked.options), asked.robust or None, asked.limits)
+        settings = {k: v for k, v in asked.search_settings(robust=True).items() if k in EXPLAINED}
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
     if not quiet:
@@ -368,8 +369,9 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         try:
             return synthesize(
-                problem, asked.requirements, catalogs=catalogs, progress=progress, **asked.search_settings()
-            )
+                problem, asked.requirements, catalogs=catalogs, progress=progress,
+                **asked.search_settings(robust=True),
+            )  # fmt: skip
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None
@@ -395,12 +397,16 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
+    if "robust" in front.statistics and (front.designs or not explanation):
+        from synth.robust_console import print_robust
+
+        print_robust(front, console)
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
     files = sorted(path.name for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
     designs = [name for name in files if name.startswith("design_")]
-    shown = [name for name in files if name not in designs and name in ("designs.csv", "front.json", "explanation.txt")]
+    shown = [name for name in files if name in ("designs.csv", "front.json", "robust.csv", "explanation.txt")]
     if designs:
         shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
     console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)

@@ -193,7 +193,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console.print(table)
 
     console.print("\nLimits")
-    table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4))
+    table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4), wide=0)
     for name, state in _limit_states(design).items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
@@ -307,7 +307,7 @@ def explanation_text(front: ParetoFront) -> str:
     console.print(explanation.get("message", "No design is feasible."))
     conflicts = explanation.get("conflicts") or []
     if conflicts:
-        table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3))
+        table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3), wide=0)
         for row in conflicts:
             shown = [format_quantity(row[key], row["unit"]) for key in ("value", "limit_value")]
             table.add_row(row["limit"], *shown, f"{100 * row['missed_by']:.3g} %")

@@ -545,6 +545,10 @@ class Declaration:
 
     # -- views ---------------------------------------------------------------------------------
 
+    def asked(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
+        """Return what this was made for: another one made for the same takes the same declarations."""
+        return self.problem, self._asked_options, self._given, self.catalogs
+
     def quantities(self) -> Iterator[tuple[str, str, str]]:
         """Yield (name, unit, kind) of every numeric quantity, in the order of reports."""
         for variable in self.variables.values():

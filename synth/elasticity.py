@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -16,6 +17,36 @@ from synth.special import expanded
 
 NOISE = 1e-6
 TIGHT = 1e-5
+
+
+@dataclass(frozen=True)
+class Optima:
+    """Designs made as good as their parts allow in one objective, and what moves it there.
+
+    Parameters
+    ----------
+    variables : array (designs, variables)
+        SI; gridded ones are continuous.
+    phi : array (designs,)
+        The objective as the search measures it.
+    converged : array of bool (designs,)
+        Whether the solver confirms the optimum.
+    multipliers : array (designs, limits)
+    limits : array (designs, limits)
+        d phi / d log of each limit; not-a-number where the limit is zero or void.
+    requirements : array (designs, requirements)
+        d phi / d log of each requirement, where limits that no variable moves let it change at all.
+    ends : array (designs, variables)
+        d phi / d log of the end of its range that a variable is at; 0 inside.
+    """
+
+    variables: np.ndarray
+    phi: np.ndarray
+    converged: np.ndarray
+    multipliers: np.ndarray
+    limits: np.ndarray
+    requirements: np.ndarray
+    ends: np.ndarray
 
 
 def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int) -> list[dict[str, dict[str, float]]]:
@@ -40,43 +71,91 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     combinations = np.array([c.combination for c in candidates])
     start = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
-    count, goals = phi.shape
-    data = form.instance.data(combinations)
-    requirements = {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
-    gradient = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
-    tight, sizes = _tight(form, start, combinations)
+    positions = requirement_positions(form)
     moved = followers(form.instance)
-    speaking = {name: _speaking_of(form, position) for name, position in requirements.items()}
-    spoken = {name: np.any([speaking[other] for other in moved[name]], axis=0) for name in requirements}
+    speaking = {name: _speaking_of(form, position) for name, position in positions.items()}
+    spoken = {name: np.any([speaking[other] for other in moved[name]], axis=0) for name in positions}
+    tight = _tight(form, start, combinations)
+    logs = np.array(form.rows().log_cuts, dtype=bool)
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
-        caps = np.full((count, goals), np.inf)
-        caps[:, :chosen] = phi[:, :chosen] + TIE
-        caps[:, k] = np.inf
-        tasks = Tasks(np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0)
-        # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
-        answer = form.solve_many(tasks, combinations, start, skipped=form.immovable)
-        for i in np.flatnonzero(answer.converged):
-            own: dict[str, float] = {}
-            for j, name in enumerate(names):
-                value = -float(answer.cut_multipliers[i, j])
-                value = -value if form.cuts[j].sense == "at_least" else value
-                if abs(value) > NOISE and form.rows().log_cuts[j]:
-                    own[name] = value
-            point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
-            slopes = gradient(
-                answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
-            )
-            for name in requirements:
-                if np.any(tight[i] & spoken[name]):
-                    continue  # the least change breaks a limit that no variable can restore
-                slope = sum(share * float(slopes[requirements[other]]) for other, share in moved[name].items())
-                value = slope * form.instance.requirements[name]
-                if abs(value) > NOISE:
-                    own[name] = value
+        found = optima(form, combinations, start, phi, chosen, k)
+        for i in np.flatnonzero(found.converged):
+            own = {
+                name: float(found.limits[i, j])
+                for j, name in enumerate(names)
+                if logs[j] and abs(found.limits[i, j]) > NOISE
+            }
+            for q, name in enumerate(positions):
+                # Where a tight limit speaks of it, the least change breaks what no variable can restore.
+                if abs(found.requirements[i, q]) > NOISE and not np.any(tight[i] & spoken[name]):
+                    own[name] = float(found.requirements[i, q])
             results[i][form.names[k]] = own
     return results
+
+
+def optima(
+    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int
+) -> Optima:
+    """Make designs as good as their parts allow in one objective, and return what moves it there.
+
+    Parameters
+    ----------
+    form : Formulation
+    combinations, start : array (designs,), (designs, variables)
+    phi : array (designs, objectives)
+        The chosen objectives but the one numbered ``k`` are held at these.
+    chosen, k : int
+    """
+    tasks = held(form, phi, chosen, k)
+    # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
+    answer = form.solve_many(tasks, combinations, start, skipped=immovable(form))
+    data = form.instance.data(combinations)
+    sizes, _ = sides(form, start, data)
+    _, bounds = sides(form, answer.variables, data)
+    logs = np.array(form.rows().log_cuts, dtype=bool)
+    signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
+    with np.errstate(all="ignore"):
+        limits = signs * answer.cut_multipliers * np.where(logs, 1.0, bounds / sizes)
+    limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
+    positions, moved = requirement_positions(form), followers(form.instance)
+    slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
+    requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
+    for i in np.flatnonzero(answer.converged):
+        point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
+        own, at_ends = slopes(
+            form, answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
+        )
+        ends[i] = at_ends * answer.variables[i]
+        for q, name in enumerate(positions):
+            slope = sum(share * float(own[positions[other]]) for other, share in moved[name].items())
+            requirements[i, q] = slope * form.instance.requirements[name]
+    return Optima(
+        answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
+    )  # fmt: skip
+
+
+def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndarray | None = None) -> Tasks:
+    """Return problems of one objective that hold the other chosen ones; ``moved`` is that of :class:`Tasks`."""
+    count, goals = phi.shape
+    caps = np.full((count, goals), np.inf)
+    caps[:, :chosen] = phi[:, :chosen] + TIE
+    caps[:, k] = np.inf
+    return Tasks(
+        np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0, moved=moved
+    )
+
+
+def requirement_positions(form: Formulation) -> dict[str, int]:
+    """Return the requirements in force with the number of their data input."""
+    return {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
+
+
+def immovable(form: Formulation) -> np.ndarray:
+    """Return which limits no variable moves; here gridded ones are continuous."""
+    moving = form.model.program.dependence(np.flatnonzero(form.lower < form.upper).tolist())
+    return np.array([not any(moving[k] for k in (c.value, c.limit) if k is not None) for c in form.cuts], dtype=bool)
 
 
 def followers(instance: Instance) -> dict[str, dict[str, float]]:
@@ -100,7 +179,7 @@ def followers(instance: Instance) -> dict[str, dict[str, float]]:
 
 
 def _gradient(form: Formulation) -> Any:
-    """Return the derivative of the Lagrangian to the data inputs as a function of point, data and multipliers."""
+    """Return the derivatives of the Lagrangian to data inputs and variables: of point, data and multipliers."""
     rows, program, n = form.rows(), form.model.program, form.n
     x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
     values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
@@ -116,34 +195,47 @@ def _gradient(form: Formulation) -> Any:
         phi.append(goal.sign * form_of)
     cut_weights, goal_weights = ca.SX.sym("cuts", len(cut_rows)), ca.SX.sym("goals", len(phi))
     total = ca.dot(cut_weights, ca.vertcat(*cut_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
-    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], [ca.gradient(total, data)])
+    wanted = [ca.gradient(total, data), ca.gradient(total, x)]
+    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
 
     def evaluate(
-        point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray, goals: np.ndarray, k: int
-    ) -> np.ndarray:
+        own: Formulation, point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray,
+        goals: np.ndarray, k: int,
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
         clean = [1.0 if np.isnan(v) else v for v in known]
-        weights = np.where(np.isfinite(goals), goals, 0.0) / np.where(rows.log_goals, 1.0, form.goal_scales)
-        weights[k] += 1.0
-        found = function(point, clean, form.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
-        slopes: np.ndarray = np.nan_to_num(np.asarray(found).ravel())
-        return slopes
+        units = np.where(rows.log_goals, 1.0, own.goal_scales)
+        weights = np.where(np.isfinite(goals), goals, 0.0) / units
+        weights[k] += 1.0 / units[k]
+        found = function(point, clean, own.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
+        slopes, ends = (np.nan_to_num(np.asarray(part).ravel()) for part in found)
+        return slopes, ends
 
     return evaluate
 
 
-def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which limits that no variable can move are active, and the size of every limit (designs, limits)."""
+def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
+    result = form.model.evaluate(variables, data)
+    bounds, sizes = np.empty((len(variables), len(form.cuts))), np.empty((len(variables), len(form.cuts)))
+    found = [(*result.limits[x.name], x.scale) for x in form.model.limits]
+    found += [(result.values[x.quantity], np.array(x.limit), 1e-9) for x in form.instance.extra]
+    for j, (value, limit, scale) in enumerate(found):
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
+        sizes[:, j], bounds[:, j] = np.where(np.isfinite(size), size, 1.0), limit
+    return sizes, bounds
+
+
+def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
+    """Return which limits that no variable can move are active (designs, limits)."""
     result = form.evaluate(variables, combinations)
     tight = np.zeros((len(variables), len(form.cuts)), dtype=bool)
-    sizes = np.ones(tight.shape)
-    sides = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
-    sides += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra]
-    for j, (value, limit, sense, scale) in enumerate(sides):
-        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
-        sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
-        if form.immovable[j]:
+    found = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
+    found += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra]
+    fixed = immovable(form)
+    for j, (value, limit, sense, scale) in enumerate(found):
+        if fixed[j]:
             tight[:, j] = np.abs(residual(value, limit, sense, scale)) < TIGHT
-    return tight, sizes
+    return tight
 
 
 def _speaking_of(form: Formulation, position: int) -> np.ndarray:

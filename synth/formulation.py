@@ -269,12 +269,13 @@ class Formulation:
             np.zeros(n, dtype=np.int32),
         )
 
-    def not_refused(self, combinations: np.ndarray) -> np.ndarray:
-        """Tell which combinations no refusal over several slots forbids."""
-        keep = np.ones(len(combinations), dtype=bool)
-        for refusal in self.instance.joint_refusals:
+    def not_refused(self, combinations: np.ndarray, moved: Instance | None = None) -> np.ndarray:
+        """Tell which combinations no refusal over several slots forbids; ``moved``: or over one, where it differs."""
+        keep, instance, d = np.ones(len(combinations), dtype=bool), moved or self.instance, self.model.declaration
+        every = [r for r, kinds in zip(d.refusals, self.model.refusal_kinds, strict=True) if kinds]
+        for refusal in instance.joint_refusals if moved is None else every:
             refused = self._refusal_function(refusal)
-            keep &= ~(np.asarray(refused([None] * self.n + self.instance.data(combinations))[0]) > 0.5)
+            keep &= ~(np.asarray(refused([None] * self.n + instance.data(combinations))[0]) > 0.5)
         return keep
 
     def _refusal_function(self, refusal: Refusal) -> Any:
@@ -590,13 +591,14 @@ class Formulation:
         low: np.ndarray | None = None,
         high: np.ndarray | None = None,
         skipped: np.ndarray | None = None,
+        data: Sequence[Any] | None = None,
     ) -> Solutions:
         """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
 
-        ``skipped`` marks limits that are left out.
+        ``skipped`` marks limits that are left out; ``data``: in place of that of the question.
         """
         count = len(combinations)
-        data = self.instance.data(combinations)
+        data = self.instance.data(combinations) if data is None else data
         self.solved_combinations.update(np.unique(combinations).tolist())
         self.nlp_solves += count
         low = np.broadcast_to(self.lower, (count, self.n)) if low is None else low

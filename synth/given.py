@@ -35,9 +35,10 @@ def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
     """Load the problem and evaluate the design that a spec with values describes."""
     from synth.analysis import evaluate
     from synth.instance import catalogs_for
+    from synth.posed import posed
     from synth.problem import load
 
-    problem = load(asked.family, **asked.options)
+    problem = posed(load(asked.family, **asked.options), asked.robust or None, asked.limits)
     catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
     design = evaluate(
         problem, asked.requirements, values=asked.values, parts=_one_each(asked),

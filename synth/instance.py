@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import math
 import re
@@ -281,13 +282,32 @@ class Instance:
         options = self.model.declaration.options.values()
         return ", ".join(f"{o.name} = {o.chosen}" for o in options if o.chosen != o.default)
 
+    def moved(self, name: str, value: float) -> Instance:
+        """Return this question with another value of a requirement, and of those whose default is made of it.
+
+        The combinations keep their numbers; some may be refused there that are not here.
+
+        Raises
+        ------
+        InputError
+            When the requirement cannot have that value.
+        """
+        other, declared = copy.copy(self), self.model.declaration.requirements
+        values = {n: self.requirements[n] for n in self.given} | {name: value}
+        other.requirements = other._requirement_values(
+            {n: format_quantity(v, declared[n].unit, None) for n, v in values.items()}
+        )
+        other.given = self.given | {name}
+        other._refuse_requirements()
+        return other
+
     # -- limits and fix ------------------------------------------------------------------------
 
     def _add_limit(self, name: str, conditions: Any) -> None:
         model = self.model
         unit = model.units[name]
         for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
-            for sense, bound in self._read_limit(name, unit, text):
+            for sense, bound in self.read_limit(name, unit, text):
                 self._apply_limit(name, unit, sense, bound)
 
     def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
@@ -295,13 +315,14 @@ class Instance:
         unit = self.model.units[name]
         result = []
         for text in texts if isinstance(texts, (list, tuple)) else [texts]:
-            for sense, bound in self._read_limit(name, unit, text):
+            for sense, bound in self.read_limit(name, unit, text):
                 label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
                 result.append(ExtraLimit(label, name, sense, bound, unit))
         return result
 
     @staticmethod
-    def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+    def read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+        """Return what a text says of a quantity: sense and SI value of each limit."""
         label = f"limits: {name}"
         if isinstance(text, str) and ".." in text:
             first, last = text.split("..", 1)

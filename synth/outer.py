@@ -100,6 +100,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> 
     question = {
         "family": instance.problem.name,
         "options": dict(instance.problem.options),
+        "restated": repr(instance.problem.restated),
         "requirements": instance.requirements,
         "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},

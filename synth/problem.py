@@ -55,6 +55,8 @@ class DesignProblem:
     simulation_settings: Mapping[str, Setting] = {}
     # Requirements that mean here what they mean in every family: what a sheet for several families may state.
     understands: tuple[str, ...] = ()
+    # What a spec must repeat beside options and requirements so that it asks for the same problem.
+    restated: Mapping[str, Any] = {}
 
     def __init__(self, /, **options: str) -> None:
         if not self.name:

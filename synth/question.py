@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
 from synth.instance import Instance, catalogs_for
+from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.tables import Catalogs
 
@@ -30,7 +31,9 @@ def problem_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) ->
         When the problem or its tables cannot be had.
     """
     own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
-    return own, catalogs_for(own, front.frame.restated.get("catalogs") if catalogs is None else catalogs)
+    restated = front.frame.restated
+    own = posed(own, restated.get("robust"), restated.get("limits"))
+    return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
 
 
 def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) -> Instance:

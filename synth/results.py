@@ -463,9 +463,9 @@ def save_files(folder: str | Path, files: Mapping[str, str]) -> Path:
         raise InputError("output", str(folder), "a folder; this is a file")
     try:
         target.mkdir(parents=True, exist_ok=True)
-        for stale in target.glob("design_*.yaml"):
+        for stale in [*target.glob("design_*.yaml"), target / "robust.csv"]:
             if stale.name not in files:
-                stale.unlink()
+                stale.unlink(missing_ok=True)
         for name, text in files.items():
             write_atomically(target / name, text)
     except OSError as error:

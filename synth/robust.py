@@ -8,20 +8,28 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
 
 from synth.errors import InputError
-from synth.instance import catalogs_for
+from synth.feasibility import Status
+from synth.instance import Instance, catalogs_for
+from synth.pareto import rank
+from synth.posed import nominal, posed
 from synth.problem import DesignProblem, load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, csv_text, design_columns, design_row, save_files
-from synth.scatter import Asked, read_block
+from synth.scatter import LIMITS, RATE, Asked, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Progress = Callable[[Mapping[str, Any]], None]
+SEARCHES = 5  # at most so many, each with more points at which limits are posed
+SCENARIOS = 4  # new points per limit
+SHORTEST, GRACE = 1e-3, 2.0  # seconds
 
 
 @dataclass(frozen=True)
@@ -149,18 +157,117 @@ def rate(
     return Ratings(rated, asked.block(), len(designs) - len(rated), stopped)
 
 
-def nominal(problem: DesignProblem) -> DesignProblem:
-    """Return the problem without what was posed because something scatters."""
-    return problem
+# ---- fronts ---------------------------------------------------------------------------------------------------------
 
 
-def with_ratings(front: ParetoFront, asked: Asked, ratings: Sequence[Mapping[str, Any]], stopped: str) -> ParetoFront:
+class Asks(Protocol):
+    """A question that was checked: see ``synth.search``."""
+
+    @property
+    def instance(self) -> Instance:
+        """The model with its requirements and restrictions."""
+        ...
+
+    def answer(
+        self,
+        workers: int = 1,
+        progress: Progress | None = None,
+        time_limit: float | None = None,
+        known: Sequence[Design] = (),
+    ) -> ParetoFront:
+        """Search the designs."""
+        ...
+
+
+def robust_front(
+    pose: Callable[[DesignProblem], Asks],
+    rater: Rater,
+    limits: Mapping[str, Any] | None,
+    workers: int = 1,
+    progress: Progress | None = None,
+    time_limit: float | None = None,
+) -> ParetoFront:
+    """Search designs and rate them; where limits are to hold over the range, until they do.
+
+    Designs that keep all limits that were posed, but not everywhere in the range, tell where they fail: there those
+    limits are posed as well, and the search begins again from what is known. What still fails in the end is taken off
+    the front. Each question asked leaves out limits at most, so that its bounds hold for all robust designs.
+
+    Parameters
+    ----------
+    pose : callable
+        Returns the question of a problem.
+    rater : Rater
+        Rates designs of the nominal problem.
+    limits : mapping or None
+        The user's own limits.
+    workers, progress, time_limit
+        As for ``synthesize``.
+    """
+    asked, problem = rater.asked, rater.instance.problem
+    deadline = math.inf if time_limit is None else time.monotonic() + time_limit
+    known: list[Design] = []
+    for k in range(1, SEARCHES + 1):
+        question = pose(posed(problem, asked, limits))
+        left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
+        front = question.answer(workers, progress, left, known)
+        # Designs that nobody rated are of little use: that takes a moment even where the time is over.
+        ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
+        failing = [j for j, told in enumerate(ratings) if not told["holds"]]
+        if asked.mode == RATE or not failing or front.interrupted or stopped or k == SEARCHES:
+            break
+        asked = asked.with_scenarios(_scenarios([ratings[j] for j in failing]))
+        known = front.designs
+    counts = {"searches": k, "rated": len(ratings), "samples": asked.samples}
+    if asked.mode == LIMITS:
+        counts["limits_posed"] = len(question.instance.model.limits) - len(rater.model.limits)
+        counts["taken_off"] = len(failing)
+    done = _with_ratings(front, asked, ratings, stopped, counts)
+    return _without(done, failing) if asked.mode == LIMITS and failing else done
+
+
+def _scenarios(ratings: Sequence[Mapping[str, Any]]) -> dict[str, list[tuple[float, ...]]]:
+    """Return the points at which limits fail, the worst first, and a few of each limit."""
+    found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
+    for told in ratings:
+        for name, limit in told["limits"].items():
+            if not limit["holds"]:
+                worst = math.inf if limit["residual"] is None else limit["residual"]
+                found.setdefault(name, []).append((worst, tuple(limit["position"])))
+    few = {name: sorted(points, key=lambda x: -x[0])[:SCENARIOS] for name, points in found.items()}
+    return {name: [point for _, point in points] for name, points in few.items()}
+
+
+def _with_ratings(
+    front: ParetoFront, asked: Asked, ratings: Sequence[Mapping[str, Any]], stopped: str, counts: Mapping[str, int]
+) -> ParetoFront:
     """Return a front whose designs tell how they stand the range, and whose question repeats what scatters."""
     frame = replace(front.frame, restated={**front.frame.restated, "robust": asked.block()})
     known = [*ratings, *({} for _ in range(len(front.designs) - len(ratings)))]
-    designs = [replace(d, frame=frame, robust=r) for d, r in zip(front.designs, known, strict=True)]
-    statistics = {**front.statistics, "robust": {"rated": len(ratings), "samples": asked.samples}}
     return replace(
-        front, frame=frame, designs=designs, statistics=statistics, interrupted=front.interrupted or stopped,
+        front,
+        frame=frame,
+        designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
+        statistics={**front.statistics, "robust": dict(counts)},
         settings={**front.settings, "robust": asked.block()},
-    )  # fmt: skip
+        interrupted=front.interrupted or stopped,
+    )
+
+
+def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
+    """Return a front without some of its designs, ranked again."""
+    kept = [d for j, d in enumerate(front.designs) if j not in failing]
+    chosen = dict(front.frame.objectives)
+    values = np.array([[d.values[n] for n in chosen] for d in kept]).reshape(len(kept), len(chosen))
+    if kept:
+        weights = front.settings.get("weights") or {}
+        ranking = rank(chosen, values, [weights.get(n, 1.0) for n in chosen])
+        kept = [
+            replace(kept[k], rank=position, score=float(ranking.scores[k]), note=ranking.notes[k])
+            for position, k in enumerate(ranking.order, start=1)
+        ]
+    if not kept:
+        # Nothing says that there is no robust design; there is none here that anything could be proven of.
+        certificate = replace(front.certificate, kind="heuristic", gap=None)
+        return replace(front, designs=[], complete=False, status=Status.NOT_SOLVED, certificate=certificate)
+    return replace(front, designs=kept, complete=False)

@@ -85,4 +85,4 @@ def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, An
     must_be_a_design(asked)
     with blamed_on(asked.file):
         problem, catalogs, design = given_design(asked)
-    return design, problem, catalogs, {}
+    return design, problem, catalogs, dict(asked.robust)

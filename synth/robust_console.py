@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 from synth.console import plain_table
 from synth.rated import shown_at
 from synth.results import Design
+from synth.robust import told_of
+from synth.scatter import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.console import Console
 
+    from synth.results import ParetoFront
     from synth.robust import Ratings
 
 SHOWN = 20
@@ -29,6 +32,21 @@ def print_ratings(found: Ratings, console: Console) -> None:
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; {found.missing} designs are not rated")
     console.print(found.sentence())
+
+
+def print_robust(front: ParetoFront, console: Console) -> None:
+    """Print how the designs of a front stand the range that was asked."""
+    told, gone = front.settings["robust"], front.statistics["robust"].get("taken_off", 0)
+    console.print()
+    if front.designs:
+        print_designs(front.designs, console)
+        console.print()
+        console.print(told_of(front.designs, told["samples"]))
+    if gone:
+        designs = "1 design was" if gone == 1 else f"{gone} designs were"
+        console.print(f"{designs} taken off: not all limits hold over the whole range")
+    if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
+        console.print("what is proven below counts for all designs that keep their limits over the whole range")
 
 
 def print_designs(designs: Sequence[Design], console: Console) -> None:

@@ -23,8 +23,11 @@ from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
 from synth.problem import DesignProblem, load
 from synth.purposes import Cover, Staircase, proven_slack
+from synth.rating import Rater
 from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
+from synth.robust import robust_front
+from synth.scatter import read_block
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
 
@@ -61,6 +64,7 @@ def synthesize(
     seed: int = 0,
     progress: Callable[[Mapping[str, Any]], None] | None = None,
     time_limit: float | None = None,
+    robust: Mapping[str, Any] | None = None,
 ) -> ParetoFront:
     """Find the ranked Pareto designs for a requirement.
 
@@ -96,6 +100,9 @@ def synthesize(
         Called with a mapping: stage, done (0..1), combinations, incumbents, message.
     time_limit : float, optional
         Seconds after which the best front so far is returned.
+    robust : mapping, optional
+        What scatters and by how much: {"friction": "catalogue range", "load_torque": "+-10 %"}. Limits then hold over
+        the whole range, or designs are only rated ("mode": "rate").
 
     Returns
     -------
@@ -107,8 +114,16 @@ def synthesize(
         For everything that is wrong with the input, in one sentence.
     """
     check_settings(points, gap, grid, workers, seed, progress, time_limit)
-    question = pose(p, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
-    return question.answer(workers, progress, time_limit)
+
+    def asked(problem: Any) -> Question:
+        return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
+
+    if robust is None:
+        return asked(p).answer(workers, progress, time_limit)
+    problem, block = load(p), read_block(robust)
+    catalogs = catalogs_for(problem, catalogs)
+    rater = Rater(problem, requirements, catalogs, limits, block)
+    return robust_front(asked, rater, limits, workers, progress, time_limit)
 
 
 @dataclass(frozen=True)

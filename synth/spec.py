@@ -36,6 +36,7 @@ class Spec:
     parts: Mapping[str, Any]
     catalogs: Any
     weights: Mapping[str, float]
+    robust: Mapping[str, Any]
     values: Mapping[str, Any] | None
     points: int | None
     gap: float | None
@@ -71,14 +72,24 @@ class Spec:
             given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
         return replace(self, **given)
 
-    def search_settings(self) -> dict[str, Any]:
-        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart."""
+    def search_settings(self, robust: bool = False) -> dict[str, Any]:
+        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart.
+
+        Raises
+        ------
+        InputError
+            When something scatters and what asks is not prepared for it (``robust`` says that it is).
+        """
+        if self.robust and not robust:
+            expected = "no robust block here: clutchsynth run (one family), rate, check and explain take one"
+            raise InputError("robust", ", ".join(self.robust), expected)
         names = (
             "objectives",
             "limits",
             "fix",
             "parts",
             "weights",
+            "robust",
             "points",
             "gap",
             "grid",
@@ -279,6 +290,7 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
     "parts": _lists("friction_pair: [designation]"),
     "catalogs": _catalogs,
     "weights": _weights,
+    "robust": _mapping("friction: catalogue range"),
     "values": _scalars("friction_surfaces: 10"),
     "points": _whole(1),
     "gap": _gap,

@@ -10,6 +10,7 @@ import numpy as np
 
 import synth
 from synth.instance import Instance, as_catalogs
+from tests.conformance.cases_magnetic import magnetic
 
 
 @dataclass(frozen=True)
@@ -501,6 +502,7 @@ CASES: dict[str, Family] = {
         sound=sound_springs,
     ),
 }
+CASES |= magnetic(Family, Case)
 
 
 def question(family: str, options: Mapping[str, str], optional: bool) -> Instance:

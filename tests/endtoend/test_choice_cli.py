@@ -1,4 +1,4 @@
-"""``clutchsynth near-equals``, and ``run`` with several families, as a person meets them."""
+"""``clutchsynth near-equals``, ``prices``, and ``run`` with several families, as a person meets them."""
 
 from __future__ import annotations
 
@@ -92,6 +92,64 @@ def test_the_front_is_not_written_over(saved: Path) -> None:
     done = clutchsynth("near-equals", saved / "out", "-o", saved / "out")
     assert done.returncode == 2
     assert "another folder" in done.stderr
+
+
+# ---- prices ---------------------------------------------------------------------------------------------------------
+
+
+def test_prices_are_shown_and_saved_beside_the_front(saved: Path) -> None:
+    folder = saved / "out"
+    done = clutchsynth("prices", folder, "--design", 2, "--design", 1, "-o", folder)
+    assert done.returncode == 0, done.stderr
+    assert "prices of design 2" in done.stdout
+    assert "prices of design 1" not in done.stdout
+    assert "1 more design with --all, and in prices.csv" in done.stdout
+    assert "other parts: over all 12 combinations tried" in done.stdout
+    assert max(len(line) for line in done.stdout.splitlines() if not line.startswith("written")) <= 100
+    with (folder / "prices.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["design"] for row in rows if row["quantity"] == "load_torque"] == ["2", "2", "1", "1"]
+    assert {row["kind"] for row in rows} == {"requirement", "limit"}
+    # The rings are pinned: torque is a matter of force alone, in proportion.
+    force = {row["quantity"]: row for row in rows if row["design"] == "1" and row["objective"] == "actuation_force"}
+    assert float(force["load_torque"]["down"]) == pytest.approx(1.0, rel=1e-4)
+    assert "load_torque costs 1 % actuation_force" in force["load_torque"]["sentence"]
+    assert (folder / "design_02.yaml").exists()
+    again = clutchsynth("prices", folder, "--all", "-o", folder)
+    assert "prices of design 1" in again.stdout
+    assert "prices of design 2" in again.stdout
+
+
+def test_prices_out_of_time_end_with_four_and_go_on(saved: Path) -> None:
+    folder = saved / "late"
+    done = clutchsynth("prices", saved / "out", "--time-limit", "1e-9", "-o", folder)
+    assert done.returncode == 4
+    assert "designs are kept, run again to go on" in done.stdout
+    assert (folder / "prices.csv").read_text().startswith("design,objective,quantity,kind")
+    assert clutchsynth("prices", saved / "out", "--quiet", "-o", folder).returncode == 0
+    assert len((folder / "prices.csv").read_text().splitlines()) > 20
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["--design", "77"], ["design", "77", "rank"]),
+        (["--step", "2 kg"], ["step", "2 kg"]),
+        (["--step", "50 %"], ["step", "0.01 % to 10 %"]),
+        (["--time-limit", "soon"], ["--time-limit", "soon"]),
+    ],
+)
+def test_careless_prices_are_refused_and_nothing_is_written(saved: Path, words: list[str], expected: list[str]) -> None:
+    done = clutchsynth("prices", saved / "out", *words, "-o", saved / "never")
+    assert done.returncode == 2
+    assert all(word in done.stderr for word in expected)
+    assert not (saved / "never").exists()
+
+
+def test_prices_of_what_is_no_front_are_refused(saved: Path) -> None:
+    done = clutchsynth("prices", saved / "spec.yaml", "-o", saved / "never")
+    assert done.returncode == 2
+    assert "a front.json that clutchsynth wrote" in done.stderr
 
 
 # ---- several families -----------------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ family: multi_plate_clutch
 options: {guide_model: cz}
 requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
 fix: {ramp_time: 2 s, pair: seed_multiplate_ref, inner_plate: core 3, outer_plate: core 2, d_in: 158 mm}
-limits: {friction_surfaces: 10 .. 14}
+limits: {friction_surfaces: 10 .. 20}
 points: 2
 """
 
@@ -103,6 +103,80 @@ def test_careless_flags_are_refused_and_nothing_is_written(saved: Path, words: l
     assert done.returncode == 2
     assert all(word in done.stderr for word in expected), done.stderr
     assert not (saved / "never").exists()
+
+
+ROBUST = SPEC + 'robust: {friction: "+-10 %", load_torque: "590 .. 620 N*m", samples: 256}\n'
+
+
+@pytest.fixture(scope="module")
+def robust(saved: Path) -> tuple[Path, str]:
+    (saved / "robust.yaml").write_text(ROBUST)
+    done = clutchsynth("run", saved / "robust.yaml", "-o", saved / "robust")
+    assert done.returncode == 0, done.stderr
+    return saved / "robust", done.stdout
+
+
+def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, str], tmp_path: Path) -> None:
+    folder, shown = robust
+    assert "2 of 2 designs keep all limits over the whole range (proven)" in shown
+    assert "designs.csv, front.json, robust.csv, design_01.yaml" in " ".join(shown.split())
+    designs = rows(folder / "designs.csv")
+    assert {row["robust"] for row in designs} == {"yes"}
+    assert {float(row["yield"]) for row in designs} == {1.0}
+    assert all(row["proof"] in ("proven", "bounded") for row in rows(folder / "robust.csv"))
+    assert "utilisation: torque_capacity (friction low, load_torque high)" in designs[0]
+    assert clutchsynth("check", folder / "design_01.yaml").returncode == 0
+    assert "torque_capacity (friction low," in clutchsynth("check", folder / "design_01.yaml").stdout
+    done = clutchsynth("verify", folder)
+    assert done.returncode == 0, done.stdout
+    # The question repeats what scatters: nothing needs to be said again.
+    assert clutchsynth("rate", folder, "-o", tmp_path / "again", "--quiet").returncode == 0
+    assert clutchsynth("rate", folder / "design_02.yaml", "-o", tmp_path / "one", "--quiet").returncode == 0
+    assert clutchsynth("simulate", folder / "design_01.yaml", "-o", tmp_path / "sim").returncode == 0
+
+
+def test_a_folder_that_is_used_again_keeps_nothing_of_the_range(saved: Path, robust: tuple[Path, str]) -> None:
+    folder = saved / "twice"
+    (saved / "rate.yaml").write_text(ROBUST.replace("robust: {", "robust: {mode: rate, "))
+    assert clutchsynth("run", saved / "rate.yaml", "-o", folder, "--quiet").returncode == 0
+    assert {row["robust"] for row in rows(folder / "designs.csv")} == {"no"}
+    assert [row["mass [kg]"] for row in rows(folder / "designs.csv")] == [
+        row["mass [kg]"] for row in rows(saved / "out" / "designs.csv")
+    ]
+    assert clutchsynth("verify", folder).returncode == 0
+    assert clutchsynth("run", saved / "spec.yaml", "-o", folder, "--quiet").returncode == 0
+    assert not (folder / "robust.csv").exists()
+    assert "yield" not in rows(folder / "designs.csv")[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"+-10 %"', "rough", ["friction", "rough", "catalogue range"]),
+        ('"+-10 %"', "0.1", ["friction", "0.1", "a range"]),
+        ("590 .. 620", "610 .. 620", ["load_torque", "holds the nominal 600 N*m"]),
+        ('load_torque: "590', 'lode_torque: "590', ["lode_torque", "did you mean load_torque"]),
+        ("samples: 256", "samples: 250", ["samples", "power of 2"]),
+        ("samples: 256", "mode: best", ["mode", "limits"]),
+        ("robust: {", "robust: [", ["robust.yaml"]),
+        ("family: multi_plate_clutch", "family: [multi_plate_clutch, disc_clutch]", ["robust", "one family"]),
+    ],
+)
+def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new: str, words: list[str]) -> None:
+    assert old in ROBUST
+    text = ROBUST.replace(old, new)
+    text = text.replace("256}", "256]") if "robust: [" in new else text
+    (tmp_path / "robust.yaml").write_text(text)
+    done = clutchsynth("run", tmp_path / "robust.yaml", "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert all(word in done.stderr for word in ["robust.yaml", *words]), done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_studies_do_not_take_a_range(saved: Path, robust: tuple[Path, str]) -> None:
+    done = clutchsynth("whatif", saved / "robust.yaml", "-o", saved / "study", "--vary", "load_torque=600,610 N*m")
+    assert done.returncode == 2
+    assert "no robust block here" in done.stderr
 
 
 def test_the_front_is_not_written_over(saved: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import problems.cone_clutch
+import problems.magnetic_powder_clutch
 import problems.multi_plate_clutch  # noqa: F401 - fills the table
 from problems.mechanics import startup
 from synth.special import TABLE, SpecialFunction
@@ -49,6 +50,9 @@ def sample(name, count, seed):
         points["driven_inertia"] = np.where(
             rng.random(count) < 0.5, points["driven_inertia"], border * 10 ** rng.uniform(-2, 2, count)
         )
+    elif TABLE[name].above is not None:
+        first, second = (names[k] for k in TABLE[name].above)
+        points[first] = points[second] * (1 + 10 ** rng.uniform(-4, 3, count))
     return np.array([points[a] for a in names])
 
 
@@ -221,7 +225,8 @@ def test_the_table_is_complete():
     names = {n.rsplit(".", 1)[1] for n in NAMES}
     assert names == {
         "sum_geometric", "sum_lipka", "sum_exact", "peak_rise_per_work", "reactive_friction_work",
-        "reactive_slip_time", "reactive_peak_slip_power", "grip_factor",
+        "reactive_slip_time", "reactive_peak_slip_power", "grip_factor", "iron_field", "resistance_rise",
+        "hot_copper_loss", "densest", "rim_section_width",
     }  # fmt: skip
     assert all(isinstance(TABLE[n], SpecialFunction) for n in NAMES)
     assert {n.rsplit(".", 1)[1] for n in NAMES if TABLE[n].curvature is None} == {

@@ -51,6 +51,16 @@ def test_a_limit_of_the_question_has_its_price_too():
     assert design.elasticity["mass"] == pytest.approx({"area >= 150 mm2": 1.0, "reach": 1.0})
 
 
+def test_a_limit_of_a_makeable_size_alone_has_a_price():
+    # Flexibility goes with 1/width; the width, makeable in millimetres, is held by the room alone.
+    for grid in (True, False):
+        (design,) = synth.synthesize(
+            Strut(), {"load": "20 kN", "room": "150 mm"}, ["flexibility"], catalogs={"rods": RODS}, grid=grid,
+            fix={"plates": 1, "end": "eye", "material": "hard"}, parts={"plate": ["core 2"]}, gap=1e-5,
+        ).designs  # fmt: skip
+        assert design.elasticity["flexibility"] == pytest.approx({"room": -1.0, "reach": 1.0})
+
+
 class Hung(synth.DesignProblem):
     """Has an equality, an objective to be large and one that is negative."""
 

@@ -1,0 +1,211 @@
+"""What a per cent of a requirement or a limit costs: the list of prices, its sentences, and its files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.errors import InputError
+from synth.results import Frame, csv_text, write_atomically
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMAT = 1
+RECORD = "prices.json"
+CONFIRMED, FIXED, CHANGE, NOTHING = "confirmed", "parts fixed", "parts change", "no influence"
+WITHHELD = "withheld"
+ALIKE = 5e-3  # prices that differ by less are told as one
+
+
+@dataclass(frozen=True)
+class Price:
+    """What one requirement or limit costs in one objective of one design: per cent of the objective per per cent.
+
+    ``elasticity`` is the price by the multipliers, ``up`` and ``down`` those that hold for a little more and a little
+    less (None: withheld); ``compared`` tells over which combinations of parts.
+    """
+
+    design: int
+    objective: str
+    quantity: str
+    kind: str
+    elasticity: float | None
+    up: float | None
+    down: float | None
+    status: str
+    reason: str
+    compared: str
+    sentence: str
+
+
+COLUMNS = ("design", "objective", "quantity", "kind", "elasticity", "up", "down", "status", "reason", "compared",
+           "sentence")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Prices:
+    """Prices of requirements and limits, per design and objective.
+
+    ``step`` is the share by which each was moved, ``asked`` the ranks of the designs asked for; a design that was not
+    reached has no rows.
+    """
+
+    frame: Frame
+    asked: tuple[int, ...]
+    step: float
+    rows: tuple[Price, ...]
+    makeable: bool
+    fingerprint: str
+    statistics: Mapping[str, Any]
+    interrupted: str = ""
+
+    @property
+    def finished(self) -> tuple[int, ...]:
+        """Return the ranks of the designs whose prices are known."""
+        known = {row.design for row in self.rows}
+        return tuple(rank for rank in self.asked if rank in known)
+
+    def of(self, design: int, objective: str, quantity: str, kind: str = "requirement") -> Price:
+        """Return one price.
+
+        Raises
+        ------
+        KeyError
+            When there is none of that name.
+        """
+        for row in self.rows:
+            if (row.design, row.objective, row.quantity, row.kind) == (design, objective, quantity, kind):
+                return row
+        raise KeyError(f"{kind} {quantity}, objective {objective}, design {design}")
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per price."""
+        import pandas as pd  # costly to import
+
+        return pd.DataFrame([[getattr(row, c) for c in COLUMNS] for row in self.rows], columns=list(COLUMNS))
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        table = csv_text(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
+        store = Store(None, self.fingerprint)
+        self._enter(store)
+        return {"prices.csv": table, RECORD: store.text()}
+
+    def save(self, folder: str | Path) -> Path:
+        """Write prices.csv and prices.json; return the folder.
+
+        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        """
+        store = Store(Path(folder), self.fingerprint)
+        self._enter(store)
+        store.write(RECORD, store.text())
+        store.write("prices.csv", self.files()["prices.csv"])
+        return Path(folder)
+
+    def _enter(self, store: Store) -> None:
+        for rank in self.finished:
+            store.known[rank] = [asdict(row) for row in self.rows if row.design == rank]
+
+
+class Store:
+    """Prices of finished designs, kept in a folder; without one nothing is kept."""
+
+    def __init__(self, folder: Path | None, fingerprint: str) -> None:
+        self.folder, self.fingerprint = folder, fingerprint
+        self.known: dict[int, list[dict[str, Any]]] = {} if folder is None else self._read(folder / RECORD)
+
+    def _read(self, path: Path) -> dict[int, list[dict[str, Any]]]:
+        """Return what an earlier run of the same question has finished; a file that is none begins a new one."""
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            if content["format"] != FORMAT or content["fingerprint"] != self.fingerprint:
+                return {}
+            return {int(k): [asdict(Price(**row)) for row in rows] for k, rows in content["designs"].items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return {}
+
+    def text(self) -> str:
+        """Return what stands in the file."""
+        content = {"format": FORMAT, "fingerprint": self.fingerprint, "designs": self.known}
+        return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+    def get(self, design: int) -> list[Price] | None:
+        """Return the prices of a design where they are kept."""
+        rows = self.known.get(design)
+        return None if rows is None else [Price(**row) for row in rows]
+
+    def put(self, design: int, rows: list[Price]) -> None:
+        """Keep the prices of a design."""
+        self.known[design] = [asdict(row) for row in rows]
+        if self.folder is not None:
+            self.write(RECORD, self.text())
+
+    def write(self, name: str, text: str) -> None:
+        """Write a file into the folder, whole or not at all."""
+        assert self.folder is not None
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            write_atomically(self.folder / name, text)
+        except OSError as error:
+            raise InputError("output", str(self.folder), f"a folder that can be written ({error.strerror})") from error
+
+
+def percent(share: float) -> str:
+    """Return a share as per cent in few digits."""
+    return f"{100 * share:.3g} %"
+
+
+def told(
+    quantity: str,
+    kind: str,
+    objective: str,
+    sense: str,
+    steps: tuple[float, float],
+    up: float | None,
+    down: float | None,
+    notes: tuple[str, str],
+) -> str:
+    """Return a price as a sentence.
+
+    Parameters
+    ----------
+    quantity, kind, objective, sense : str
+    steps : tuple of float
+        The shares that are spoken of, upwards and downwards.
+    up, down : float or None
+        Prices; None where withheld.
+    notes : tuple of str
+        What else changes upwards and downwards; nothing where empty.
+    """
+    if up == 0 and down == 0:
+        name = f"the limit {quantity}" if kind == "limit" else quantity
+        return f"{name} has no influence on {objective}"
+    size, other = (percent(step) for step in steps)
+    more = f"raising the limit {quantity} by {size}" if kind == "limit" else f"{size} more {quantity}"
+    less = f"lowering it by {other}" if kind == "limit" else f"{other} less"
+    if up is None and down is None:
+        return f"what {more} costs in {objective} is withheld"
+    alike = up is not None and down is not None and abs(up - down) <= ALIKE * max(abs(up), abs(down))
+    first = f"{more}: withheld" if up is None else f"{more} {_effect(up, steps[0], objective, sense)}{_note(notes[0])}"
+    if alike and not any(notes) and steps[0] == steps[1]:
+        return first
+    effect = "" if down is None else _effect(-down, steps[1], objective, sense)
+    second = f"{less}: withheld" if down is None else f"{less} {effect}{_note(notes[1])}"
+    return f"{first}; {second}"
+
+
+def _note(text: str) -> str:
+    return f" ({text})" if text else ""
+
+
+def _effect(price: float, step: float, objective: str, sense: str) -> str:
+    change = price * step
+    if abs(change) < 5e-7:
+        return f"changes nothing in {objective}"
+    worse = (change > 0) == (sense == "min")
+    verb = "costs" if worse else "saves" if sense == "min" else "gains"
+    return f"{verb} {percent(abs(change))} {objective}"

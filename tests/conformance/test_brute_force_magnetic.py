@@ -1,0 +1,78 @@
+"""The magnetic-powder clutch against plain enumeration: nothing makeable beats a front by more than its gap.
+
+Every combination and every makeable dimension inside the limits is evaluated. Power grows with the flux density and
+inertia does not see it, so the least flux density that carries the torque is the best one; it is a closed form.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import synth
+from synth.feasibility import holds, residual
+from synth.instance import Instance, as_catalogs
+
+GAP = 1e-3
+FAMILY = "magnetic_powder_clutch"
+ASKED = {"required_torque": "30 N*m", "outer_diameter_limit": "236 mm"}
+PARTS = {"powder": ["carbonyl_graphite", "carbonyl_glass"], "winding_wire": ["Cu 0.5 class 155", "Cu 1.25 class 155"]}
+LIMITS = {
+    "gap_radius": "68 mm .. 80 mm",
+    "pole_length": "20 mm .. 30 mm",
+    "coil_height": "20 mm .. 24 mm",
+    "yoke_thickness": "12 mm .. 13 mm",
+    "powder_gap": "1.2 mm .. 1.25 mm",
+}
+FIX = {"coil_length": "48 mm"}
+OBJECTIVES = ("coil_power", "input_inertia", "mass", "outer_diameter")
+
+
+@pytest.fixture(scope="module")
+def enumerated():
+    instance = Instance(synth.load(FAMILY), ASKED, as_catalogs(None), parts=PARTS, limits=LIMITS, fix=FIX)
+    names = [v.name for v in instance.model.variables]
+    axes = [
+        grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
+        for grid, low, high in zip(instance.grids(), instance.lower, instance.upper, strict=True)
+    ]
+    points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
+    radius, pole = points[:, names.index("gap_radius")], points[:, names.index("pole_length")]
+    found = []
+    for combination in range(instance.combinations):
+        table, row = instance.describe(combination)[0]["powder"]
+        needed = 1.2 * 30 / (4 * math.pi * pole * radius**2) * (1 + 1e-9)
+        most, half = (float(table.number(c)[row]) for c in ("tau_sat", "half_flux_density"))
+        points[:, names.index("flux_density")] = half / np.sqrt(most / needed - 1)
+        result = instance.model.evaluate(points, instance.data(np.array([combination])))
+        feasible = result.feasible.copy()
+        for own in instance.extra:
+            feasible &= holds(residual(result.values[own.quantity], own.limit, own.sense, 1e-9), False)
+        found.append(np.stack([result.values[n][feasible] for n in OBJECTIVES], axis=1))
+    values = np.concatenate(found)
+    assert len(values) > 2000
+    return dict(zip(OBJECTIVES, values.T, strict=True))
+
+
+def search(**more):
+    front = synth.synthesize(FAMILY, ASKED, parts=PARTS, limits=LIMITS, fix=FIX, gap=GAP, time_limit=60, **more)
+    assert front.interrupted == ""
+    assert front.certificate.kind == "global"
+    return front
+
+
+def test_no_makeable_design_beats_the_front(enumerated):
+    front = search(points=4)
+    values = np.stack([enumerated[n] for n in ("coil_power", "input_inertia")], axis=1)
+    own = np.array([[d.values[n] for n in ("coil_power", "input_inertia")] for d in front.designs])
+    for design in own:
+        assert not np.any(np.all(values < design * (1 - GAP) - 1e-12, axis=1))
+    assert np.all(own.min(axis=0) <= values.min(axis=0) * (1 + GAP))
+    # Both parts of the front: much less power with the coil that turns, much less inertia with the one that does not.
+    assert {d.choices["coil"] for d in front.designs} == {"stationary", "rotating"}
+
+
+def test_no_makeable_design_is_lighter(enumerated):
+    best = search(objectives=["mass"]).designs[0]
+    assert best.values["mass"] <= enumerated["mass"].min() * (1 + GAP)
+    assert best.off_grid == {}
