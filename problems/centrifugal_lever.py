@@ -151,21 +151,17 @@ class CentrifugalLever(DesignProblem):
         springs: blocks.SpringSet,
         full: Any,
     ) -> None:
-        """Declare the speeds, and that no phase of the motion snaps.
-
-        The contact speed is written as that of the stop over the engagement band: mass, arm and springs then stand in
-        it once, and what torque the springs must hold says at once how heavy the weights are.
-        """
+        """Declare the speeds, and that no phase of the motion snaps."""
         arm, contact_angle = lever.weights.arm, formulas.contact_angle(lever.contact_travel, rods.rod_arm)
         after = lever.stop_angle - contact_angle
-        stop = lever.speed(formulas.clamp_flyweight_force(full, rods.spring_arm, arm), lever.stop_angle)
-        band = formulas.engagement_band(
+        band_squared = formulas.band_squared(
             formulas.growth(lever.deflection + rods.lead * contact_angle, rods.spring_arm, after),
             formulas.growth(lever.radius(contact_angle), arm, after),
             rods.ratio,
         )
+        contact, stop, band = lever.speeds(formulas.clamp_flyweight_force(full, rods.spring_arm, arm), band_squared)
         worn = full - springs.rate * lever.wear
-        blocks.declare_contact(d, duty, stop / band, needs=GUARDS)
+        blocks.declare_contact(d, duty, contact, needs=GUARDS)
         blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, GUARDS[1])
         blocks.declare_band(d, band, "Full-clamp speed over contact speed; a small one is sharp", GUARDS)
         d.at_most(

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from problems import centrifugal_blocks as blocks
 from problems.centrifugal_blocks import DERIVED, S4, TYPICAL
 from problems.mechanics import centrifugal
+from problems.mechanics import centrifugal_levers as formulas
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,6 +51,15 @@ class Lever:
     def speed(self, force: Any, angle: Any) -> Any:
         """Return the speed at which the flyweights pull with a force at an angle [rad/s]."""
         return centrifugal.speed_for_force(force, self.weights.mass, self.radius(angle))
+
+    def speeds(self, stop_pull: Any, band_squared: Any) -> tuple[Any, Any, Any]:
+        """Return contact speed, stop speed and engagement band, from the pull at the stop [N] and the band.
+
+        Written so, mass, arm and springs stand in the contact speed once, and the torque that the springs must hold
+        says at once how heavy the weights are.
+        """
+        square = formulas.speed_squared(stop_pull, self.weights.mass, self.end_radius)
+        return np.sqrt(square / band_squared), np.sqrt(square), np.sqrt(band_squared)
 
 
 def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:

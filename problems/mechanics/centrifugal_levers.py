@@ -16,8 +16,6 @@ only; the relations are derived from them.
 
 from __future__ import annotations
 
-import numpy as np
-
 from problems.mechanics import Quantity
 
 # -- both levers -----------------------------------------------------------------------------------
@@ -507,8 +505,39 @@ def growth(start: Quantity, arm: Quantity, angle: Quantity) -> Quantity:
     return 1 + arm * angle / start
 
 
-def engagement_band(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quantity = 0.0) -> Quantity:
-    """Speed at the stop over speed at contact, sqrt((F2/F1)/((r2/r1) (1 - l_r/l_s))).
+def speed_squared(force: Quantity, mass: Quantity, radius: Quantity) -> Quantity:
+    """Square of the speed at which the flyweights pull with a force, omega**2 = F_C/(m r).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Centrifugal force of all flyweights F_C [N].
+    mass : scalar, array or symbol
+        Mass of all flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        omega**2 [1/s2].
+
+    References
+    ----------
+    F_C = m r omega**2.
+
+    Examples
+    --------
+    Practice 3 at the stop (132.599 rad/s):
+
+    >>> speed_squared(3200, 1, 0.182) ** 0.5
+    132.599
+    """
+    return force / (mass * radius)
+
+
+def band_squared(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quantity = 0.0) -> Quantity:
+    """Square of the speed at the stop over that at contact, (F2/F1)/((r2/r1) (1 - l_r/l_s)).
 
     Both speeds are sqrt(F_C/(m r)); mass and arm of the flyweights cancel, and so does the rate of the springs where
     the same springs resist at contact and at the stop.
@@ -525,7 +554,7 @@ def engagement_band(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Qu
     Returns
     -------
     scalar, array or symbol
-        omega_stop/omega_contact [-].
+        (omega_stop/omega_contact)**2 [-].
 
     References
     ----------
@@ -535,7 +564,7 @@ def engagement_band(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Qu
     --------
     Practice 3 (132.599/79.9709):
 
-    >>> float(engagement_band(3200 / 2200, 182 / 172, 0.5))
+    >>> band_squared(3200 / 2200, 182 / 172, 0.5) ** 0.5
     1.65809
     """
-    return np.sqrt(force_ratio / (radius_ratio * (1 - rod_ratio)))
+    return force_ratio / (radius_ratio * (1 - rod_ratio))

@@ -278,15 +278,15 @@ def test_the_band_is_that_of_the_border_speeds():
         squeezed = lever.preload / lever.rate + lead * lever.contact_angle
         forces = levers.growth(squeezed, lever.spring_arm, after)
         radii = levers.growth(lever.radius(lever.contact_angle), lever.flyweight_arm, after)
-        band = levers.engagement_band(forces, radii, lever.rod_arm / lever.spring_arm)
-        assert band == pytest.approx(stop / contact, rel=1e-12)
+        band = levers.band_squared(forces, radii, lever.rod_arm / lever.spring_arm)
+        assert band**0.5 == pytest.approx(stop / contact, rel=1e-12)
     for lever in random_reversed_levers(5):
         _, contact, _, stop = lever.borders().speeds
         motion = lever.motion(2 * stop)
         force = motion.clamp_force.max() + motion.return_force.max()
         radii = lever.radius(lever.stop_angle) / lever.radius(lever.contact_angle)
-        band = levers.engagement_band(force / motion.return_force.max(), radii)
-        assert band == pytest.approx(stop / contact, rel=1e-12)
+        band = levers.band_squared(force / motion.return_force.max(), radii)
+        assert band**0.5 == pytest.approx(stop / contact, rel=1e-12)
 
 
 # -- units, arrays and symbols ---------------------------------------------------------------------
@@ -308,7 +308,8 @@ CASES = [
     (levers.return_force, {**SET, "travel": "m"}, "N"),
     (levers.plate_force, {"flyweight_force": "N", "flyweight_arm": "m", "plate_arm": "m"}, "N"),
     (levers.growth, {"start": "m", "arm": "m", "angle": "-"}, "-"),
-    (levers.engagement_band, {"force_ratio": "-", "radius_ratio": "-", "rod_ratio": "-"}, "-"),
+    (levers.speed_squared, {"force": "N", "mass": "kg", "radius": "m"}, "1/s2"),
+    (levers.band_squared, {"force_ratio": "-", "radius_ratio": "-", "rod_ratio": "-"}, "-"),
     (levers.gradual_radius, {"deflection": "m", "flyweight_arm": "m", "resisting_arm": "m"}, "m"),
 ]
 
