@@ -1,4 +1,4 @@
-"""Centrifugal clutch with capped clamp force: balls or levers, a tension disc, two spring sets and a stop (device B)."""
+"""Centrifugal clutch with capped clamp force: balls or levers, tension disc, two spring sets and a stop (device B)."""
 
 from __future__ import annotations
 
