@@ -33,7 +33,7 @@ class Drive:
     ratio: Any
     push: Any
     release_ratio: Any
-    needs: str
+    needs: tuple[str, ...]
     balls: ball_blocks.Balls | None
 
 
@@ -191,7 +191,7 @@ class CentrifugalTwoSpring(DesignProblem):
             ratio=balls.ratio,
             push=balls.push,
             release_ratio=balls.release_ratio,
-            needs="ramp_returns",
+            needs=("ramp_returns",),
             balls=balls,
         )
 
@@ -227,7 +227,7 @@ class CentrifugalTwoSpring(DesignProblem):
             ratio=ratio,
             push=ratio * efficiency,
             release_ratio=efficiency,  # sqrt(eta_out/eta_in) with eta_in = 1/eta_out
-            needs="",
+            needs=(),
             balls=None,
         )
 
