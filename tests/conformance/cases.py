@@ -305,7 +305,7 @@ CASES: dict[str, Family] = {
                 settings={
                     "parts": {"ball": ["ball 25", "ball 30"], **STIFF},
                     "limits": {"balls": "4 .. 5", "return_springs": "2 .. 3", "clamp_springs": "3 .. 4"},
-                    "fix": TWO_SPRINGS,
+                    "fix": {**TWO_SPRINGS, "clamp_preload_deflection": "1 mm"},
                     "objectives": ["outer_diameter", "engagement_band"],
                 },
                 tighten={"required_torque": "94 N*m", "lining_wear": "0.6 mm"},
@@ -320,7 +320,13 @@ CASES: dict[str, Family] = {
                         "clamp_springs": "3 .. 4",
                         "outer_diameter": "<= 150 mm",
                     },
-                    "fix": {**TWO_SPRINGS, "weights": 3, "axial_arm": "30 mm", "clamp_preload_deflection": "1 mm"},
+                    "fix": {
+                        **TWO_SPRINGS,
+                        "weights": 3,
+                        "axial_arm": "30 mm",
+                        "clamp_preload_deflection": "1 mm",
+                        "rest_radius": "32 mm",
+                    },
                     "objectives": ["outer_diameter", "engagement_band"],
                 },
                 tighten={"idle_margin_min": "1.3"},

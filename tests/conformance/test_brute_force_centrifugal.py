@@ -79,10 +79,10 @@ CASES = {
             "friction_pair": ["metal_ceramic_bronze_dry"],
         },
         {
-            "rest_radius": "32 mm .. 38 mm",
+            "rest_radius": "32 mm .. 36 mm",
             "stop_travel": "5 mm .. 9 mm",
-            "flyweight_arm": "55 mm .. 65 mm",
-            "axial_arm": "29 mm .. 31 mm",
+            "flyweight_arm": "56 mm .. 62 mm",
+            "axial_arm": "29 mm .. 30 mm",
             "return_springs": "2 .. 3",
             "clamp_springs": "3 .. 4",
         },
@@ -95,7 +95,7 @@ CASES = {
             "return_preload_deflection": "4 mm",
             "clamp_preload_deflection": "1 mm",
         },
-        {"flyweight_mass": 41},
+        {"flyweight_mass": 61},
         ("outer_diameter", "engagement_band"),
     ),
 }
