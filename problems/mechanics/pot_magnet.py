@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from problems.mechanics import Quantity
-from problems.mechanics.magnetics import MU_0, gap_field, pole_force
+from problems.mechanics import Quantity, magnetics
 
 
 @dataclass(frozen=True)
@@ -105,7 +104,7 @@ def magnet_force(flux_density: Quantity, magnet: PotMagnet) -> Quantity:
     >>> round(float(magnet_force(0.8, PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3))), 1)
     1320.0
     """
-    return pole_force(flux_density, 2 * magnet.pole_area)
+    return magnetics.pole_force(flux_density, 2 * magnet.pole_area)
 
 
 def yoke_flux_ratio(magnet: PotMagnet) -> Quantity:
@@ -166,7 +165,7 @@ def engaged_ampere_turns(flux_density: Quantity, magnet: PotMagnet, iron_field: 
     >>> round(float(engaged_ampere_turns(0.8, magnet, 300.0)), 1)
     552.0
     """
-    return 2 * magnet.residual_gap * gap_field(flux_density) + iron_field * magnet.iron_path
+    return 2 * magnet.residual_gap * magnetics.gap_field(flux_density) + iron_field * magnet.iron_path
 
 
 def pull_in_force(ampere_turns: Quantity, gap: Quantity, pole_area: Quantity) -> Quantity:
@@ -197,7 +196,7 @@ def pull_in_force(ampere_turns: Quantity, gap: Quantity, pole_area: Quantity) ->
     >>> round(float(pull_in_force(600.0, 2.2e-3, 2.5918e-3)), 2)
     60.56
     """
-    return MU_0 * pole_area * (ampere_turns / (2 * gap)) ** 2
+    return magnetics.MU_0 * pole_area * (ampere_turns / (2 * gap)) ** 2
 
 
 def magnet_mass(density: Quantity, magnet: PotMagnet, copper: Quantity) -> Quantity:
