@@ -21,7 +21,9 @@ CASES = [
     (centrifugal.contact_loss, {"ball_friction": "-", "ratio": "-"}, "-"),
     (centrifugal.outward_efficiency, {"loss": "-"}, "-"),
     (centrifugal.inward_efficiency, {"loss": "-"}, "-"),
+    (centrifugal.release_ratio, {"loss": "-"}, "-"),
     (centrifugal.axial_force, {"centrifugal_force": "N", "ratio": "-", "efficiency": "-"}, "N"),
+    (centrifugal.axial_gain, {**FLY, "ratio": "-", "efficiency": "-"}, "kg m"),
     (centrifugal.speed_for_force, {"force": "N", **FLY, "ratio": "-", "efficiency": "-"}, "1/s"),
     (centrifugal.ball_set_mass, {"count": "-", "density": "kg/m3", "diameter": "m"}, "kg"),
     (centrifugal.weight_thickness, {"mass": "kg", "count": "-", "density": "kg/m3", "width": "m"}, "m"),
@@ -50,6 +52,7 @@ CASES = [
         },
         "kg m2",
     ),
+    (centrifugal.rim_stress, {"density": "kg/m3", "radius": "m", "speed": "1/s"}, "Pa"),
     (
         centrifugal.spring_bow_load,
         {
