@@ -21,6 +21,11 @@ SOURCES = (
     SHIGLEY,
 )
 
+# Remarks only.
+ZIMMERLI_AMPLITUDE = 241e6  # shear stress amplitude that unpeened spring wire lasts at [Pa]
+RELEASE_GAP_MIN = 0.3e-3  # clearance that a released friction surface wants [m]
+RIM_STRESS_MAX = 100e6  # hoop stress from which on the bursting of a rim is worth a calculation [Pa]
+
 # What a sheet for several families may state.
 COMMON = (
     "required_torque",
@@ -302,7 +307,8 @@ class SpringSet:
 
     def force(self, deflection: Any) -> Any:
         """Return the force of the set at a deflection from the free length [N]."""
-        return centrifugal.spring_force(self.rate, deflection)
+        # Through the force of one spring, which a limit bounds: then that limit bounds the force of the set too.
+        return self.count * centrifugal.spring_force(self.part.rate_R, deflection)
 
     def share_of_circle(self, gap: Any) -> Any:
         """Return the length that the set takes of its circle, with a gap beside each spring [m]."""
@@ -359,25 +365,23 @@ def limit_spring_force(d: Declaration, name: str, springs: SpringSet, deflection
     d.at_most(name, force, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
 
 
-def advise_bowing(
-    d: Declaration, code: str, duty: Duty, springs: SpringSet, radius: Any, force: Any, what: str
+def advise_springs(
+    d: Declaration, duty: Duty, springs: SpringSet, radius: Any, preload: Any, travel: Any, what: str
 ) -> None:
-    """Remark where the springs' own centrifugal force is larger than the force they exert.
+    """Remark springs that bow outwards at top speed, or that tire from engaging again and again.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    code : str
-        Code of the remark.
     duty : Duty
         Requirements.
     springs : SpringSet
-        The set.
+        The set; the codes of the remarks begin with its slot.
     radius : symbol
         Radius on which they stand [m].
-    force : symbol
-        Force of one spring at top speed [N].
+    preload, travel : symbol
+        Deflection at rest, and what is added to it in an engagement [m].
     what : str
         Which springs they are.
     """
@@ -386,11 +390,19 @@ def advise_bowing(
         duty.steel_density, part.wire_diameter_d, part.mean_diameter_D, part.active_coils_n, radius, duty.top_speed
     )
     d.advise(
-        code,
-        load > force,
-        f"at top_speed the centrifugal force of the coils of {what} is larger than the force of the spring: they bow "
+        f"{part.slot}_bows",
+        load > centrifugal.spring_force(part.rate_R, preload + travel),
+        f"at top_speed the centrifugal force of the coils of {what} is larger than their spring force: they bow "
         "outwards and rub unless they sit in pockets or on guides",
         source=DERIVED,
+    )
+    amplitude = part.optional("tau_k_n_corrected") * part.rate_R * travel / (2 * part.max_force_Fn)
+    d.advise(
+        f"{part.slot}_tires",
+        amplitude > ZIMMERLI_AMPLITUDE,
+        f"engaged again and again {what} tire: their shear stress swings by more than the 241 N/mm2 to either side "
+        "that unpeened wire lasts at",
+        source="Zimmerli; Shigley, Mechanical Engineering Design, fatigue of helical springs",
     )
 
 
@@ -605,6 +617,12 @@ def declare_size(
             "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
             text="The clutch fits the room across", source=DRIVE,
         )  # fmt: skip
+    d.advise(
+        "fast_rim",
+        centrifugal.rim_stress(duty.steel_density, diameter / 2, duty.top_speed) > RIM_STRESS_MAX,
+        "at top_speed the hoop stress of the rim is above 100 N/mm2: calculate the speed at which it bursts",
+        source="hoop stress of a thin ring",
+    )
 
 
 def declare_objectives(d: Declaration) -> None:
@@ -730,4 +748,24 @@ def advise_stop_load(d: Declaration, stop_force: Any, clamp_force: Any) -> None:
         stop_force > clamp_force,
         "at top_speed stop_force is larger than clamp_force: stop, plates and bearings must be sized for it",
         source=DERIVED,
+    )
+
+
+def advise_release_gap(d: Declaration, gap: Any, lining: Lining) -> None:
+    """Remark where the gap of the plate leaves each friction surface too little air.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    gap : symbol
+        Travel of the plate to contact [m].
+    lining : Lining
+        Lining.
+    """
+    d.advise(
+        "drags_when_released",
+        gap < RELEASE_GAP_MIN * lining.surfaces,
+        "the travel to contact leaves less than 0.3 mm for each friction surface: the released clutch drags",
+        source="practice, 0.3 to 0.5 mm and the run-out",
     )

@@ -38,7 +38,15 @@ if TYPE_CHECKING:
     from synth.results import ParetoFront
     from synth.spec import Spec
 
-EXPLAINED = ("parts", "limits", "fix", "grid", "seed", "time_limit")  # what counts when a question is explained
+EXPLAINED = (
+    "parts",
+    "limits",
+    "fix",
+    "grid",
+    "seed",
+    "time_limit",
+    "robust",
+)  # what counts when a question is explained
 
 app = typer.Typer(
     name="clutchsynth",
@@ -196,7 +204,6 @@ def explain(
     from synth.console import output, print_explanation, progress_display
     from synth.explanation import explain as explain_question
     from synth.instance import catalogs_for
-    from synth.posed import posed
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(time_limit=time_limit)
@@ -204,7 +211,7 @@ def explain(
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        problem = posed(_load(asked.family, asked.options), asked.robust or None, asked.limits)
+        problem = _load(asked.family, asked.options)
         settings = {k: v for k, v in asked.search_settings(robust=True).items() if k in EXPLAINED}
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
@@ -397,7 +404,7 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
-    if any(design.robust for design in front.designs):
+    if "robust" in front.statistics and (front.designs or not explanation):
         from synth.robust_console import print_robust
 
         print_robust(front, console)

@@ -36,6 +36,8 @@ class Optima:
         d phi / d log of each limit; not-a-number where the limit is zero or void.
     requirements : array (designs, requirements)
         d phi / d log of each requirement, where limits that no variable moves let it change at all.
+    ends : array (designs, variables)
+        d phi / d log of the end of its range that a variable is at; 0 inside.
     """
 
     variables: np.ndarray
@@ -44,6 +46,7 @@ class Optima:
     multipliers: np.ndarray
     limits: np.ndarray
     requirements: np.ndarray
+    ends: np.ndarray
 
 
 def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int) -> list[dict[str, dict[str, float]]]:
@@ -118,17 +121,18 @@ def optima(
     limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
     positions, moved = requirement_positions(form), followers(form.instance)
     slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
-    requirements = np.zeros((len(start), len(positions)))
+    requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
     for i in np.flatnonzero(answer.converged):
         point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
-        own = slopes(
+        own, at_ends = slopes(
             form, answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
         )
+        ends[i] = at_ends * answer.variables[i]
         for q, name in enumerate(positions):
             slope = sum(share * float(own[positions[other]]) for other, share in moved[name].items())
             requirements[i, q] = slope * form.instance.requirements[name]
     return Optima(
-        answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements
+        answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
     )  # fmt: skip
 
 
@@ -175,7 +179,7 @@ def followers(instance: Instance) -> dict[str, dict[str, float]]:
 
 
 def _gradient(form: Formulation) -> Any:
-    """Return the derivative of the Lagrangian to the data inputs as a function of point, data and multipliers."""
+    """Return the derivatives of the Lagrangian to data inputs and variables: of point, data and multipliers."""
     rows, program, n = form.rows(), form.model.program, form.n
     x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
     values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
@@ -191,19 +195,20 @@ def _gradient(form: Formulation) -> Any:
         phi.append(goal.sign * form_of)
     cut_weights, goal_weights = ca.SX.sym("cuts", len(cut_rows)), ca.SX.sym("goals", len(phi))
     total = ca.dot(cut_weights, ca.vertcat(*cut_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
-    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], [ca.gradient(total, data)])
+    wanted = [ca.gradient(total, data), ca.gradient(total, x)]
+    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
 
     def evaluate(
         own: Formulation, point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray,
         goals: np.ndarray, k: int,
-    ) -> np.ndarray:  # fmt: skip
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
         clean = [1.0 if np.isnan(v) else v for v in known]
         units = np.where(rows.log_goals, 1.0, own.goal_scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units
         weights[k] += 1.0 / units[k]
         found = function(point, clean, own.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
-        slopes: np.ndarray = np.nan_to_num(np.asarray(found).ravel())
-        return slopes
+        slopes, ends = (np.nan_to_num(np.asarray(part).ravel()) for part in found)
+        return slopes, ends
 
     return evaluate
 

@@ -15,6 +15,7 @@ from synth.analysis import evaluate
 from synth.clock import Stopped
 from synth.errors import InputError
 from synth.instance import SIGNS, Instance, as_mapping, catalogs_for
+from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
 from synth.results import Design, ParetoFront, write_atomically
@@ -176,12 +177,13 @@ def explain(
     seed: int = 0,
     progress: Callable[[Mapping[str, Any]], None] | None = None,
     time_limit: float | None = None,
+    robust: Mapping[str, Any] | None = None,
 ) -> Explanation:
     """Tell why nothing is feasible, over all combinations of parts and counts, and what would make it so.
 
     Parameters
     ----------
-    p, requirements, catalogs, parts, limits, fix, grid, seed
+    p, requirements, catalogs, parts, limits, fix, grid, seed, robust
         As for ``synthesize``.
     progress : callable, optional
         Called with a mapping: stage, done (0..1), message.
@@ -198,7 +200,8 @@ def explain(
         For everything that is wrong with the input, in one sentence.
     """
     begin = time.monotonic()
-    asking = _Question(load(p), requirements, catalogs, parts, limits, fix, grid, seed, progress, time_limit)
+    problem = posed(load(p), robust, limits)
+    asking = _Question(problem, requirements, catalogs, parts, limits, fix, grid, seed, progress, time_limit)
     result = Explanation(guards=tuple(asking.guards))
     try:
         _explain(asking, result)

@@ -311,8 +311,16 @@ class _Case:
 
     def _slope(self, move: Move) -> float:
         """Return the price by the multipliers."""
-        slopes = self.best.limits if move.kind == "limit" else self.best.requirements
-        found = self.goal.sign * float(slopes[0, move.position]) * self.unit
+        if move.kind == "range":
+            k, _ = self.again.ranges[move.position]
+            lower, upper = self.again.holds_range(move.position)
+            slope = float(self.best.ends[0, k])
+            # At its lower end an objective would fall with less, at its upper end with more.
+            slope = max(slope, 0.0) * lower + min(slope, 0.0) * upper
+        else:
+            slopes = self.best.limits if move.kind == "limit" else self.best.requirements
+            slope = float(slopes[0, move.position])
+        found = self.goal.sign * slope * self.unit
         return found if math.isnan(found) or abs(found) > NOISE else 0.0
 
     def _row(
@@ -348,6 +356,9 @@ class _Case:
             return (
                 "" if self.again.instance.requirements[move.name] else f"{move.name} is 0: there is no per cent of it"
             )
+        if move.kind == "range":
+            limit = self.again.ranges[move.position][1].limit
+            return "" if limit else f"the limit {move.name} is 0: there is no per cent of it"
         void = bool(self.again.form.void(self.again.instance.data(np.array([self.own])), 1)[0, move.position])
         if void or math.isfinite(float(self.best.limits[0, move.position])):
             return ""
@@ -440,13 +451,13 @@ class _Case:
         changes: tuple[str, str], shares: tuple[float, float] = (1.0, 1.0),
     ) -> Price:  # fmt: skip
         sense = "min" if self.goal.sign > 0 else "max"
-        shown = move.name
+        shown, kind = move.name, "requirement" if move.kind == "requirement" else "limit"
         if move.kind == "requirement" and self.again.instance.model.declaration.requirements[move.name].unit == "degC":
             shown = f"{move.name} (in kelvin)"
         steps = (shares[0] * self.again.step, shares[1] * self.again.step)
-        sentence = told(shown, move.kind, self.objective, sense, steps, up, down, changes)
+        sentence = told(shown, kind, self.objective, sense, steps, up, down, changes)
         compared = self.compared if status != WITHHELD else ""
         return Price(
-            int(self.design.rank or 0), self.objective, move.name, move.kind, slope, up, down, status, reason, compared,
+            int(self.design.rank or 0), self.objective, move.name, kind, slope, up, down, status, reason, compared,
             sentence,
         )  # fmt: skip

@@ -14,7 +14,7 @@ from synth.elasticity import held, immovable, requirement_positions, sides
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.formulation import Formulation
-from synth.instance import Instance
+from synth.instance import ExtraLimit, Instance
 from synth.question import combination_of
 from synth.results import ParetoFront
 
@@ -24,11 +24,11 @@ FINE = 0.1  # of the step: for prices that bend within it
 
 @dataclass(frozen=True)
 class Move:
-    """One requirement or limit, multiplied by a factor; ``refused`` tells why that cannot be asked."""
+    """One requirement, limit or range of a size, multiplied by a factor; ``refused``: why that cannot be asked."""
 
     kind: str
     name: str
-    position: int  # of the limit, or of the requirement among those in force
+    position: int  # among the requirements in force, the limits, or the ranges
     factor: float
     instance: Instance
     refused: str = ""
@@ -55,6 +55,7 @@ class Resolver:
         self.fixed = immovable(self.form)
         self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.cuts])
         self.limit_names = [x.name for x in instance.model.limits] + [x.name for x in instance.extra]
+        self.ranges = self._ranges()
         self.positions = requirement_positions(self.form)
         self.known = np.unique([combination_of(instance, d) for d in front.designs])
         # All that is moved by the step, then all by a fine step.
@@ -64,6 +65,41 @@ class Resolver:
         self.requirements = np.array([[m.instance.requirements[n] for n in names] for m in self.moves])
         self.factors = np.array([m.factor for m in self.moves])
         self.limit_of = np.array([m.position if m.kind == "limit" else -1 for m in self.moves])
+        self.range_of = np.array([m.position if m.kind == "range" else -1 for m in self.moves])
+
+    def _ranges(self) -> list[tuple[int, ExtraLimit]]:
+        """Return the limits that the user put on sizes, each with the number of the variable."""
+        model, found = self.instance.model, list[tuple[int, ExtraLimit]]()
+        among = {v.name: k for k, v in enumerate(model.variables)}
+        asked = model.by_name(self.instance.asked_limits, "limits", list(model.quantity_sx), "a quantity")
+        for name, texts in asked.items():
+            if name in among:
+                found += [(among[name], x) for x in self.instance.conditions(name, texts)]
+        return found
+
+    def holds_range(self, number: int) -> tuple[bool, bool]:
+        """Tell whether a limit on a size is the lower, and the upper, end of its range."""
+        k, x = self.ranges[number]
+        return (
+            x.sense != "at_most" and bool(x.limit >= self.form.lower[k]),
+            x.sense != "at_least" and bool(x.limit <= self.form.upper[k]),
+        )
+
+    def _ends(self, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the range of every variable, problem by problem."""
+        form, variables = self.form, self.instance.model.variables
+        low, high = (np.tile(ends, (len(moves), 1)) for ends in (form.lower, form.upper))
+        for number, (k, x) in enumerate(self.ranges):
+            rows = np.flatnonzero((moves >= 0) & (self.range_of[moves] == number))
+            others = [y for n, (j, y) in enumerate(self.ranges) if j == k and n != number]
+            moved = x.limit * self.factors[moves[rows]]
+            if x.sense != "at_most":
+                least = max([variables[k].lower, *(y.limit for y in others if y.sense != "at_most")])
+                low[rows, k] = np.maximum(moved, least)
+            if x.sense != "at_least":
+                most = min([variables[k].upper, *(y.limit for y in others if y.sense != "at_least")])
+                high[rows, k] = np.minimum(moved, most)
+        return low, high
 
     def _moves(self, step: float) -> list[Move]:
         """Return all that is moved by a step: upwards, downwards, in turn."""
@@ -78,6 +114,8 @@ class Resolver:
                 found.append(Move("requirement", name, k, factor, own, why))
         for j, name in enumerate(self.limit_names):
             found += [Move("limit", name, j, f, self.instance) for f in (1.0 + step, 1.0 - step)]
+        for r, (_, x) in enumerate(self.ranges):
+            found += [Move("range", x.name, r, f, self.instance) for f in (1.0 + step, 1.0 - step)]
         return found
 
     def others(self, own: int) -> np.ndarray:
@@ -120,8 +158,11 @@ class Resolver:
                 data[position] = column
         shifts = self._shifts(moves, start, data)
         tasks = held(form, np.tile(phi, (count, 1)), self.m, k, shifts)
+        possible = np.ones(count, dtype=bool)
         if form.n:
-            found = form.solve_many(tasks, combinations, start, skipped=self.fixed, data=data)
+            low, high = self._ends(moves)
+            possible = np.all(low <= high, axis=1)
+            found = form.solve_many(tasks, combinations, start, np.minimum(low, high), high, self.fixed, data)
         else:
             nothing = np.zeros((count, 0))
             values = form.model.evaluate(nothing, data).values
@@ -131,7 +172,7 @@ class Resolver:
             none = np.zeros((count, len(form.cuts)))
             found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= MISSED)
         broken = self._broken(found.variables, moves, data)
-        kept = (found.violation <= MISSED) & np.isfinite(found.phi[:, k]) & (broken < 0)
+        kept = (found.violation <= MISSED) & np.isfinite(found.phi[:, k]) & (broken < 0) & possible
         kept[kept] &= self._allowed(combinations[kept], moves[kept])
         return found, kept, broken
 

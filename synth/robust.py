@@ -21,7 +21,7 @@ from synth.problem import DesignProblem, load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, csv_text, design_columns, design_row, save_files
-from synth.scatter import LIMITS, RATE, Asked, read_block
+from synth.scatter import LIMITS, Asked, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -204,54 +204,78 @@ def robust_front(
     workers, progress, time_limit
         As for ``synthesize``.
     """
-    asked, problem = rater.asked, rater.instance.problem
     deadline = math.inf if time_limit is None else time.monotonic() + time_limit
-    known: list[Design] = []
-    for k in range(1, SEARCHES + 1):
-        question = pose(posed(problem, asked, limits))
+
+    def ask(asked: Asked, known: Sequence[Design]) -> _Answer:
+        question = pose(posed(rater.instance.problem, asked, limits))
         left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
         front = question.answer(workers, progress, left, known)
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
-        failing = [j for j, told in enumerate(ratings) if not told["holds"]]
-        if asked.mode == RATE or not failing or front.interrupted or stopped or k == SEARCHES:
+        more = len(question.instance.model.limits) - len(rater.model.limits)
+        return _Answer(asked, front, ratings, front.interrupted or stopped, more)
+
+    got, searches = ask(rater.asked, ()), 1
+    while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < SEARCHES:
+        try:
+            better = ask(got.asked.with_scenarios(got.scenarios()), got.front.designs)
+        except KeyboardInterrupt:
+            got = replace(got, stopped="interrupted")
             break
-        asked = asked.with_scenarios(_scenarios([ratings[j] for j in failing]))
-        known = front.designs
-    counts = {"searches": k, "rated": len(ratings), "samples": asked.samples}
-    if asked.mode == LIMITS:
-        counts["limits_posed"] = len(question.instance.model.limits) - len(rater.model.limits)
-        counts["taken_off"] = len(failing)
-    done = _with_ratings(front, asked, ratings, stopped, counts)
-    return _without(done, failing) if asked.mode == LIMITS and failing else done
+        searches += 1
+        # A search that was not finished counts only where it brought more designs that hold.
+        got = replace(got, stopped=better.stopped) if better.stopped and better.holding <= got.holding else better
+    return got.told(searches)
 
 
-def _scenarios(ratings: Sequence[Mapping[str, Any]]) -> dict[str, list[tuple[float, ...]]]:
-    """Return the points at which limits fail, the worst first, and a few of each limit."""
-    found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
-    for told in ratings:
-        for name, limit in told["limits"].items():
-            if not limit["holds"]:
-                worst = math.inf if limit["residual"] is None else limit["residual"]
-                found.setdefault(name, []).append((worst, tuple(limit["position"])))
-    few = {name: sorted(points, key=lambda x: -x[0])[:SCENARIOS] for name, points in found.items()}
-    return {name: [point for _, point in points] for name, points in few.items()}
+@dataclass(frozen=True)
+class _Answer:
+    """A front with the ratings of its designs, and what stopped the work if something did."""
 
+    asked: Asked
+    front: ParetoFront
+    ratings: list[dict[str, Any]]
+    stopped: str
+    posed: int  # limits beside those of the problem
 
-def _with_ratings(
-    front: ParetoFront, asked: Asked, ratings: Sequence[Mapping[str, Any]], stopped: str, counts: Mapping[str, int]
-) -> ParetoFront:
-    """Return a front whose designs tell how they stand the range, and whose question repeats what scatters."""
-    frame = replace(front.frame, restated={**front.frame.restated, "robust": asked.block()})
-    known = [*ratings, *({} for _ in range(len(front.designs) - len(ratings)))]
-    return replace(
-        front,
-        frame=frame,
-        designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
-        statistics={**front.statistics, "robust": dict(counts)},
-        settings={**front.settings, "robust": asked.block()},
-        interrupted=front.interrupted or stopped,
-    )
+    @property
+    def failing(self) -> list[int]:
+        """Return the places of the designs that do not keep all limits."""
+        return [j for j, told in enumerate(self.ratings) if not told["holds"]]
+
+    @property
+    def holding(self) -> int:
+        """Return how many designs keep all limits."""
+        return len(self.ratings) - len(self.failing)
+
+    def scenarios(self) -> dict[str, list[tuple[float, ...]]]:
+        """Return the points at which limits fail, the worst first, and a few of each limit."""
+        found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
+        for j in self.failing:
+            for name, limit in self.ratings[j]["limits"].items():
+                if not limit["holds"]:
+                    worst = math.inf if limit["residual"] is None else limit["residual"]
+                    found.setdefault(name, []).append((worst, tuple(limit["position"])))
+        few = {name: sorted(points, key=lambda x: -x[0])[:SCENARIOS] for name, points in found.items()}
+        return {name: [point for _, point in points] for name, points in few.items()}
+
+    def told(self, searches: int) -> ParetoFront:
+        """Return the front: its designs tell how they stand the range, its question repeats what scatters."""
+        front, block = self.front, self.asked.block()
+        counts = {"searches": searches, "rated": len(self.ratings), "samples": self.asked.samples}
+        if self.asked.mode == LIMITS:
+            counts |= {"limits_posed": self.posed, "taken_off": len(self.failing)}
+        frame = replace(front.frame, restated={**front.frame.restated, "robust": block})
+        known = [*self.ratings, *({} for _ in range(len(front.designs) - len(self.ratings)))]
+        done = replace(
+            front,
+            frame=frame,
+            designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
+            statistics={**front.statistics, "robust": counts},
+            settings={**front.settings, "robust": block},
+            interrupted=self.stopped,
+        )
+        return _without(done, self.failing) if self.asked.mode == LIMITS and self.failing else done
 
 
 def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:

@@ -36,12 +36,16 @@ def print_ratings(found: Ratings, console: Console) -> None:
 
 def print_robust(front: ParetoFront, console: Console) -> None:
     """Print how the designs of a front stand the range that was asked."""
-    told = front.settings["robust"]
+    told, gone = front.settings["robust"], front.statistics["robust"].get("taken_off", 0)
     console.print()
-    print_designs(front.designs, console)
-    console.print()
-    console.print(told_of(front.designs, told["samples"]))
-    if told["mode"] == LIMITS and front.certificate.kind == "global":
+    if front.designs:
+        print_designs(front.designs, console)
+        console.print()
+        console.print(told_of(front.designs, told["samples"]))
+    if gone:
+        designs = "1 design was" if gone == 1 else f"{gone} designs were"
+        console.print(f"{designs} taken off: not all limits hold over the whole range")
+    if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
         console.print("what is proven below counts for all designs that keep their limits over the whole range")
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from problems.mechanics import Quantity
+from synth.special import special
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 
@@ -202,6 +203,72 @@ def inward_efficiency(loss: Quantity) -> Quantity:
     return 1 / (1 - loss)
 
 
+@special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
+def ramp_gain(ratio: Quantity, ball_friction: Quantity) -> Quantity:
+    """Axial over centrifugal force of balls that move out, i eta_out = i/(1 + mu_b (i + sqrt(1 + i**2))).
+
+    Parameters
+    ----------
+    ratio : scalar, array or symbol
+        Transmission of the ramp i [-].
+    ball_friction : scalar, array or symbol
+        Friction at the contacts of a ball mu_b [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        i eta_out [-].
+
+    Notes
+    -----
+    One node of the trace, so that the search knows that a steeper ramp always pushes harder.
+
+    References
+    ----------
+    Derived; S4, analysis 1, eq. (4) without friction: tan(alpha).
+
+    Examples
+    --------
+    Computed here, the product of the two:
+
+    >>> float(ramp_gain(1.0, 0.03))
+    0.932465
+    """
+    return ratio / (1 + ball_friction * (ratio + np.sqrt(1 + ratio**2)))
+
+
+def release_ratio(loss: Quantity) -> Quantity:
+    """Speed at which balls let go over that at which they took hold, sqrt(eta_out/eta_in).
+
+    Parameters
+    ----------
+    loss : scalar, array or symbol
+        Share of the friction at the contacts c_b [-], below 1.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Release speed over contact speed [-].
+
+    Notes
+    -----
+    The same force at the same radius, so that the speeds go with 1/sqrt(eta): (1 - c_b)/(1 + c_b) = 2/(1 + c_b) - 1,
+    written so that c_b stands once. No design has a larger idle margin than contact_speed_max/idle_speed times this.
+
+    References
+    ----------
+    Derived; not in S4, which has no friction at the balls.
+
+    Examples
+    --------
+    Computed here, mu_b = 0.03 on a ramp of 45 degrees: sqrt(0.927574/1.072426):
+
+    >>> float(release_ratio(contact_loss(0.03, 1.0)))
+    0.93002
+    """
+    return np.sqrt(2 / (1 + loss) - 1)
+
+
 def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quantity = 1.0) -> Quantity:
     """Axial force that the flyweights exert, F = F_C i eta.
 
@@ -231,6 +298,39 @@ def axial_force(centrifugal_force: Quantity, ratio: Quantity, efficiency: Quanti
     84.000
     """
     return centrifugal_force * ratio * efficiency
+
+
+def axial_gain(mass: Quantity, radius: Quantity, ratio: Quantity = 1.0, efficiency: Quantity = 1.0) -> Quantity:
+    """Axial force over the square of the speed, g = m i eta r.
+
+    Parameters
+    ----------
+    mass : scalar, array or symbol
+        Total mass of the flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+    ratio : scalar, array or symbol, optional
+        Transmission i = dr/dx [-]; 1 for a force at the flyweights themselves.
+    efficiency : scalar, array or symbol, optional
+        Axial force over F_C i [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        g [kg m].
+
+    References
+    ----------
+    S4, analysis 1, eq. (4): F = g omega**2.
+
+    Examples
+    --------
+    S4, practice 1 (1 kg at 199.919 mm, tan 60 degrees; 84 N at 15.5752 rad/s):
+
+    >>> axial_gain(1.0, 0.199919, 3**0.5) * 15.5752**2
+    84.000
+    """
+    return mass * ratio * efficiency * radius
 
 
 def speed_for_force(
@@ -272,7 +372,7 @@ def speed_for_force(
     >>> float(speed_for_force(84.0, 1.0, 0.199919, 3**0.5))
     15.5752
     """
-    return np.sqrt(force / (mass * ratio * efficiency * radius))
+    return np.sqrt(force / axial_gain(mass, radius, ratio, efficiency))
 
 
 def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Quantity:
@@ -835,3 +935,34 @@ def spring_bow_load(
     """
     wire_mass = density * np.pi**2 * wire_diameter**2 * mean_diameter * active_coils / 4
     return wire_mass * radius * speed**2
+
+
+def rim_stress(density: Quantity, radius: Quantity, speed: Quantity) -> Quantity:
+    """Hoop stress of a thin rim that turns freely, rho (omega r)**2.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        Density of the rim rho [kg/m3].
+    radius : scalar, array or symbol
+        Radius of the rim [m].
+    speed : scalar, array or symbol
+        omega [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        sigma [Pa].
+
+    References
+    ----------
+    Hoop stress of a thin ring.
+
+    Examples
+    --------
+    Computed here, steel, 100 mm, 500 rad/s, in N/mm2:
+
+    >>> rim_stress(7850, 0.1, 500.0) / 1e6
+    19.625
+    """
+    return density * (speed * radius) ** 2

@@ -469,3 +469,102 @@ def gradual_radius(deflection: Quantity, flyweight_arm: Quantity, resisting_arm:
     (0.024, 22.857143)
     """
     return deflection * flyweight_arm / resisting_arm
+
+
+# -- engagement ------------------------------------------------------------------------------------
+
+
+def growth(start: Quantity, arm: Quantity, angle: Quantity) -> Quantity:
+    """Growth of a length that an arm makes longer, 1 + l phi/x.
+
+    Parameters
+    ----------
+    start : scalar, array or symbol
+        Length before: deflection of the springs, or radius of the flyweights [m].
+    arm : scalar, array or symbol
+        Arm l [m].
+    angle : scalar, array or symbol
+        Angle by which it swings on phi [rad].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Length after over length before [-].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    Practice 3 from contact to the stop, springs (12 + 10 mm, 3200/2200 N) and radius (182/172 mm):
+
+    >>> growth(22, 100, 0.1), growth(172, 100, 0.1)
+    (1.454545, 1.058140)
+    """
+    return 1 + arm * angle / start
+
+
+def speed_squared(force: Quantity, mass: Quantity, radius: Quantity) -> Quantity:
+    """Square of the speed at which the flyweights pull with a force, omega**2 = F_C/(m r).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Centrifugal force of all flyweights F_C [N].
+    mass : scalar, array or symbol
+        Mass of all flyweights m [kg].
+    radius : scalar, array or symbol
+        Radius of their centres r [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        omega**2 [1/s2].
+
+    References
+    ----------
+    F_C = m r omega**2.
+
+    Examples
+    --------
+    Practice 3 at the stop (132.599 rad/s):
+
+    >>> speed_squared(3200, 1, 0.182) ** 0.5
+    132.599
+    """
+    return force / (mass * radius)
+
+
+def band_squared(force_ratio: Quantity, radius_ratio: Quantity, rod_ratio: Quantity = 0.0) -> Quantity:
+    """Square of the speed at the stop over that at contact, (F2/F1)/((r2/r1) (1 - l_r/l_s)).
+
+    Both speeds are sqrt(F_C/(m r)); mass and arm of the flyweights cancel, and so does the rate of the springs where
+    the same springs resist at contact and at the stop.
+
+    Parameters
+    ----------
+    force_ratio : scalar, array or symbol
+        Force at the stop over force at contact: of the springs, or of the short leg on the plate [-].
+    radius_ratio : scalar, array or symbol
+        Radius of the flyweights at the stop over that at contact [-].
+    rod_ratio : scalar, array or symbol, optional
+        l_r/l_s of a lever with a rod; it is taut at contact and slack at the stop [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        (omega_stop/omega_contact)**2 [-].
+
+    References
+    ----------
+    Derived.
+
+    Examples
+    --------
+    Practice 3 (132.599/79.9709):
+
+    >>> band_squared(3200 / 2200, 182 / 172, 0.5) ** 0.5
+    1.65809
+    """
+    return force_ratio / (radius_ratio * (1 - rod_ratio))

@@ -114,6 +114,40 @@ def sound_springs(rng: np.random.Generator, instance: Instance, count: int) -> n
     return x
 
 
+def sound_flyweights(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables of centrifugal clutches that touch and clamp between idle and full speed."""
+    ranges = {
+        "rest_radius": (0.06, 0.11),
+        "plate_gap": (1.5e-3, 5e-3),
+        "spring_preload_deflection": (1e-3, 8e-3),
+        "ramp_ratio": (0.5, 1.8),
+        "lining_inner_radius": (0.05, 0.06),
+        "lining_outer_radius": (0.07, 0.09),
+    }
+    low, high = np.array([ranges[v.name] for v in instance.model.variables]).T
+    x: np.ndarray = low * (high / low) ** rng.random((count, len(low)))
+    return x
+
+
+def sound_levers(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables of levers that close the gap, with linings of a sensible ratio."""
+    spring_arm, outer = rng.uniform(0.02, 0.06, count), rng.uniform(0.06, 0.12, count)
+    found = {
+        "flyweight_mass": rng.uniform(0.1, 2, count),
+        "flyweight_arm": rng.uniform(0.02, 0.1, count),
+        "rest_radius": rng.uniform(0.04, 0.12, count),
+        "spring_preload_deflection": rng.uniform(0.004, 0.02, count),
+        "return_preload_deflection": rng.uniform(0.002, 0.01, count),
+        "lever_stop_angle": rng.uniform(0.2, 0.35, count),
+        "spring_arm": spring_arm,
+        "rod_arm": spring_arm * rng.uniform(0.3, 0.8, count),
+        "plate_arm": rng.uniform(0.012, 0.04, count),
+        "lining_outer_radius": outer,
+        "lining_inner_radius": outer * rng.uniform(0.55, 0.8, count),
+    }
+    return np.stack([found[v.name] for v in instance.model.variables], axis=1)
+
+
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 
 CAR = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
@@ -127,9 +161,71 @@ WIRE = {
     "wire_tensile_strength": "1430 N/mm2",
     "wire_endurance_amplitude": "430 N/mm2",
 }
+ENGINE = {
+    "required_torque": "90 N*m",
+    "idle_speed": "80 rad/s",
+    "contact_speed_max": "135 rad/s",
+    "full_torque_speed": "200 rad/s",
+    "top_speed": "500 rad/s",
+}
+LEVERS = {
+    "friction_surfaces": 2,
+    "weights": 4,
+    "flyweight_mass": "0.7 kg",
+    "flyweight_arm": "35 mm",
+    "lever_stop_angle": "0.34 rad",
+    "spring_preload_deflection": "10 mm",
+    "lining_inner_radius": "60 mm",
+}
 HARDENED = ["hardened_steel_oil", "hardened_steel_greased", "hardened_steel_dry"]
 
+RAMPS = {**ENGINE, "required_torque": "60 N*m", "contact_speed_min": "95 rad/s"}
+
 CASES: dict[str, Family] = {
+    "centrifugal_ball_ramp": Family(
+        option_sets={"default": {}},
+        requirements=RAMPS,
+        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        feasible={
+            "engine": Case(
+                requirements={
+                    **RAMPS,
+                    "clamp_force_limit": "20 kN",
+                    "driven_inertia": "0.1 kg*m2",
+                    "outer_diameter_limit": "125 mm",
+                },
+                settings={
+                    "parts": {
+                        "ball": ["ball 18", "ball 20"],
+                        "return_spring": ["CS-1x5x3.5", "CS-1.25x6.3x5.5"],
+                        "friction_pair": ["metal_ceramic_bronze_dry"],
+                    },
+                    "limits": {"balls": "9 .. 11", "return_springs": "2 .. 3"},
+                    "fix": {
+                        "lining_inner_radius": "36 mm",
+                        "lining_outer_radius": "46 mm",
+                        "friction_surfaces": 8,
+                        "plate_gap": "2 mm",
+                    },
+                    "objectives": ["outer_diameter", "engagement_band"],
+                },
+                tighten={"required_torque": "65 N*m", "idle_margin_min": "1.2"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**RAMPS, "outer_diameter_limit": "90 mm"},
+            settings={
+                "parts": {
+                    "ball": ["ball 18", "ball 20"],
+                    "return_spring": ["CS-1x5x3.5"],
+                    "friction_pair": ["metal_ceramic_bronze_dry"],
+                },
+            },
+        ),
+        culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
+        sound=sound_flyweights,
+        constants={"problems.mechanics.centrifugal:STANDARD_GRAVITY": (0, 1, -2, 0, 0)},
+    ),
     "disc_clutch": Family(
         option_sets={
             "default": {},
@@ -217,6 +313,33 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"torque_capacity", "outer_diameter", "actuation_force"}),
         sound=sound_cones,
+    ),
+    "centrifugal_lever": Family(
+        option_sets={"default": {}},
+        requirements=ENGINE,
+        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        feasible={
+            "engine": Case(
+                requirements=ENGINE,
+                settings={
+                    "parts": {"clamp_spring": ["CS-3.2x16x12.5", "CS-4x20x12.5"], "friction_pair": ["moulded_dry"]},
+                    "limits": {"clamp_springs": "7 .. 8", "outer_diameter": "<= 200 mm"},
+                    "fix": {**LEVERS, "rod_arm": "11 mm"},
+                    "objectives": ["outer_diameter", "engagement_band"],
+                    "points": 2,
+                },
+                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**ENGINE, "outer_diameter_limit": "140 mm"},
+            settings={
+                "parts": {"clamp_spring": ["CS-4x20x12.5"], "friction_pair": ["moulded_dry"]},
+                "fix": {**LEVERS, "rod_arm": "11 mm", "clamp_springs": 8},
+            },
+        ),
+        culprits=frozenset({"outer_diameter"}),
+        sound=sound_levers,
     ),
     "multi_plate_clutch": Family(
         option_sets={

@@ -270,11 +270,31 @@ def test_a_worn_lining_costs_clamp_force():
         assert lost == pytest.approx((lever.rate + lever.return_rate) * 1e-4)
 
 
+def test_the_band_is_that_of_the_border_speeds():
+    for lever in random_rod_levers(5):
+        _, contact, _, stop = lever.borders().speeds
+        after = lever.stop_angle - lever.contact_angle
+        lead = lever.spring_arm - lever.rod_arm
+        squeezed = lever.preload / lever.rate + lead * lever.contact_angle
+        forces = levers.growth(squeezed, lever.spring_arm, after)
+        radii = levers.growth(lever.radius(lever.contact_angle), lever.flyweight_arm, after)
+        band = levers.band_squared(forces, radii, lever.rod_arm / lever.spring_arm)
+        assert band**0.5 == pytest.approx(stop / contact, rel=1e-12)
+    for lever in random_reversed_levers(5):
+        _, contact, _, stop = lever.borders().speeds
+        motion = lever.motion(2 * stop)
+        force = motion.clamp_force.max() + motion.return_force.max()
+        radii = lever.radius(lever.stop_angle) / lever.radius(lever.contact_angle)
+        band = levers.band_squared(force / motion.return_force.max(), radii)
+        assert band**0.5 == pytest.approx(stop / contact, rel=1e-12)
+
+
 # -- units, arrays and symbols ---------------------------------------------------------------------
 
 ARMS = {"spring_arm": "m", "rod_arm": "m"}
 SET = {"preload": "N", "rate": "N/m"}
 TURNING = {"speed": "1/s", "mass": "kg", "rest_radius": "m", "flyweight_arm": "m"}
+RANGES = {"rod_ratio": (0.1, 0.9)}
 CASES = [
     (levers.contact_angle, {"contact_travel": "m", "plate_arm": "m"}, "-"),
     (levers.travel_spring_force, {**SET, **ARMS, "angle": "-"}, "N"),
@@ -287,14 +307,17 @@ CASES = [
     (levers.clamp_angle, {**TURNING, "spring_arm": "m", "contact_travel": "m", **SET}, "-"),
     (levers.return_force, {**SET, "travel": "m"}, "N"),
     (levers.plate_force, {"flyweight_force": "N", "flyweight_arm": "m", "plate_arm": "m"}, "N"),
+    (levers.growth, {"start": "m", "arm": "m", "angle": "-"}, "-"),
+    (levers.speed_squared, {"force": "N", "mass": "kg", "radius": "m"}, "1/s2"),
+    (levers.band_squared, {"force_ratio": "-", "radius_ratio": "-", "rod_ratio": "-"}, "-"),
     (levers.gradual_radius, {"deflection": "m", "flyweight_arm": "m", "resisting_arm": "m"}, "m"),
 ]
 
 
 @pytest.mark.parametrize(("function", "units", "result"), CASES, ids=[case[0].__name__ for case in CASES])
 def test_every_formula_keeps_its_units_and_takes_anything(function, units, result):
-    assert_homogeneous(function, units, result, {})
-    assert_same_on_symbols_and_arrays(function, units, {})
+    assert_homogeneous(function, units, result, RANGES)
+    assert_same_on_symbols_and_arrays(function, units, RANGES)
 
 
 def test_no_formula_is_forgotten():

@@ -256,6 +256,24 @@ def test_an_equality_has_a_price():
     assert price.sentence == "1 % more volume saves 0.5 % below"
 
 
+def test_limits_of_the_question_have_a_price():
+    # Flexibility goes with length/width: the width is held by the limit on it, the length by the reach or a limit.
+    limits = {"width": ["<= 100 mm", ">= 10 mm"], "length": ">= 150 mm", "area": "<= 300 mm2", "mass": "<= 1 kg"}
+    for grid in (True, False):
+        found = synth.prices(bar(objectives=["flexibility"], limits=limits, grid=grid))
+        for name, expected in (("width <= 100 mm", -1), ("length >= 150 mm", 1), ("width >= 10 mm", 0)):
+            price = found.of(1, "flexibility", name, "limit")
+            assert price.up == price.down == pytest.approx(expected, rel=1e-6)
+            assert price.status == ("confirmed" if expected else "no influence")
+        assert found.of(1, "flexibility", "reach", "limit").status == "no influence"
+        assert found.of(1, "flexibility", "area <= 300 mm2", "limit").status == "no influence"
+    tight = synth.prices(bar(objectives=["flexibility"], limits={"area": "<= 200 mm2", "length": "== 160 mm"}))
+    assert tight.of(1, "flexibility", "area <= 200 mm2", "limit").up == pytest.approx(-1, rel=1e-6)
+    exact = tight.of(1, "flexibility", "length == 160 mm", "limit")
+    assert exact.up == exact.down == pytest.approx(1, rel=1e-6)
+    assert exact.sentence == "raising the limit length == 160 mm by 1 % costs 1 % flexibility"
+
+
 @pytest.mark.parametrize(("stated", "expected"), [({}, 1.0), ({"peak": 20.0}, -0.6), ({"jolt": 40.0}, 0.2)])
 def test_what_a_default_makes_of_a_requirement_moves_along(stated, expected):
     price = synth.prices(synth.synthesize(Followed, {"load": 10.0, **stated}, gap=1e-5)).of(1, "mass", "load")

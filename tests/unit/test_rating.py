@@ -136,6 +136,8 @@ def test_new_and_worn_cold_and_hot():
     told = rated({"wear": "new and worn", "ambient_temperature": "-20 .. 60 degC"})
     assert told["limits"]["grip"]["at"] == pytest.approx({"wear": 0.002})
     assert told["limits"]["warmth"]["value"] == pytest.approx(273.15 + 60 + 25)
+    colon = rated({"wear": "new and worn", "ambient_temperature": "-20:60 degC"})
+    assert colon["limits"] == told["limits"]
     told = rated({"wear": "0 .. 5 mm", "T": "+- 5 N*m", "ambient_temperature": "+-10 K"})
     assert told["limits"]["grip"]["at"] == pytest.approx({"wear": 0.005, "torque": 105})
 

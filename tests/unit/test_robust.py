@@ -196,6 +196,32 @@ def test_interrupted_before_all_is_rated_says_so():
     assert front.interrupted == "time limit"
 
 
+def test_a_second_search_that_is_stopped_leaves_what_the_first_one_proved():
+    seen = []
+
+    def interrupt(state):
+        seen.append(state["stage"])
+        if state["stage"] == "bounds" and "rating" in seen:
+            raise KeyboardInterrupt
+
+    limits = {"size": "<= 260 mm"}
+    front = synthesized(
+        WIDE, requirements=NEEDED, limits=limits, points=2, progress=interrupt, fix={"force": "3 kN", "pair": "firm"},
+        objectives={"size": "max"},
+    )  # fmt: skip
+    assert front.interrupted == "interrupted"
+    assert front.statistics["robust"]["taken_off"] == 1
+    assert front.designs == []
+    assert front.certificate.kind == "heuristic"
+
+
+def test_why_nothing_is_robust_is_explained_by_the_corner():
+    found = synth.explain(
+        ShaftBrake(), NEEDED, catalogs=CATALOGS, parts={"pair": ["firm"]}, robust={"torque": "50 .. 1000 N*m"}
+    )
+    assert set(found.conflict) == {"pressure", "grip (torque high)"}
+
+
 @pytest.mark.parametrize("block", [{"friction": "rough"}, {"torque": "+-99.5 %"}, {"frition": "+-5 %"}, {}])
 def test_careless_blocks_are_refused_before_the_search(block):
     with pytest.raises(synth.InputError, match="robust"):
