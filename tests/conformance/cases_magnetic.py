@@ -11,6 +11,7 @@ from synth.instance import Instance
 
 WINDER = {"required_torque": "30 N*m"}
 SPINDLE = {"load_torque": "8 N*m", "driver_speed": "960 1/min", "driven_inertia": "0.05 kg*m2"}
+DRUM = {**SPINDLE, "load_torque": "30 N*m"}
 MAGNETICS = "problems.mechanics.magnetics:"
 CONSTANTS = {
     MAGNETICS + "MU_0": (1, 1, -2, 0, -2),
@@ -43,13 +44,13 @@ def sound_electromagnetic_clutches(rng: np.random.Generator, instance: Instance,
     """Return variables with rings of a sensible ratio and magnets that are stronger than their springs."""
     disc = any(v.name == "pressure_plate_thickness" for v in instance.model.variables)
     ranges = {
-        "inner_pole_width": (0.012, 0.03),
+        "inner_pole_width": (0.013, 0.016),
         "coil_length": (0.02, 0.06),
         "coil_height": (0.02, 0.05),
         "yoke_thickness": (0.012, 0.03),
-        "flux_density": (0.7, 1.2),
-        "ramp_time": (0.05, 1.5),
-        "ring_outer_diameter": (0.15, 0.4),
+        "flux_density": (1.0, 1.25),
+        "ramp_time": (0.05, 0.5),
+        "ring_outer_diameter": (0.15, 0.21),
         "ring_inner_diameter": (0.76, 0.81) if disc else (0.6, 0.8),
         "pressure_plate_thickness": (0.004, 0.02),
     }
@@ -105,20 +106,20 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
         "electromagnetic_clutch": family(
             option_sets={
                 "default": {},
-                "dry_worst_case": {"lubrication": "dry", "load_kind": "active", "friction_basis": "worst_case"},
+                "worst_case": {"load_kind": "active", "friction_basis": "worst_case"},
                 "catalogue": {"spline_choice": "catalogue"},
                 "disc": {"pack": "disc"},
                 "disc_obsolete": {"pack": "disc", "friction_basis": "worst_case", "allow_obsolete": "yes"},
             },
-            requirements=SPINDLE,
+            requirements=DRUM,
             optional={
-                "startup_torque": "12 N*m",
-                "overload_torque": "80 N*m",
+                "startup_torque": "36 N*m",
+                "overload_torque": "200 N*m",
                 "actuation_force_limit": "5 kN",
                 "outer_diameter_limit": "250 mm",
-                "length_limit": "120 mm",
-                "jerk_limit": "2000 rad/s3",
-                "acceleration_limit": "400 rad/s2",
+                "length_limit": "200 mm",
+                "jerk_limit": "2e5 rad/s3",
+                "acceleration_limit": "4000 rad/s2",
                 "hub_bore_diameter": "40 mm",
                 "drag_torque_limit": "5 N*m",
             },
@@ -131,7 +132,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                             "friction_pair": ["steel_steel_wet"],
                             "inner_plate": ["core 1.5"],
                             "outer_plate": ["core 1.5"],
-                            "winding_wire": ["Cu 0.45 class 155", "Cu 0.5 class 155"],
+                            "winding_wire": ["Cu 0.5 class 155", "Cu 0.56 class 155"],
                         },
                         "fix": {
                             "ramp_time": "0.1 s",
@@ -148,8 +149,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                     },
                     tighten={
                         "load_torque": "9 N*m",
-                        "pull_in_margin": "1.5",
-                        "plate_gap": "0.35 mm",
+                        "pull_in_margin": "1.4",
                     },
                 ),
             },
