@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_curves, centrifugal_lever_curves
 from problems import centrifugal_lever_blocks as lever_blocks
@@ -131,11 +133,14 @@ class CentrifugalReversed(DesignProblem):
         band_squared = formulas.band_squared(
             push / back, formulas.growth(lever.radius(contact_angle), arm, lever.stop_angle - contact_angle)
         )
-        contact, stop, band = lever.speeds(formulas.clamp_flyweight_force(push, leg.arm, arm), band_squared)
+        contact = lever.speed(formulas.clamp_flyweight_force(back, leg.arm, arm), contact_angle)
+        stop = lever.speed(formulas.clamp_flyweight_force(push, leg.arm, arm), lever.stop_angle)
         worn = push - back - (springs.rate + leg.springs.rate) * lever.wear
-        blocks.declare_contact(d, duty, contact, needs=LOADED)
+        blocks.declare_contact(d, duty, contact)
         blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, LOADED)
-        blocks.declare_band(d, band, "Full-clamp speed over contact speed; a small one is sharp", LOADED)
+        blocks.declare_band(
+            d, np.sqrt(band_squared), "Full-clamp speed over contact speed; a small one is sharp", LOADED
+        )
         d.at_most(
             "no_snap_travel", formulas.gradual_radius(leg.deflection, arm, leg.arm), lever.rest_radius, "mm",
             text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
