@@ -307,7 +307,8 @@ class SpringSet:
 
     def force(self, deflection: Any) -> Any:
         """Return the force of the set at a deflection from the free length [N]."""
-        return centrifugal.spring_force(self.rate, deflection)
+        # Through the force of one spring, which a limit bounds: then that limit bounds the force of the set too.
+        return self.count * centrifugal.spring_force(self.part.rate_R, deflection)
 
     def share_of_circle(self, gap: Any) -> Any:
         """Return the length that the set takes of its circle, with a gap beside each spring [m]."""

@@ -116,7 +116,7 @@ def _branch(
         SPEED_AXIS: speed / RPM,
         "centrifugal force [N]": centrifugal.centrifugal_force(path.mass, path.radius(travel), speed),
         **path.columns(force, travel),
-        "radius of the flyweights [mm]": path.radius(travel) / MM,
+        "radius [mm]": path.radius(travel) / MM,
     })  # fmt: skip
     jumps = any(later < earlier * (1 - 1e-9) for earlier, later in itertools.pairwise(borders))
     title = f"{problem.title}: {words}"
@@ -127,7 +127,7 @@ def _branch(
         "title": title,
         "panels": [
             *({**panel, "columns": list(panel["columns"])} for panel in path.panels),
-            {"label": "radius [mm]", "columns": ["radius of the flyweights [mm]"]},
+            {"label": "radius of the flyweights [mm]", "columns": ["radius [mm]"]},
         ],
         "marks": [
             {"x": spec[name] / RPM, "label": name} for name in ("idle_speed", "full_torque_speed") if spec[name] < top
@@ -162,7 +162,7 @@ def ball_ramp_path(spec: Mapping[str, Any], design: Any) -> Path:
     def columns(force: np.ndarray, travel: np.ndarray) -> dict[str, np.ndarray]:
         clamp = np.maximum(force - contact, 0.0)
         return {
-            "force of the return springs [N]": centrifugal.spring_force(rate, deflection + travel),
+            "spring force [N]": centrifugal.spring_force(rate, deflection + travel),
             "clamp force [N]": clamp,
             "gap [mm]": (gap - travel) / MM,
             "torque [N*m]": clamp * torque_per_force(design),
@@ -180,7 +180,7 @@ def ball_ramp_path(spec: Mapping[str, Any], design: Any) -> Path:
         panels=[
             {
                 "label": "force [N]",
-                "columns": ["centrifugal force [N]", "force of the return springs [N]", "clamp force [N]"],
+                "columns": ["centrifugal force [N]", "spring force [N]", "clamp force [N]"],
             },
             {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
             {"label": "gap [mm]", "columns": ["gap [mm]"]},
@@ -217,7 +217,7 @@ def clamp_force_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> 
     columns = {"friction times friction radius [mm]": arm / MM}
     for surfaces in (2, 4, 6, 8):
         force = centrifugal.force_for_torque(torque, 1.0, surfaces, arm)
-        columns[f"clamp force, {surfaces} surfaces [N]"] = force
+        columns[f"{surfaces} surfaces [N]"] = force
     frame = pd.DataFrame(columns)
     cap = spec.get("clamp_force_limit")
     frame.attrs = {
@@ -251,7 +251,7 @@ def idle_margin_over_ramp(problem: DesignProblem, spec: Mapping[str, Any]) -> pd
     columns = {"ramp angle [deg]": np.degrees(centrifugal.ramp_angle(ratio))}
     for factor, words in ((0, "no friction"), (1, "ball_friction"), (2, "twice ball_friction")):
         loss = centrifugal.contact_loss(factor * spec["ball_friction"], ratio)
-        columns[f"idle margin, {words} [-]"] = best * centrifugal.release_ratio(loss)
+        columns[f"{words} [-]"] = best * centrifugal.release_ratio(loss)
     frame = pd.DataFrame(columns)
     frame.attrs = {
         "title": f"{problem.title}: largest idle margin, contact at contact_speed_max",

@@ -29,6 +29,7 @@ FAMILIES = 48  # known combinations that are tried at all places
 MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
 CONFLICTS = 64
+LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
 NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
 THIN = 1e-5  # relative
 
@@ -64,8 +65,13 @@ class Seeker:
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
-        """Tell whether boxes are worth a solver: for one objective, where designs are known, points say as much."""
-        return len(self.purpose.columns) > 1 or self.form.conflict or not len(self.form.archive)
+        """Tell whether boxes are worth a solver: for one objective points say as much once designs are known.
+
+        Before that, optima tell what is worth splitting.
+        """
+        form = self.form
+        found = len(form.archive) > 0 and form.propagation.lessons >= LESSONS
+        return len(self.purpose.columns) > 1 or form.conflict or not found
 
     def _settle_best(self) -> None:
         """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""

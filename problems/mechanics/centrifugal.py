@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from problems.mechanics import Quantity
+from synth.special import special
 
 STANDARD_GRAVITY = 9.80665  # m/s2
 
@@ -200,6 +201,40 @@ def inward_efficiency(loss: Quantity) -> Quantity:
     1.078082
     """
     return 1 / (1 - loss)
+
+
+@special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
+def ramp_gain(ratio: Quantity, ball_friction: Quantity) -> Quantity:
+    """Axial over centrifugal force of balls that move out, i eta_out = i/(1 + mu_b (i + sqrt(1 + i**2))).
+
+    Parameters
+    ----------
+    ratio : scalar, array or symbol
+        Transmission of the ramp i [-].
+    ball_friction : scalar, array or symbol
+        Friction at the contacts of a ball mu_b [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        i eta_out [-].
+
+    Notes
+    -----
+    One node of the trace, so that the search knows that a steeper ramp always pushes harder.
+
+    References
+    ----------
+    Derived; S4, analysis 1, eq. (4) without friction: tan(alpha).
+
+    Examples
+    --------
+    Computed here, the product of the two:
+
+    >>> float(ramp_gain(1.0, 0.03))
+    0.932465
+    """
+    return ratio / (1 + ball_friction * (ratio + np.sqrt(1 + ratio**2)))
 
 
 def release_ratio(loss: Quantity) -> Quantity:

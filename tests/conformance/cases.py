@@ -114,6 +114,21 @@ def sound_springs(rng: np.random.Generator, instance: Instance, count: int) -> n
     return x
 
 
+def sound_flyweights(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables of centrifugal clutches that touch and clamp between idle and full speed."""
+    ranges = {
+        "rest_radius": (0.06, 0.11),
+        "plate_gap": (1.5e-3, 5e-3),
+        "spring_preload_deflection": (1e-3, 8e-3),
+        "ramp_ratio": (0.5, 1.8),
+        "lining_inner_radius": (0.05, 0.06),
+        "lining_outer_radius": (0.07, 0.09),
+    }
+    low, high = np.array([ranges[v.name] for v in instance.model.variables]).T
+    x: np.ndarray = low * (high / low) ** rng.random((count, len(low)))
+    return x
+
+
 def sound_levers(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
     """Return variables of levers that close the gap, with linings of a sensible ratio."""
     spring_arm, outer = rng.uniform(0.02, 0.06, count), rng.uniform(0.06, 0.12, count)
@@ -164,7 +179,53 @@ LEVERS = {
 }
 HARDENED = ["hardened_steel_oil", "hardened_steel_greased", "hardened_steel_dry"]
 
+RAMPS = {**ENGINE, "required_torque": "60 N*m", "contact_speed_min": "95 rad/s"}
+
 CASES: dict[str, Family] = {
+    "centrifugal_ball_ramp": Family(
+        option_sets={"default": {}},
+        requirements=RAMPS,
+        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        feasible={
+            "engine": Case(
+                requirements={
+                    **RAMPS,
+                    "clamp_force_limit": "20 kN",
+                    "driven_inertia": "0.1 kg*m2",
+                    "outer_diameter_limit": "125 mm",
+                },
+                settings={
+                    "parts": {
+                        "ball": ["ball 18", "ball 20"],
+                        "return_spring": ["CS-1x5x3.5", "CS-1.25x6.3x5.5"],
+                        "friction_pair": ["metal_ceramic_bronze_dry"],
+                    },
+                    "limits": {"balls": "9 .. 11", "return_springs": "2 .. 3"},
+                    "fix": {
+                        "lining_inner_radius": "36 mm",
+                        "lining_outer_radius": "46 mm",
+                        "friction_surfaces": 8,
+                        "plate_gap": "2 mm",
+                    },
+                    "objectives": ["outer_diameter", "engagement_band"],
+                },
+                tighten={"required_torque": "65 N*m", "idle_margin_min": "1.2"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**RAMPS, "outer_diameter_limit": "90 mm"},
+            settings={
+                "parts": {
+                    "ball": ["ball 18", "ball 20"],
+                    "return_spring": ["CS-1x5x3.5"],
+                    "friction_pair": ["metal_ceramic_bronze_dry"],
+                },
+            },
+        ),
+        culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
+        sound=sound_flyweights,
+        constants={"problems.mechanics.centrifugal:STANDARD_GRAVITY": (0, 1, -2, 0, 0)},
+    ),
     "disc_clutch": Family(
         option_sets={
             "default": {},

@@ -68,6 +68,7 @@ CASES = [
 ]
 RANGES = {"loss": (0.01, 0.7), "ball_friction": (0.0, 0.1), "inner_radius": (0.3, 0.6), "outer_radius": (0.8, 2.0)}
 IDS = [case[0].__name__ for case in CASES]
+SPECIAL = {"ramp_gain"}  # takes its arguments by position; tests/mechanics/test_special_functions.py
 
 
 @pytest.mark.parametrize(("function", "units", "result_unit"), CASES, ids=IDS)
@@ -95,7 +96,15 @@ def test_no_formula_is_left_out():
         for name, member in inspect.getmembers(centrifugal, inspect.isfunction)
         if member.__module__ == centrifugal.__name__
     }
-    assert public == set(IDS) | {"gravity_ratio"}
+    assert public == set(IDS) | {"gravity_ratio"} | SPECIAL
+
+
+def test_ramp_gain_is_transmission_times_efficiency():
+    ratio, mu = np.meshgrid(np.linspace(0.4, 2, 9), np.linspace(0, 0.1, 5))
+    loss = centrifugal.contact_loss(mu, ratio)
+    np.testing.assert_allclose(centrifugal.ramp_gain(ratio, mu), ratio * centrifugal.outward_efficiency(loss))
+    both = centrifugal.outward_efficiency(loss) / centrifugal.inward_efficiency(loss)
+    np.testing.assert_allclose(centrifugal.release_ratio(loss) ** 2, both)
 
 
 @pytest.mark.parametrize("ratio", [0.4, 1.0, 3**0.5])

@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
+import problems.centrifugal_ball_ramp
 import problems.cone_clutch
 import problems.magnetic_powder_clutch
 import problems.multi_plate_clutch  # noqa: F401 - fills the table
@@ -226,7 +227,7 @@ def test_the_table_is_complete():
     assert names == {
         "sum_geometric", "sum_lipka", "sum_exact", "peak_rise_per_work", "reactive_friction_work",
         "reactive_slip_time", "reactive_peak_slip_power", "grip_factor", "iron_field", "resistance_rise",
-        "hot_copper_loss", "densest", "rim_section_width",
+        "hot_copper_loss", "densest", "rim_section_width", "ramp_gain",
     }  # fmt: skip
     assert all(isinstance(TABLE[n], SpecialFunction) for n in NAMES)
     assert {n.rsplit(".", 1)[1] for n in NAMES if TABLE[n].curvature is None} == {
