@@ -20,6 +20,7 @@ LEAST_NLPS = 8
 PATIENCE = 3
 EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
 REACH = 2
+MOST_ROUNDINGS = 1024  # of one design; with more gridded variables only the nearest values are tried
 TIE_WEIGHT = 1e-6
 PARENTS = 16  # known designs whose parts are exchanged in one round
 ROUNDS = 12
@@ -315,7 +316,8 @@ class Seeker:
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
-    steps = np.array(np.meshgrid(*[np.arange(-REACH, REACH) if g else [0] for g in form.gridded], indexing="ij"))
+    reach = REACH if (2 * REACH) ** int(form.gridded.sum()) <= MOST_ROUNDINGS else 1
+    steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T
     count = len(steps)
     low = np.tile(form.propagation.low[: form.n], (len(variables) * count, 1))
