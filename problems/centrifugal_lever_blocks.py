@@ -55,8 +55,8 @@ class Lever:
     def speeds(self, stop_pull: Any, band_squared: Any) -> tuple[Any, Any, Any]:
         """Return contact speed, stop speed and engagement band, from the pull at the stop [N] and the band.
 
-        Written so, mass, arm and springs stand in the contact speed once, and the torque that the springs must hold
-        says at once how heavy the weights are.
+        Where the same springs resist at contact and at the stop, mass, arm and springs stand in the contact speed once
+        this way, and the torque that the springs must hold says at once how heavy the weights are.
         """
         square = formulas.speed_squared(stop_pull, self.weights.mass, self.end_radius)
         return np.sqrt(square / band_squared), np.sqrt(square), np.sqrt(band_squared)

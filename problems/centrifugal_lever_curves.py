@@ -7,13 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from problems import centrifugal_curves
 from problems.centrifugal_curves import MM, RPM, SPEED_AXIS
 from problems.centrifugal_lever_blocks import RECONSTRUCTED
 from problems.mechanics import centrifugal
-from problems.mechanics.lever_motion import Motion, ReversedLever, RodLever
+from problems.mechanics.lever_motion import ReversedLever, RodLever
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
     from synth import DesignProblem
 
 POINTS = 41
-NEARLY_ALL = 0.999  # of a speed: below it the next regime is a jump back, not a rounding
 
 
 def rod_lever(spec: Mapping[str, Any], design: Any) -> RodLever:
@@ -173,7 +170,7 @@ def _over_speed(
     gaps = [name for name in columns if name.endswith("[mm]") and not name.startswith("radius")]
     edges = (0.0, *borders.speeds, top)
     title = f"{problem.title}: {words}"
-    if _runs_back(motion):
+    if borders.snaps:
         title += "; where the curve runs back the lever jumps, outwards at the higher speed and home at the lower"
     frame.attrs = {
         "title": title,
@@ -195,7 +192,3 @@ def _over_speed(
         "source": RECONSTRUCTED,
     }
     return frame
-
-
-def _runs_back(motion: Motion) -> bool:
-    return bool(np.any(motion.speed[1:] < NEARLY_ALL * motion.speed[:-1]))

@@ -122,6 +122,11 @@ class BatchNlp:
         self._stored = self.functions.compile_stored()
         self._sides = self._compile_sides(program)
 
+    @property
+    def steps(self) -> int:
+        """Return how many steps were taken without compiled code."""
+        return self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
+
     def _compile_sides(self, program: Program) -> Any:
         """Return a function of both sides of the rows that enter by a scaled difference."""
         plain = [c for c, log in zip(self.rows.cuts, self.rows.log_cuts, strict=True) if not log]

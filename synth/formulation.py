@@ -22,6 +22,8 @@ from synth.program import Program
 from synth.propagation import Propagation
 
 CHUNK = 4096
+# Work of the solver, as ``Formulation.work`` counts it, that costs about as much as compiling it.
+COMPILE_NLP_AFTER = 150_000
 SNAP = 1e-9
 PINNED = 1e-12
 TIE = 1e-9
@@ -194,6 +196,7 @@ class Formulation:
         self.contracted = 0
         self.workers = 1
         self.nlp_solves = 0
+        self.work = 0  # of the solver without compiled code: steps times nodes of the program
         self.solved_combinations: set[int] = set()
         self.archive = Archive(range(traded), self.n, len(self.goals))
         self._rows: Rows | None = None
@@ -569,7 +572,9 @@ class Formulation:
         ``edge``: with the edges of max and min rounded off.
         """
         rows = self.rows()
-        native = None if self.compiled and self.instance.combinations * self.alike >= COMPILED_FROM else False
+        large = self.instance.combinations * self.alike >= COMPILED_FROM
+        long = self.work > COMPILE_NLP_AFTER
+        native = None if self.compiled and (large or long) else False
         made: BatchNlp = self.model.function(
             ("batch", rows, native, edge), lambda: BatchNlp(self.model.program, self.n, rows, native, edge)
         )
@@ -605,11 +610,19 @@ class Formulation:
         high = np.broadcast_to(self.upper, (count, self.n)) if high is None else high
         void = self.void(data, count) if skipped is None else self.void(data, count) | skipped
         start = np.clip(start, low, high)
+
+        def solved(edge: float, begin: np.ndarray) -> Solutions:
+            nlp = self.batch_nlp(edge)
+            before = nlp.steps
+            found = nlp.solve(tasks, data, begin, low, high, self.bounds, void)
+            self.work += (nlp.steps - before) * len(self.model.program.nodes)
+            return found
+
         if not self._edged:
-            return self.batch_nlp().solve(tasks, data, start, low, high, self.bounds, void)
+            return solved(0.0, start)
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
-        rounded = self.batch_nlp(EDGE).solve(tasks, data, start, low, high, self.bounds, void)
-        sharp = self.batch_nlp().solve(tasks, data, rounded.variables, low, high, self.bounds, void)
+        rounded = solved(EDGE, start)
+        sharp = solved(0.0, rounded.variables)
         return sharp.replaced(~sharp.converged, rounded)
 
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:

@@ -63,10 +63,16 @@ class InteriorPoint:
     Parameters
     ----------
     functions : RowFunctions
+
+    Attributes
+    ----------
+    steps : int
+        How often all lanes went one step: what the solver has cost.
     """
 
     def __init__(self, functions: RowFunctions) -> None:
         self.functions = functions
+        self.steps = 0
         self.point = functions.compile_point()
         self.layout = Layout(functions)
 
@@ -88,6 +94,7 @@ class InteriorPoint:
                     waiting = upto
                 assert lanes is not None
                 lanes.advance(self.point)
+                self.steps += 1
                 lanes = lanes.without_finished(ends)
         return ends
 

@@ -11,7 +11,7 @@ designs as well, and every design that it finds is rated over the whole range af
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -256,17 +256,20 @@ class _Shifted(Declaration):
         return self._around.rows[f"{table}:{designation}"]
 
 
-def _refuse(d: Declaration, things: Sequence[Scattered], corners: Any) -> None:
+def _refuse(d: Declaration, things: Sequence[Scattered], corners: Iterable[Declaration]) -> None:
     """Refuse as well what the family refuses at a corner."""
-    words = ", ".join(x.name for x in things)
-    moved = {
-        str(d.requirements[m.name].sx if m.kind == "requirement" else d.slots[m.name].columns[m.column].sx)
-        for x in things
-        for m in x.members
-        if m.kind == "requirement" or (m.kind == "part" and m.column in d.slots[m.name].columns)
-    }
-    nominal_ones = list(d.refusals)
+    moved: dict[str, str] = {}
+    for x in things:
+        for m in x.members:
+            if m.kind == "requirement":
+                moved[str(d.requirements[m.name].sx)] = x.name
+            elif m.kind == "part" and m.column in d.slots[m.name].columns:
+                moved[str(d.slots[m.name].columns[m.column].sx)] = x.name
+    nominal_ones, seen = list(d.refusals), set[str]()
     for corner in corners:
         for own, there in zip(nominal_ones, corner.refusals, strict=True):
-            if any(str(s) in moved for s in ca.symvar(own.when)):
-                d.refusals.append(replace(there, message=f"{own.message}, over the whole range of {words}"))
+            names = dict.fromkeys(moved[str(s)] for s in ca.symvar(own.when) if str(s) in moved)
+            if names and (text := f"{own.code} {there.when}") not in seen:
+                seen.add(text)
+                message = f"{own.message}, over the whole range of {' and '.join(names)}"
+                d.refusals.append(replace(there, message=message))

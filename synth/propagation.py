@@ -460,6 +460,11 @@ class Propagation:
         np.add.at(self._lessons, pattern, 1)
         self.weights = self._weights()
 
+    @property
+    def lessons(self) -> int:
+        """Return how many solved problems were learned from."""
+        return int(self._lessons.sum())
+
     def taught_by(self, other: Propagation) -> None:
         """Take what was learned for the same limits and objectives."""
         self._learned, self._importance, self._lessons = other._learned, other._importance, other._lessons

@@ -528,6 +528,7 @@ class FrontSearch:
         known, self.in_conflict = self.form, True
         self.form = self._formulation(conflict=True)
         self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
+        self.form.work = known.work
         self.form.solved_combinations = known.solved_combinations
         self.form.propagation.taught_by(known.propagation)
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)

@@ -20,6 +20,7 @@ LEAST_NLPS = 8
 PATIENCE = 3
 EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
 REACH = 2
+MOST_ROUNDINGS = 1024  # of one design; with more gridded variables only the nearest values are tried
 TIE_WEIGHT = 1e-6
 PARENTS = 16  # known designs whose parts are exchanged in one round
 ROUNDS = 12
@@ -29,6 +30,7 @@ FAMILIES = 48  # known combinations that are tried at all places
 MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
 CONFLICTS = 64
+LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
 NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
 THIN = 1e-5  # relative
 
@@ -64,8 +66,13 @@ class Seeker:
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
-        """Tell whether boxes are worth a solver: for one objective, where designs are known, points say as much."""
-        return len(self.purpose.columns) > 1 or self.form.conflict or not len(self.form.archive)
+        """Tell whether boxes are worth a solver: for one objective points say as much once designs are known.
+
+        Before that, optima tell what is worth splitting.
+        """
+        form = self.form
+        found = len(form.archive) > 0 and form.propagation.lessons >= LESSONS
+        return len(self.purpose.columns) > 1 or form.conflict or not found
 
     def _settle_best(self) -> None:
         """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""
@@ -309,7 +316,8 @@ class Seeker:
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
-    steps = np.array(np.meshgrid(*[np.arange(-REACH, REACH) if g else [0] for g in form.gridded], indexing="ij"))
+    reach = REACH if (2 * REACH) ** int(form.gridded.sum()) <= MOST_ROUNDINGS else 1
+    steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T
     count = len(steps)
     low = np.tile(form.propagation.low[: form.n], (len(variables) * count, 1))

@@ -18,7 +18,7 @@ from problems.mechanics import Quantity, centrifugal
 from problems.mechanics import centrifugal_levers as levers
 
 REST, TRAVEL, CONTACT, CLAMP, STOP = range(5)
-REGIMES = ("rest", "travel", "contact", "clamp", "stop")
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Borders:
     def snaps(self) -> bool:
         """Whether the lever jumps through a phase."""
         start, contact, free, stop = self.speeds
-        return start > contact or free > stop
+        return start > contact * (1 + ROUNDING) or free > stop * (1 + ROUNDING)
 
 
 @dataclass(frozen=True)

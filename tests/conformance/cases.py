@@ -412,6 +412,48 @@ CASES: dict[str, Family] = {
         culprits=frozenset({"outer_diameter"}),
         sound=sound_levers,
     ),
+    "centrifugal_reversed": Family(
+        option_sets={"default": {}},
+        requirements=ENGINE,
+        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
+        feasible={
+            "engine": Case(
+                requirements=ENGINE,
+                settings={
+                    "parts": {
+                        "clamp_spring": ["CS-5x25x5.5"],
+                        "return_spring": ["CS-3.2x16x3.5", "CS-2.5x12.5x3.5"],
+                        "friction_pair": ["moulded_dry"],
+                    },
+                    "limits": {"return_springs": "5 .. 6", "outer_diameter": "<= 200 mm"},
+                    "fix": {
+                        **{name: given for name, given in LEVERS.items() if name != "flyweight_mass"},
+                        "flyweight_arm": "40 mm",
+                        "spring_preload_deflection": "16 mm",
+                        "plate_arm": "12 mm",
+                        "return_preload_deflection": "6 mm",
+                        "clamp_springs": 6,
+                    },
+                    "objectives": ["outer_diameter", "engagement_band"],
+                    "points": 2,
+                },
+                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**ENGINE, "outer_diameter_limit": "140 mm"},
+            settings={
+                "parts": {
+                    "clamp_spring": ["CS-4x20x8.5"],
+                    "return_spring": ["CS-3.2x16x3.5"],
+                    "friction_pair": ["moulded_dry"],
+                },
+                "fix": {**LEVERS, "plate_arm": "12 mm", "clamp_springs": 6, "return_springs": 6},
+            },
+        ),
+        culprits=frozenset({"outer_diameter"}),
+        sound=sound_levers,
+    ),
     "multi_plate_clutch": Family(
         option_sets={
             "default": {},
