@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems import coil_curves
+from problems.coil_curves import POINTS, Warmth
 from problems.mechanics import magnetics, powder
 
 if TYPE_CHECKING:
@@ -15,9 +17,7 @@ if TYPE_CHECKING:
 
     from synth import DesignProblem
 
-POINTS = 121
 POLE_LENGTHS = (0.01, 0.02, 0.04)  # [m]
-ZERO_CELSIUS = 273.15  # [K]
 SOURCE = "S4 (notes on centrifugal clutches) [P1] to [P8]; the shear curve of the powder is unverified"
 
 
@@ -90,31 +90,6 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
     )
 
 
-@dataclass(frozen=True)
-class Warmth:
-    """What heats and cools the body of one design, all in SI."""
-
-    conductance: float
-    ambient: float
-    limit: float
-    slip_heat: float
-    brush_drop: float
-    resistance: float
-
-    def copper_loss(self, current: Any, temperature: Any) -> Any:
-        """Return the copper loss at a temperature of the coil [W]."""
-        return current**2 * self.resistance * magnetics.resistance_ratio(temperature)
-
-    def rise(self, current: Any) -> Any:
-        """Return the steady temperature rise under constant current; not-a-number beyond thermal runaway [K]."""
-        cold = current**2 * self.resistance
-        runaway = self.conductance / magnetics.COPPER_COEFFICIENT
-        other = self.slip_heat + self.brush_drop * current
-        ratio = magnetics.resistance_ratio(self.ambient)
-        with np.errstate(divide="ignore"):
-            return np.where(cold < runaway, magnetics.coil_temperature_rise(cold, runaway, ratio, other), np.nan)
-
-
 def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
     """Return what heats and cools a design."""
     layout, wire = built(spec, design).layout, design.parts["winding_wire"]
@@ -129,7 +104,8 @@ def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
         conductance=float(transfer * surface),
         ambient=spec["ambient_temperature"],
         limit=min(wire["insulation_temperature"], design.parts["powder"]["temp_max"]),
-        slip_heat=design.values["slip_heat"],
+        limited_by="insulation and powder",
+        other_heat=design.values["slip_heat"],
         brush_drop=0.0 if still else 2 * spec["brush_voltage"],
         resistance=float(magnetics.coil_resistance(layout.coil_radius, design.values["turns"], wire["copper_area"])),
     )
@@ -211,8 +187,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
             },
         ],
         "lines": [
-            {"panel": 0, "y": spec["required_torque"], "label": "required_torque"},
-            {"panel": 0, "y": spec["torque_reserve"] * spec["required_torque"], "label": "with torque_reserve"},
+            *_torques(spec),
             {"panel": 1, "y": spec["powder_flux_limit"], "label": "powder_flux_limit"},
             {"panel": 1, "y": spec["iron_flux_limit"], "label": "iron_flux_limit"},
             {"panel": 2, "y": heat.limit - heat.ambient, "label": "insulation and powder"},
@@ -223,57 +198,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
 
 
 def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Torque and current over the temperature of the coil, fed with constant voltage or with constant current.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design; its voltage is that of the hot coil.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    import pandas as pd
-
-    body, heat, value = built(spec, design), warmth(spec, design), design.values
-    temperature = np.linspace(heat.ambient, heat.limit + 0.1 * (heat.limit - heat.ambient), POINTS)
-    hot = heat.resistance * magnetics.resistance_ratio(temperature)
-    current = (value["coil_voltage"] - heat.brush_drop) / hot
-    frame = pd.DataFrame({
-        "coil temperature [degC]": temperature - ZERO_CELSIUS,
-        "constant voltage [N*m]": body.torque(body.flux_density(current * value["turns"])),
-        "constant current [N*m]": np.full_like(temperature, value["torque"]),
-        "constant voltage [A]": current,
-    })  # fmt: skip
-    frame.attrs = {
-        "title": f"{problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
-        "panels": [
-            {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
-            {"label": "current [A]", "columns": ["constant voltage [A]"]},
-        ],
-        "marks": [
-            {"x": heat.ambient + value["coil_temperature_rise"] - ZERO_CELSIUS, "label": "steady"},
-            {"x": heat.limit - ZERO_CELSIUS, "label": "insulation and powder"},
-        ],
-        "lines": [
-            {"panel": 0, "y": spec["required_torque"], "label": "required_torque"},
-            {"panel": 0, "y": spec["torque_reserve"] * spec["required_torque"], "label": "with torque_reserve"},
-        ],
-        "source": SOURCE,
-    }
-    return frame
-
-
-def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Heat made and heat given off over the temperature of the body, under constant current.
-
-    Where the lines cross the clutch stays; where they never cross it runs away.
+    """Torque and current over the temperature of the coil, see :func:`problems.coil_curves.torque_over_temperature`.
 
     Parameters
     ----------
@@ -289,23 +214,39 @@ def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -
     pandas.DataFrame
         From ambient temperature to a little above the limit.
     """
-    import pandas as pd
+    body = built(spec, design)
+    return coil_curves.torque_over_temperature(
+        problem,
+        design,
+        warmth(spec, design),
+        lambda ampere_turns: body.torque(body.flux_density(ampere_turns)),
+        _torques(spec),
+        SOURCE,
+    )
 
-    heat, value = warmth(spec, design), design.values
-    temperature = np.linspace(heat.ambient, heat.limit + 0.1 * (heat.limit - heat.ambient), POINTS)
-    other = heat.slip_heat + heat.brush_drop * value["current"]
-    frame = pd.DataFrame({
-        "temperature [degC]": temperature - ZERO_CELSIUS,
-        "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
-        "heat given off [W]": heat.conductance * (temperature - heat.ambient),
-    })  # fmt: skip
-    frame.attrs = {
-        "title": f"{problem.title}: steady heat at {value['current']:.3g} A",
-        "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
-        "marks": [
-            {"x": heat.ambient + value["coil_temperature_rise"] - ZERO_CELSIUS, "label": "steady"},
-            {"x": heat.limit - ZERO_CELSIUS, "label": "insulation and powder"},
-        ],
-        "source": SOURCE,
-    }
-    return frame
+
+def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Heat made and heat given off over the temperature, see :func:`problems.coil_curves.heat_balance`.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    return coil_curves.heat_balance(problem, design, warmth(spec, design), SOURCE)
+
+
+def _torques(spec: Mapping[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {"panel": 0, "y": spec["required_torque"], "label": "required_torque"},
+        {"panel": 0, "y": spec["torque_reserve"] * spec["required_torque"], "label": "with torque_reserve"},
+    ]

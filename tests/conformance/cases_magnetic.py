@@ -10,6 +10,8 @@ import numpy as np
 from synth.instance import Instance
 
 WINDER = {"required_torque": "30 N*m"}
+SPINDLE = {"load_torque": "8 N*m", "driver_speed": "960 1/min", "driven_inertia": "0.05 kg*m2"}
+DRUM = {**SPINDLE, "load_torque": "30 N*m"}
 MAGNETICS = "problems.mechanics.magnetics:"
 CONSTANTS = {
     MAGNETICS + "MU_0": (1, 1, -2, 0, -2),
@@ -35,6 +37,27 @@ def sound_powder_clutches(rng: np.random.Generator, instance: Instance, count: i
     }
     low, high = np.array([ranges[v.name] for v in instance.model.variables]).T
     x: np.ndarray = low * (high / low) ** rng.random((count, len(low)))
+    return x
+
+
+def sound_electromagnetic_clutches(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
+    """Return variables with rings of a sensible ratio and magnets that are stronger than their springs."""
+    disc = any(v.name == "pressure_plate_thickness" for v in instance.model.variables)
+    ranges = {
+        "inner_pole_width": (0.013, 0.016),
+        "coil_length": (0.02, 0.06),
+        "coil_height": (0.02, 0.05),
+        "yoke_thickness": (0.012, 0.03),
+        "flux_density": (1.0, 1.25),
+        "ramp_time": (0.05, 0.5),
+        "ring_outer_diameter": (0.15, 0.21),
+        "ring_inner_diameter": (0.76, 0.81) if disc else (0.6, 0.8),
+        "pressure_plate_thickness": (0.004, 0.02),
+    }
+    names = [v.name for v in instance.model.variables]
+    low, high = np.array([ranges[name] for name in names]).T
+    x: np.ndarray = low * (high / low) ** rng.random((count, len(low)))
+    x[:, names.index("ring_inner_diameter")] *= x[:, names.index("ring_outer_diameter")]
     return x
 
 
@@ -78,6 +101,73 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             ),
             culprits=frozenset({"torque_capacity", "outer_diameter", "rotor_bore", "powder_flux_density"}),
             sound=sound_powder_clutches,
+            constants=CONSTANTS,
+        ),
+        "electromagnetic_clutch": family(
+            option_sets={
+                "default": {},
+                "worst_case": {"load_kind": "active", "friction_basis": "worst_case"},
+                "catalogue": {"spline_choice": "catalogue"},
+                "disc": {"pack": "disc"},
+                "disc_obsolete": {"pack": "disc", "friction_basis": "worst_case", "allow_obsolete": "yes"},
+            },
+            requirements=DRUM,
+            optional={
+                "startup_torque": "36 N*m",
+                "overload_torque": "200 N*m",
+                "actuation_force_limit": "5 kN",
+                "outer_diameter_limit": "250 mm",
+                "length_limit": "200 mm",
+                "jerk_limit": "2e5 rad/s3",
+                "acceleration_limit": "4000 rad/s2",
+                "hub_bore_diameter": "40 mm",
+                "drag_torque_limit": "5 N*m",
+            },
+            unknown={"pack=disc": frozenset({"hub_bore_diameter", "drag_torque_limit"})},
+            feasible={
+                "spindle": case(
+                    requirements={**SPINDLE, "outer_diameter_limit": "170 mm"},
+                    settings={
+                        "parts": {
+                            "friction_pair": ["steel_steel_wet"],
+                            "inner_plate": ["core 1.5"],
+                            "outer_plate": ["core 1.5"],
+                            "winding_wire": ["Cu 0.5 class 155", "Cu 0.56 class 155"],
+                        },
+                        "fix": {
+                            "ramp_time": "0.1 s",
+                            "ring_outer_diameter": "112 mm",
+                            "ring_inner_diameter": "90 mm",
+                            "coil_length": "30 mm",
+                            "coil_height": "20 mm",
+                            "yoke_thickness": "12 mm",
+                        },
+                        "limits": {
+                            "friction_surfaces": "2 .. 4",
+                            "inner_pole_width": "12 mm .. 16 mm",
+                        },
+                    },
+                    tighten={
+                        "load_torque": "9 N*m",
+                        "pull_in_margin": "1.4",
+                    },
+                ),
+            },
+            infeasible=case(
+                requirements={**SPINDLE, "outer_diameter_limit": "92 mm"},
+                settings={
+                    "parts": {
+                        "friction_pair": ["steel_steel_wet"],
+                        "inner_plate": ["core 1.5"],
+                        "outer_plate": ["core 1.5"],
+                        "winding_wire": ["Cu 0.5 class 155"],
+                    },
+                    "fix": {"ramp_time": "0.1 s", "coil_height": "20 mm", "yoke_thickness": "12 mm"},
+                    "limits": {"friction_surfaces": "2 .. 4"},
+                },
+            ),
+            culprits=frozenset({"torque_capacity", "outer_diameter", "pull_in", "pole_flux_density"}),
+            sound=sound_electromagnetic_clutches,
             constants=CONSTANTS,
         ),
     }

@@ -1,4 +1,4 @@
-"""The magnetic-powder clutch against plain enumeration: nothing makeable beats a front by more than its gap.
+"""Clutches with a coil against plain enumeration: nothing makeable beats a front by more than its gap.
 
 Every combination and every makeable dimension inside the limits is evaluated. Power grows with the flux density and
 inertia does not see it, so the least flux density that carries the torque is the best one; it is a closed form.
@@ -76,3 +76,71 @@ def test_no_makeable_design_is_lighter(enumerated):
     best = search(objectives=["mass"]).designs[0]
     assert best.values["mass"] <= enumerated["mass"].min() * (1 + GAP)
     assert best.off_grid == {}
+
+
+# -- the electromagnetic clutch ------------------------------------------------------------------------
+
+SPINDLE = {"load_torque": "8 N*m", "driver_speed": "960 1/min", "driven_inertia": "0.05 kg*m2"}
+PRESSED = {
+    "friction_pair": ["steel_steel_wet"],
+    "inner_plate": ["core 1.5"],
+    "outer_plate": ["core 1.5"],
+    "winding_wire": ["Cu 0.5 class 155", "Cu 0.45 class 180"],
+}
+PINNED = {
+    "ramp_time": "0.1 s",
+    "ring_outer_diameter": "112 mm",
+    "ring_inner_diameter": "90 mm",
+    "coil_length": "30 mm",
+}
+MAGNETS = {
+    "friction_surfaces": "2 .. 4",
+    "inner_pole_width": "11 mm .. 15 mm",
+    "coil_height": "17 mm .. 22 mm",
+    "yoke_thickness": "10 mm .. 13 mm",
+}
+
+
+def least_flux_density(instance, points, position, combination, steps=60):
+    """Least flux density that gives torque and pull-in, by halving: both grow with it."""
+    data = instance.data(np.array([combination]))
+    low, high = np.full(len(points), 0.02), np.full(len(points), 1.25)
+    for _ in range(steps):
+        points[:, position] = (low + high) / 2
+        result = instance.model.evaluate(points, data)
+        torque, asked = result.limits["torque_capacity"]
+        pull, needed = result.limits["pull_in"]
+        with np.errstate(invalid="ignore"):
+            enough = (torque >= asked) & ~(pull < needed)  # a pull that does not exist is one of saturated iron
+        high, low = np.where(enough, points[:, position], high), np.where(enough, low, points[:, position])
+    points[:, position] = high
+    return instance.model.evaluate(points, data)
+
+
+def test_no_makeable_magnet_beats_the_front():
+    """Power and saturation grow with the flux density, mass does not see it: the least one is the best."""
+    family = "electromagnetic_clutch"
+    instance = Instance(synth.load(family), SPINDLE, as_catalogs(None), parts=PRESSED, limits=MAGNETS, fix=PINNED)
+    names = [v.name for v in instance.model.variables]
+    axes = [
+        grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
+        for grid, low, high in zip(instance.grids(), instance.lower, instance.upper, strict=True)
+    ]
+    points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
+    found = []
+    for combination in range(instance.combinations):
+        result = least_flux_density(instance, points, names.index("flux_density"), combination)
+        found.append(np.stack([result.values[n][result.feasible] for n in ("coil_power", "mass")], axis=1))
+    values = np.concatenate(found)
+    assert len(values) > 300
+    front = synth.synthesize(
+        family, SPINDLE, parts=PRESSED, limits=MAGNETS, fix=PINNED, gap=GAP, points=4, time_limit=60
+    )
+    assert front.interrupted == ""
+    assert front.certificate.kind == "global"
+    own = np.array([[d.values[n] for n in ("coil_power", "mass")] for d in front.designs])
+    for design in own:
+        assert not np.any(np.all(values < design * (1 - GAP) - 1e-12, axis=1))
+    assert np.all(own.min(axis=0) <= values.min(axis=0) * (1 + GAP))
+    # And nothing is claimed that cannot be made.
+    assert np.all(own.min(axis=0) >= values.min(axis=0) * (1 - GAP))

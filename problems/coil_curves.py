@@ -1,0 +1,150 @@
+"""Curves that clutches with a coil share: torque over the temperature of the coil, and the heat balance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.mechanics import magnetics
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth import DesignProblem
+
+POINTS = 121
+ZERO_CELSIUS = 273.15  # [K]
+
+
+@dataclass(frozen=True)
+class Warmth:
+    """What heats and cools the body of one design, all in SI; ``limited_by`` says whose limit it is."""
+
+    conductance: float
+    ambient: float
+    limit: float
+    limited_by: str
+    other_heat: float
+    brush_drop: float
+    resistance: float
+
+    def copper_loss(self, current: Any, temperature: Any) -> Any:
+        """Return the copper loss at a temperature of the coil [W]."""
+        return current**2 * self.resistance * magnetics.resistance_ratio(temperature)
+
+    def rise(self, current: Any) -> Any:
+        """Return the steady temperature rise under constant current; not-a-number beyond thermal runaway [K]."""
+        cold = current**2 * self.resistance
+        runaway = self.conductance / magnetics.COPPER_COEFFICIENT
+        other = self.other_heat + self.brush_drop * current
+        ratio = magnetics.resistance_ratio(self.ambient)
+        with np.errstate(divide="ignore"):
+            return np.where(cold < runaway, magnetics.coil_temperature_rise(cold, runaway, ratio, other), np.nan)
+
+    @property
+    def temperatures(self) -> np.ndarray:
+        """Temperatures to draw, from ambient to a little above the limit [K]."""
+        return np.linspace(self.ambient, self.limit + 0.1 * (self.limit - self.ambient), POINTS)
+
+    def marks(self, rise: float) -> list[dict[str, Any]]:
+        """Return the steady temperature and the limit as marks."""
+        return [
+            {"x": self.ambient + rise - ZERO_CELSIUS, "label": "steady"},
+            {"x": self.limit - ZERO_CELSIUS, "label": self.limited_by},
+        ]
+
+
+def torque_over_temperature(
+    problem: DesignProblem,
+    design: Any,
+    heat: Warmth,
+    torque_of: Callable[[np.ndarray], Any],
+    lines: Sequence[dict[str, Any]],
+    source: str,
+) -> pd.DataFrame:
+    """Torque and current over the temperature of the coil, fed with constant voltage or with constant current.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    design : Design
+        The design; its voltage is that of the hot coil.
+    heat : Warmth
+        What heats and cools it.
+    torque_of : callable
+        Torque [N m] of ampere-turns [A].
+    lines : list of dict
+        Torques to compare with.
+    source : str
+        Shown below the drawing.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    import pandas as pd
+
+    value, temperature = design.values, heat.temperatures
+    hot = heat.resistance * magnetics.resistance_ratio(temperature)
+    current = (value["coil_voltage"] - heat.brush_drop) / hot
+    frame = pd.DataFrame({
+        "coil temperature [degC]": temperature - ZERO_CELSIUS,
+        "constant voltage [N*m]": torque_of(current * value["turns"]),
+        "constant current [N*m]": np.full_like(temperature, value["torque"]),
+        "constant voltage [A]": current,
+    })  # fmt: skip
+    frame.attrs = {
+        "title": f"{problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
+        "panels": [
+            {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
+            {"label": "current [A]", "columns": ["constant voltage [A]"]},
+        ],
+        "marks": heat.marks(value["coil_temperature_rise"]),
+        "lines": list(lines),
+        "source": source,
+    }
+    return frame
+
+
+def heat_balance(problem: DesignProblem, design: Any, heat: Warmth, source: str) -> pd.DataFrame:
+    """Heat made and heat given off over the temperature of the body, under constant current.
+
+    Where the lines cross the clutch stays; where they never cross it runs away.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    design : Design
+        The design.
+    heat : Warmth
+        What heats and cools it.
+    source : str
+        Shown below the drawing.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    import pandas as pd
+
+    value, temperature = design.values, heat.temperatures
+    other = heat.other_heat + heat.brush_drop * value["current"]
+    frame = pd.DataFrame({
+        "temperature [degC]": temperature - ZERO_CELSIUS,
+        "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
+        "heat given off [W]": heat.conductance * (temperature - heat.ambient),
+    })  # fmt: skip
+    frame.attrs = {
+        "title": f"{problem.title}: steady heat at {value['current']:.3g} A",
+        "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
+        "marks": heat.marks(value["coil_temperature_rise"]),
+        "source": source,
+    }
+    return frame

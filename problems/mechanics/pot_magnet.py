@@ -1,0 +1,231 @@
+"""Pot magnet with a ring coil: an inner and an outer annular pole of equal area pull an armature plate.
+
+Every function takes floats, arrays or CasADi symbols.
+
+Sources: the pull of an electromagnet in place of clamp springs is an idea of the notes on centrifugal clutches (S4,
+figure 2-27); geometry and circuit are derived (section 6.6 there). Circuit, winding and heat: see
+:mod:`problems.mechanics.magnetics`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from problems.mechanics import Quantity, magnetics
+
+
+@dataclass(frozen=True)
+class PotMagnet:
+    """Dimensions of a pot magnet with its armature plate [m]."""
+
+    bore: Quantity
+    pole_width: Quantity
+    coil_length: Quantity
+    coil_height: Quantity
+    thickness: Quantity
+    residual_gap: Quantity
+
+    @property
+    def inner_pole_radius(self) -> Quantity:
+        """Outside of the inner pole r_2, inside of the coil [m]."""
+        return self.bore + self.pole_width
+
+    @property
+    def coil_outer_radius(self) -> Quantity:
+        """Outside of the coil r_3 [m]."""
+        return self.inner_pole_radius + self.coil_height
+
+    @property
+    def _pole_section(self) -> Quantity:
+        return self.pole_width * (2 * self.bore + self.pole_width)
+
+    @property
+    def pole_area(self) -> Quantity:
+        """Area of one pole A_p = pi (r_2**2 - r_1**2) [m2]."""
+        return np.pi * self._pole_section
+
+    @property
+    def outer_radius(self) -> Quantity:
+        """Outside r_4 of the outer pole of the same area [m]."""
+        return np.sqrt(self.coil_outer_radius**2 + self._pole_section)
+
+    @property
+    def outer_pole_width(self) -> Quantity:
+        """Width r_4 - r_3 of the outer pole [m]."""
+        return self._pole_section / (self.coil_outer_radius + self.outer_radius)
+
+    @property
+    def yoke_width(self) -> Quantity:
+        """Thickness that a yoke needs to be as wide for the flux as the pole, A_p/(2 pi r_2) [m]."""
+        radius = self.inner_pole_radius
+        return (radius - self.bore**2 / radius) / 2
+
+    @property
+    def iron_path(self) -> Quantity:
+        """Mean length of the flux in iron, l_fe = 2 (l_m + t_y) + 2 h_c + (r_2 - r_1) + (r_4 - r_3) [m]."""
+        return 2 * (self.coil_length + self.thickness + self.coil_height) + self.pole_width + self.outer_pole_width
+
+    @property
+    def body_length(self) -> Quantity:
+        """Length of pot and armature without the gap, l_m + 2 t_y [m]."""
+        return self.coil_length + 2 * self.thickness
+
+    @property
+    def length(self) -> Quantity:
+        """Length of the engaged magnet l_m + 2 t_y + g_r [m]."""
+        return self.body_length + self.residual_gap
+
+
+def magnet_force(flux_density: Quantity, magnet: PotMagnet) -> Quantity:
+    """Pull on the armature, B**2 A_p/mu0: two poles of A_p.
+
+    Parameters
+    ----------
+    flux_density : scalar, array or symbol
+        B at the poles [T].
+    magnet : PotMagnet
+        Dimensions.
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_m [N].
+
+    References
+    ----------
+    Maxwell; S4, section 3.5.
+
+    Examples
+    --------
+    By hand, 0.8**2 pi (0.035**2 - 0.02**2)/mu0:
+
+    >>> round(float(magnet_force(0.8, PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3))), 1)
+    1320.0
+    """
+    return magnetics.pole_force(flux_density, 2 * magnet.pole_area)
+
+
+def yoke_flux_ratio(magnet: PotMagnet) -> Quantity:
+    """Flux density of yoke and armature at the inner pole over that of the pole iron, A_p/(2 pi r_2 t_y).
+
+    Parameters
+    ----------
+    magnet : PotMagnet
+        Dimensions.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Ratio [-]; 1 where the yoke is as wide for the flux as the pole.
+
+    References
+    ----------
+    Continuity of the flux; S4, section 6.6.
+
+    Examples
+    --------
+    By hand, (0.035**2 - 0.02**2)/(2 x 0.035 x 0.01):
+
+    >>> round(float(yoke_flux_ratio(PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3))), 4)
+    1.1786
+    """
+    return magnet.yoke_width / magnet.thickness
+
+
+def engaged_ampere_turns(flux_density: Quantity, magnet: PotMagnet, iron_field: Quantity) -> Quantity:
+    """Ampere-turns of the engaged magnet, 2 g_r B/mu0 + H l_fe.
+
+    Parameters
+    ----------
+    flux_density : scalar, array or symbol
+        B at the poles [T].
+    magnet : PotMagnet
+        Dimensions.
+    iron_field : scalar, array or symbol
+        Field in the densest iron, taken along the whole path [A/m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        NI [A].
+
+    References
+    ----------
+    Ampere's law; S4, section 6.6.
+
+    Examples
+    --------
+    By hand, 2 x 0.4e-3 x 0.8/mu0 + 300 x 0.142:
+
+    >>> magnet = PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3)
+    >>> round(float(magnet.iron_path), 3)
+    0.142
+    >>> round(float(engaged_ampere_turns(0.8, magnet, 300.0)), 1)
+    552.0
+    """
+    return 2 * magnet.residual_gap * magnetics.gap_field(flux_density) + iron_field * magnet.iron_path
+
+
+def pull_in_force(ampere_turns: Quantity, gap: Quantity, pole_area: Quantity) -> Quantity:
+    """Pull on the released armature, B**2 A_p/mu0 with B = mu0 NI/(2 g); the iron is neglected, its flux is low.
+
+    Parameters
+    ----------
+    ampere_turns : scalar, array or symbol
+        NI [A].
+    gap : scalar, array or symbol
+        Gap at each pole g_in [m].
+    pole_area : scalar, array or symbol
+        A_p of one pole [m2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_in [N].
+
+    References
+    ----------
+    Ampere, Maxwell; S4, section 6.6.
+
+    Examples
+    --------
+    By hand, mu0 A_p (600/(2 x 2.2e-3))**2:
+
+    >>> round(float(pull_in_force(600.0, 2.2e-3, 2.5918e-3)), 2)
+    60.56
+    """
+    return magnetics.MU_0 * pole_area * (ampere_turns / (2 * gap)) ** 2
+
+
+def magnet_mass(density: Quantity, magnet: PotMagnet, copper: Quantity) -> Quantity:
+    """Mass of pot, armature and coil, rho [2 A_p l_m + 2 pi (r_4**2 - r_1**2) t_y] + copper.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho of the iron [kg/m3].
+    magnet : PotMagnet
+        Dimensions.
+    copper : scalar, array or symbol
+        Mass of the coil [kg].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; S4, section 6.6.
+
+    Examples
+    --------
+    By hand, 7850 (2 x 2.5918e-3 x 0.03 + 2 pi (0.06205**2 - 0.02**2) 0.01) + 0.5:
+
+    >>> round(float(magnet_mass(7850.0, PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3), 0.5)), 3)
+    3.422
+    """
+    discs = 2 * np.pi * (magnet.outer_radius**2 - magnet.bore**2) * magnet.thickness
+    return density * (2 * magnet.pole_area * magnet.coil_length + discs) + copper
