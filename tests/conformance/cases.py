@@ -183,6 +183,7 @@ LEVERS = {
     "lever_stop_angle": "0.34 rad",
     "spring_preload_deflection": "10 mm",
     "lining_inner_radius": "60 mm",
+    "lining_outer_radius": "76.5 mm",
 }
 HARDENED = ["hardened_steel_oil", "hardened_steel_greased", "hardened_steel_dry"]
 
@@ -399,7 +400,7 @@ CASES: dict[str, Family] = {
                     "objectives": ["outer_diameter", "engagement_band"],
                     "points": 2,
                 },
-                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+                tighten={"hub_radius": "21 mm"},
             ),
         },
         infeasible=Case(
@@ -425,9 +426,10 @@ CASES: dict[str, Family] = {
                         "return_spring": ["CS-3.2x16x3.5", "CS-2.5x12.5x3.5"],
                         "friction_pair": ["moulded_dry"],
                     },
-                    "limits": {"return_springs": "5 .. 6", "outer_diameter": "<= 200 mm"},
+                    "limits": {"return_springs": "5 .. 7", "outer_diameter": "<= 260 mm"},
                     "fix": {
-                        **{name: given for name, given in LEVERS.items() if name != "flyweight_mass"},
+                        **LEVERS,
+                        "flyweight_mass": "1.1 kg",
                         "flyweight_arm": "40 mm",
                         "spring_preload_deflection": "16 mm",
                         "plate_arm": "12 mm",
@@ -437,7 +439,7 @@ CASES: dict[str, Family] = {
                     "objectives": ["outer_diameter", "engagement_band"],
                     "points": 2,
                 },
-                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+                tighten={"hub_radius": "21 mm"},
             ),
         },
         infeasible=Case(
