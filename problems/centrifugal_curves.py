@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import centrifugal
+from problems.mechanics import centrifugal, two_spring
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -184,6 +184,74 @@ def ball_ramp_path(spec: Mapping[str, Any], design: Any) -> Path:
             },
             {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
             {"label": "gap [mm]", "columns": ["gap [mm]"]},
+        ],
+    )
+
+
+def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> Path:
+    """Return the regimes of device B, with balls or levers.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family with its options.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        Values and parts in SI.
+    """
+    value, first, second = design.values, design.parts["return_spring"], design.parts["clamp_spring"]
+    s1 = centrifugal.set_rate(value["return_springs"], first["rate_R"])
+    s2 = centrifugal.set_rate(value["clamp_springs"], second["rate_R"])
+    plate, stop = value["plate_travel"], value["stop_travel"]
+    clamp_deflection = value["clamp_preload_deflection"]
+    start = float(centrifugal.spring_force(s2, clamp_deflection))
+    plate_start = float(centrifugal.spring_force(s1, value["return_preload_deflection"]))
+    contact = float(two_spring.contact_force(plate_start, s1, plate))
+    full = float(two_spring.stop_force(start, s2, plate, stop))
+
+    def columns(force: np.ndarray, travel: np.ndarray) -> dict[str, np.ndarray]:
+        at_plate = two_spring.plate_travel_at(force, plate_start, s1, plate)
+        clamp = two_spring.clamp_force_at(force, contact, full)
+        return {
+            "return spring force [N]": plate_start + s1 * at_plate,
+            "clamp spring force [N]": start + s2 * (travel - at_plate),
+            "clamp force [N]": clamp,
+            "stop force [N]": two_spring.stop_load(force, full),
+            "torque [N*m]": clamp * torque_per_force(design),
+            "plate gap [mm]": (plate - at_plate) / MM,
+            "stop gap [mm]": (stop - travel) / MM,
+        }
+
+    if problem.option("mechanism") == "ball_ramp":
+        ratio = value["ramp_ratio"]
+        loss = centrifugal.contact_loss(spec["ball_friction"], ratio)
+        outward, inward = centrifugal.outward_efficiency(loss), centrifugal.inward_efficiency(loss)
+    else:
+        ratio, outward = value["lever_ratio"], spec["mechanism_efficiency"]
+        inward = 1 / outward
+    return Path(
+        mass=value["flyweight_mass"],
+        rest_radius=value["rest_radius"],
+        ratio=ratio,
+        outward=float(outward),
+        inward=float(inward),
+        knots=[
+            (start, 0.0),
+            (plate_start, float(two_spring.clamp_spring_travel(plate_start, s2, clamp_deflection))),
+            (contact, float(two_spring.contact_travel(contact, s2, clamp_deflection, plate))),
+            (full, stop),
+        ],
+        regimes=("at rest", "tension disc", "both", "clamping", "at the stop"),
+        columns=columns,
+        panels=[
+            {
+                "label": "force [N]",
+                "columns": ["centrifugal force [N]", "clamp force [N]", "stop force [N]"],
+            },
+            {"label": "spring force [N]", "columns": ["return spring force [N]", "clamp spring force [N]"]},
+            {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
+            {"label": "gap [mm]", "columns": ["plate gap [mm]", "stop gap [mm]"]},
         ],
     )
 

@@ -30,8 +30,10 @@ from synth.robust import robust_front
 from synth.scatter import read_block
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
+from synth.steps import cover_by_steps, prove_by_steps, prove_ends
 
 EFFORT = 20_000_000
+TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
 SOON = 150_000
 MANY, EFFORT_WITH_MANY = 7, 200_000  # variables
 FILL_EFFORT = 20_000
@@ -334,6 +336,7 @@ class FrontSearch:
         self.current: Cover | None = None  # the one that is under way
         self.proven_designs = set[bytes]()
         self.looked = 0
+        self.by_steps = False  # whether a front at once has turned out to cost too much
         self.recalled = list(known)
 
     def _formulation(self, conflict: bool) -> Formulation:
@@ -551,7 +554,11 @@ class FrontSearch:
         """Cover everything as finely as the points asked for need, at most as the gap."""
         form = self.form
         fine = self._fine()
-        outcome = self._covered(fine, self.effort)
+        outcome = self._covered(fine, min(self.effort, TOGETHER) if self.m == 2 else self.effort)
+        if not outcome.closed and self.m == 2:
+            self.by_steps = True
+            fine = self._fine()
+            outcome = self._in_steps(fine)
         left = outcome.open
         if len(left):
             self._exhaust(left, fine)
@@ -584,6 +591,16 @@ class FrontSearch:
         self.current = None
         return outcome
 
+    def _in_steps(self, purpose: Cover) -> Covered:
+        """Cover everything with one slack, one objective capped step by step."""
+        self.current = purpose
+        outcome = cover_by_steps(self.form, self.pool, purpose, self.clock, self.rng, self.effort)
+        self.looked += outcome.looked
+        if outcome.closed:
+            self.covering = purpose
+        self.current = None
+        return outcome
+
     def _multiple(self, purpose: Cover) -> float:
         """Return the slack of a cover in units of the slack that the gap stands for."""
         return float(np.max(purpose.slack / self.purpose.slack))
@@ -594,12 +611,14 @@ class FrontSearch:
             # Some more than asked for: designs that turn out to be beaten by the same better one become one.
             self.front = self._polished(self.points + self.points // 3 + 5)
             self._rescale()
-            if self.closed and not self.complete and len(self.front) < self.points and self._look_for_more():
+            few = len(self.front) < self.points and not (self.by_steps and self._proven_at_gap())
+            if self.closed and not self.complete and few and self._look_for_more():
                 continue
             if not self.closed or self.complete or self._proven_at_gap() or self._prove():
                 break
         if self.closed and not self.complete and len(self.front) < self.points:
-            self.complete = self._covered(self.purpose, EFFORT).closed and self._stand_for_all()
+            covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, EFFORT).closed
+            self.complete = covered and self._stand_for_all()
         self.front = self._spread(self.front, self.points)
 
     def _spread(self, designs: Sequence[Candidate], most: int) -> list[Candidate]:
@@ -642,6 +661,10 @@ class FrontSearch:
     def _look_for_more(self) -> bool:
         """Without slack everything non-dominated is found, or more than enough; tell whether anything was."""
         known, effort = self.form.archive.phi, FILL_EFFORT + self.looked
+        if self.by_steps:
+            # Not everything that is not dominated, but everything that the gap tells apart.
+            self.closed = self._in_steps(self._with_slack(self.purpose.slack)).closed
+            return not np.array_equal(self.form.archive.phi, known)
         outcome = self._covered(self._with_slack(np.full(self.m, TIE)), effort, self.points)
         self.complete = outcome.closed and len(self.form.archive) <= self.points
         return not np.array_equal(self.form.archive.phi, known)
@@ -649,6 +672,8 @@ class FrontSearch:
     def _prove(self) -> bool:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
         form = self.form
+        if self.by_steps:
+            return self._prove_in_steps()
         proven = self.proven_designs
         stairs = Staircase(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
         outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
@@ -661,6 +686,20 @@ class FrontSearch:
         proven.update(c.phi.tobytes() for c in finished)
         self.front = distinct(finished, self.m)
         return not replaced or len(self.front) >= self.points
+
+    def _prove_in_steps(self) -> bool:
+        """Prove the designs chosen one after the other; tell whether all stand."""
+        form, slack = self.form, self.purpose.slack
+        asked = [c for c in self.front if c.phi.tobytes() not in self.proven_designs]
+        stand, open_ends, looked = prove_ends(form, self.pool, slack, self.clock, self.rng, self.effort)
+        each, left, more = prove_by_steps(form, self.pool, asked, slack, self.clock, self.rng, self.effort)
+        self.looked += looked + more
+        left = Boxes.joined([open_ends, left])
+        if len(left):
+            self._exhaust(left, self.purpose)
+            return True
+        self.proven_designs.update(c.phi.tobytes() for c, good in zip(asked, each, strict=True) if good)
+        return stand and all(each)
 
     # -- afterwards ----------------------------------------------------------------------------
 

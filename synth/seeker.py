@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
-from synth.formulation import SNAP, Boxes, Candidate, Formulation
+from synth.formulation import SNAP, TIE, Boxes, Candidate, Formulation
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
 from synth.settle import settle_variables
@@ -76,8 +76,11 @@ class Seeker:
 
     def _settle_best(self) -> None:
         """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""
-        k = self.purpose.columns[0]
-        best = self.form.archive[int(np.argmin(self.form.archive.phi[:, k]))]
+        k, archive = self.purpose.columns[0], self.form.archive
+        allowed = np.flatnonzero(np.all(archive.phi <= self.purpose.plain + TIE, axis=1))
+        if not len(allowed):
+            return
+        best = archive[int(allowed[np.argmin(archive.phi[allowed, k])])]
         exact = settle_variables(self.form, [best], 0, [k])[0]
         self.offer(exact.variables[None, :], np.array([exact.combination]))
 

@@ -375,6 +375,39 @@ def speed_for_force(
     return np.sqrt(force / axial_gain(mass, radius, ratio, efficiency))
 
 
+def speed_ratio(force: Quantity, radius: Quantity, other_force: Quantity, other_radius: Quantity) -> Quantity:
+    """Ratio of two speeds of the same flyweights, sqrt(F r_other/(F_other r)).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        Axial force at the one speed [N].
+    radius : scalar, array or symbol
+        Radius of the flyweights there [m].
+    other_force : scalar, array or symbol
+        Axial force at the other speed [N].
+    other_radius : scalar, array or symbol
+        Radius there [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        omega/omega_other [-].
+
+    References
+    ----------
+    S4, analysis 1, eq. (4), for two travels; mass and transmission cancel.
+
+    Examples
+    --------
+    S4, practice 1 (50 N at 180 mm, 60 N at 184.330 mm; 12.6639/13.7087):
+
+    >>> float(speed_ratio(50.0, 0.18, 60.0, 0.184330))
+    0.92379
+    """
+    return np.sqrt(force * other_radius / (other_force * radius))
+
+
 def ball_set_mass(count: Quantity, density: Quantity, diameter: Quantity) -> Quantity:
     """Mass of all balls, n_b rho_b pi d_b**3/6.
 

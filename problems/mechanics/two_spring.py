@@ -27,35 +27,35 @@ import numpy as np
 from problems.mechanics import Quantity
 
 
-def plate_start_travel(return_preload: Quantity, clamp_preload: Quantity, clamp_rate: Quantity) -> Quantity:
-    """Travel of the tension disc when the plate starts, x_p = (F10 - F20)/s2.
+def clamp_spring_travel(force: Quantity, clamp_rate: Quantity, deflection: Quantity) -> Quantity:
+    """By how much the clamp springs give beyond their preload, F/s2 - delta2.
 
     Parameters
     ----------
-    return_preload : scalar, array or symbol
-        Preload of the return springs F10 [N].
-    clamp_preload : scalar, array or symbol
-        Preload of the clamp springs F20 [N].
+    force : scalar, array or symbol
+        Force through the clamp springs F [N].
     clamp_rate : scalar, array or symbol
         Rate of the clamp springs s2 [N/m].
+    deflection : scalar, array or symbol
+        Their deflection at rest delta2 [m].
 
     Returns
     -------
     scalar, array or symbol
-        x_p [m].
+        x - z [m].
 
     References
     ----------
-    S4, analysis 2; practice 1 with F20 < F10.
+    S4, analysis 2: (F - F20)/s2, with F20 = s2 delta2; at F = F10 it is x_p, the travel at which the plate starts.
 
     Examples
     --------
-    S4, practice 1 (2.5 mm):
+    S4, practice 1 (F10 = 60 N, F20 = 50 N, s2 = 4 N/mm, so that delta2 = 12.5 mm; 2.5 mm):
 
-    >>> 1000 * plate_start_travel(60.0, 50.0, 4e3)
+    >>> 1000 * clamp_spring_travel(60.0, 4e3, 12.5e-3)
     2.5
     """
-    return (return_preload - clamp_preload) / clamp_rate
+    return force / clamp_rate - deflection
 
 
 def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel: Quantity) -> Quantity:
@@ -90,18 +90,18 @@ def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel:
 
 
 def contact_travel(
-    contact_force: Quantity, clamp_preload: Quantity, clamp_rate: Quantity, plate_travel: Quantity
+    contact_force: Quantity, clamp_rate: Quantity, clamp_deflection: Quantity, plate_travel: Quantity
 ) -> Quantity:
-    """Travel of the tension disc at contact, x_c = a + (Fa - F20)/s2.
+    """Travel of the tension disc at contact, x_c = a + Fa/s2 - delta2.
 
     Parameters
     ----------
     contact_force : scalar, array or symbol
         Force at contact Fa [N].
-    clamp_preload : scalar, array or symbol
-        Preload of the clamp springs F20 [N].
     clamp_rate : scalar, array or symbol
         Rate of the clamp springs s2 [N/m].
+    clamp_deflection : scalar, array or symbol
+        Deflection of the clamp springs at rest delta2 [m].
     plate_travel : scalar, array or symbol
         Gap of the plate a [m].
 
@@ -112,16 +112,16 @@ def contact_travel(
 
     References
     ----------
-    S4, analysis 2, eq. (8), corrected: R1 and R2 are in series.
+    S4, analysis 2, eq. (8), corrected: R1 and R2 are in series, so that x_c = a + (Fa - F20)/s2.
 
     Examples
     --------
     S4, practice 1 (11.5 mm):
 
-    >>> 1000 * contact_travel(84.0, 50.0, 4e3, 3e-3)
+    >>> 1000 * contact_travel(84.0, 4e3, 12.5e-3, 3e-3)
     11.5
     """
-    return plate_travel + (contact_force - clamp_preload) / clamp_rate
+    return plate_travel + clamp_spring_travel(contact_force, clamp_rate, clamp_deflection)
 
 
 def stop_force(

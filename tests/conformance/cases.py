@@ -120,6 +120,13 @@ def sound_flyweights(rng: np.random.Generator, instance: Instance, count: int) -
         "rest_radius": (0.06, 0.11),
         "plate_gap": (1.5e-3, 5e-3),
         "spring_preload_deflection": (1e-3, 8e-3),
+        "plate_travel": (1.5e-3, 5e-3),
+        "stop_travel": (12e-3, 30e-3),
+        "return_preload_deflection": (2e-3, 15e-3),
+        "clamp_preload_deflection": (0.5e-3, 1.4e-3),
+        "flyweight_mass": (0.1, 1.0),
+        "flyweight_arm": (0.03, 0.1),
+        "axial_arm": (0.03, 0.1),
         "ramp_ratio": (0.5, 1.8),
         "lining_inner_radius": (0.05, 0.06),
         "lining_outer_radius": (0.07, 0.09),
@@ -176,10 +183,25 @@ LEVERS = {
     "lever_stop_angle": "0.34 rad",
     "spring_preload_deflection": "10 mm",
     "lining_inner_radius": "60 mm",
+    "lining_outer_radius": "76.5 mm",
 }
 HARDENED = ["hardened_steel_oil", "hardened_steel_greased", "hardened_steel_dry"]
 
 RAMPS = {**ENGINE, "required_torque": "60 N*m", "contact_speed_min": "95 rad/s"}
+
+CAPPED = {**RAMPS, "required_torque": "90 N*m", "lining_wear": "0.4 mm", "driven_inertia": "0.1 kg*m2"}
+STIFF = {
+    "return_spring": ["CS-1.25x6.3x5.5"],
+    "clamp_spring": ["CS-2.5x12.5x5.5", "CS-2x10x3.5"],
+    "friction_pair": ["metal_ceramic_bronze_dry"],
+}
+TWO_SPRINGS = {
+    "friction_surfaces": 8,
+    "lining_inner_radius": "44 mm",
+    "lining_outer_radius": "56 mm",
+    "plate_travel": "1 mm",
+    "return_preload_deflection": "4 mm",
+}
 
 CASES: dict[str, Family] = {
     "centrifugal_ball_ramp": Family(
@@ -224,7 +246,6 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
         sound=sound_flyweights,
-        constants={"problems.mechanics.centrifugal:STANDARD_GRAVITY": (0, 1, -2, 0, 0)},
     ),
     "disc_clutch": Family(
         option_sets={
@@ -271,6 +292,57 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"torque_capacity", "worn_torque_capacity", "outer_diameter", "actuation_force"}),
         sound=sound_discs,
+    ),
+    "centrifugal_two_spring": Family(
+        option_sets={"default": {}, "lever": {"mechanism": "lever"}},
+        requirements=RAMPS,
+        optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
+        feasible={
+            "balls": Case(
+                requirements={
+                    **CAPPED,
+                    "outer_diameter_limit": "150 mm",
+                },
+                settings={
+                    "parts": {"ball": ["ball 25", "ball 30"], **STIFF},
+                    "limits": {"balls": "4 .. 5", "return_springs": "2 .. 3", "clamp_springs": "3 .. 4"},
+                    "fix": {**TWO_SPRINGS, "clamp_preload_deflection": "1 mm"},
+                    "objectives": ["outer_diameter", "engagement_band"],
+                },
+                tighten={"required_torque": "94 N*m", "lining_wear": "0.6 mm"},
+            ),
+            "levers": Case(
+                requirements=CAPPED,
+                options={"mechanism": "lever"},
+                settings={
+                    "parts": STIFF,
+                    "limits": {
+                        "return_springs": "2 .. 3",
+                        "clamp_springs": "3 .. 4",
+                        "outer_diameter": "<= 150 mm",
+                    },
+                    "fix": {
+                        **TWO_SPRINGS,
+                        "weights": 3,
+                        "axial_arm": "30 mm",
+                        "clamp_preload_deflection": "1 mm",
+                        "rest_radius": "32 mm",
+                    },
+                    "objectives": ["outer_diameter", "engagement_band"],
+                },
+                tighten={"idle_margin_min": "1.3"},
+            ),
+        },
+        infeasible=Case(
+            requirements={**CAPPED, "outer_diameter_limit": "90 mm"},
+            settings={
+                "parts": {"ball": ["ball 25", "ball 30"], **STIFF},
+                "limits": {"balls": "4 .. 5", "return_springs": "2 .. 3", "clamp_springs": "3 .. 4"},
+                "fix": {**TWO_SPRINGS, "lining_inner_radius": "30 mm", "lining_outer_radius": "40 mm"},
+            },
+        ),
+        culprits=frozenset({"outer_diameter", "torque_worn", "pitch_circle_room", "full_clamp_speed"}),
+        sound=sound_flyweights,
     ),
     "cone_clutch": Family(
         option_sets={
@@ -328,7 +400,7 @@ CASES: dict[str, Family] = {
                     "objectives": ["outer_diameter", "engagement_band"],
                     "points": 2,
                 },
-                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+                tighten={"hub_radius": "21 mm"},
             ),
         },
         infeasible=Case(
@@ -354,9 +426,10 @@ CASES: dict[str, Family] = {
                         "return_spring": ["CS-3.2x16x3.5", "CS-2.5x12.5x3.5"],
                         "friction_pair": ["moulded_dry"],
                     },
-                    "limits": {"return_springs": "5 .. 6", "outer_diameter": "<= 200 mm"},
+                    "limits": {"return_springs": "5 .. 7", "outer_diameter": "<= 260 mm"},
                     "fix": {
-                        **{name: given for name, given in LEVERS.items() if name != "flyweight_mass"},
+                        **LEVERS,
+                        "flyweight_mass": "1.1 kg",
                         "flyweight_arm": "40 mm",
                         "spring_preload_deflection": "16 mm",
                         "plate_arm": "12 mm",
@@ -366,7 +439,7 @@ CASES: dict[str, Family] = {
                     "objectives": ["outer_diameter", "engagement_band"],
                     "points": 2,
                 },
-                tighten={"required_torque": "92 N*m", "hub_radius": "21 mm"},
+                tighten={"hub_radius": "21 mm"},
             ),
         },
         infeasible=Case(

@@ -41,6 +41,63 @@ CASES = {
         {"ramp_ratio": 21},
         ("outer_diameter", "engagement_band"),
     ),
+    "two_spring": (
+        "centrifugal_two_spring",
+        {},
+        {**SPEEDS, "required_torque": "90 N*m", "lining_wear": "0.4 mm", "driven_inertia": "0.1 kg*m2"},
+        {
+            "ball": ["ball 25", "ball 30"],
+            "return_spring": ["CS-1.25x6.3x5.5"],
+            "clamp_spring": ["CS-2.5x12.5x5.5", "CS-2x10x3.5"],
+            "friction_pair": ["metal_ceramic_bronze_dry"],
+        },
+        {
+            "rest_radius": "36 mm .. 44 mm",
+            "stop_travel": "5 mm .. 9 mm",
+            "clamp_preload_deflection": "0.8 mm .. 1.2 mm",
+            "return_preload_deflection": "3.8 mm .. 4.2 mm",
+            "balls": "4 .. 5",
+            "return_springs": "2 .. 3",
+            "clamp_springs": "3 .. 4",
+        },
+        {
+            "friction_surfaces": 8,
+            "plate_travel": "1 mm",
+            "lining_inner_radius": "44 mm",
+            "lining_outer_radius": "56 mm",
+        },
+        {"ramp_ratio": 41},
+        ("outer_diameter", "engagement_band"),
+    ),
+    "lever": (
+        "centrifugal_two_spring",
+        {"mechanism": "lever"},
+        {**SPEEDS, "required_torque": "90 N*m", "lining_wear": "0.4 mm", "driven_inertia": "0.1 kg*m2"},
+        {
+            "return_spring": ["CS-1.25x6.3x5.5"],
+            "clamp_spring": ["CS-2.5x12.5x5.5", "CS-2x10x3.5"],
+            "friction_pair": ["metal_ceramic_bronze_dry"],
+        },
+        {
+            "rest_radius": "32 mm .. 36 mm",
+            "stop_travel": "5 mm .. 9 mm",
+            "flyweight_arm": "56 mm .. 62 mm",
+            "axial_arm": "29 mm .. 30 mm",
+            "return_springs": "2 .. 3",
+            "clamp_springs": "3 .. 4",
+        },
+        {
+            "friction_surfaces": 8,
+            "plate_travel": "1 mm",
+            "lining_inner_radius": "44 mm",
+            "lining_outer_radius": "56 mm",
+            "weights": 3,
+            "return_preload_deflection": "4 mm",
+            "clamp_preload_deflection": "1 mm",
+        },
+        {"flyweight_mass": 61},
+        ("outer_diameter", "engagement_band"),
+    ),
 }
 QUANTITIES = ("outer_diameter", "mass", "engagement_band")
 

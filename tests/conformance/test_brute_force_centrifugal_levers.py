@@ -38,11 +38,10 @@ QUESTIONS = {
             "rest_radius": "45 mm .. 60 mm",
             "spring_preload_deflection": "15.9 mm .. 16.1 mm",
             "return_preload_deflection": "5.8 mm .. 6.2 mm",
-            "plate_arm": "11 mm .. 13 mm",
             "lining_outer_radius": "74 mm .. 90 mm",
             "return_springs": "5 .. 6",
         },
-        "fix": {**FIXED, "flyweight_arm": "40 mm", "clamp_springs": 6},
+        "fix": {**FIXED, "flyweight_arm": "40 mm", "plate_arm": "12 mm", "clamp_springs": 6},
     },
 }
 OBJECTIVES = ["outer_diameter", "engagement_band"]
@@ -79,11 +78,11 @@ def enumerate_all(family):
 def test_no_makeable_design_beats_the_front(family):
     every = enumerate_all(family)
     question = QUESTIONS[family]
-    front = synth.synthesize(family, ENGINE, objectives=OBJECTIVES, points=3, gap=GAP, time_limit=60, **question)
+    front = synth.synthesize(family, ENGINE, objectives=OBJECTIVES, points=2, gap=GAP, time_limit=60, **question)
     assert front.certificate.kind == "global"
     assert len(every) > 5_000
     own = np.array([[d.values[name] for name in OBJECTIVES] for d in front.designs])
-    assert len(own) == 3
+    assert len(own) == 2
     for design in own:
         assert not np.any(np.all(every < design * (1 - GAP) - 1e-12, axis=1))
     assert np.all(own.min(axis=0) <= every.min(axis=0) * (1 + GAP))

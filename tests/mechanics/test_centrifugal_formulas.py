@@ -25,6 +25,7 @@ CASES = [
     (centrifugal.axial_force, {"centrifugal_force": "N", "ratio": "-", "efficiency": "-"}, "N"),
     (centrifugal.axial_gain, {**FLY, "ratio": "-", "efficiency": "-"}, "kg m"),
     (centrifugal.speed_for_force, {"force": "N", **FLY, "ratio": "-", "efficiency": "-"}, "1/s"),
+    (centrifugal.speed_ratio, {"force": "N", "radius": "m", "other_force": "N", "other_radius": "m"}, "-"),
     (centrifugal.ball_set_mass, {"count": "-", "density": "kg/m3", "diameter": "m"}, "kg"),
     (centrifugal.weight_thickness, {"mass": "kg", "count": "-", "density": "kg/m3", "width": "m"}, "m"),
     (centrifugal.set_rate, {"count": "-", "rate": "N/m"}, "N/m"),
