@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from problems import blocks, disc_curves, magnet_curves, pack_curves, startup_hook
 from problems.blocks import magnet as magnet_block
+from problems.mechanics import magnetics
 from problems.mechanics import ring as ring_formulas
 from synth import DesignProblem
 from synth.declaration import Declaration
@@ -151,7 +150,7 @@ class ElectromagneticClutch(DesignProblem):
         mass = magnet_block.declare_magnet_coil(d, duty, magnet, surfaces, start.friction_work)
         size = blocks.Size(
             mass=pack.mass + mass,
-            diameter=2 * np.maximum(magnet.shape.outer_radius, pack.diameter / 2),
+            diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),
             length=pack.length + magnet.shape.length,
         )
         blocks.declare_size(

@@ -254,7 +254,7 @@ def _declare_circuit(
     line_flux = flux_density * layout.pole_length
     outside = powder.yoke_flux_density(iron.leakage_factor, line_flux, layout.yoke_ratio, layout.thickness)
     inside = powder.rotor_flux_density(line_flux, rim)
-    densest = magnetics.densest(outside, inside)
+    densest = magnetics.larger(outside, inside)
     coil_block.declare_saturation(d, iron, densest)
     d.at_most(
         "yoke_flux_density", outside, iron.iron_flux_limit, "T",

@@ -92,20 +92,21 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
 
 
 @special((0.0, 1.0), (0.0, 1.0), curvature="log-convex")
-def densest(first: Quantity, second: Quantity) -> Quantity:
-    """Return the larger of two flux densities, the one that governs the iron path.
+def larger(first: Quantity, second: Quantity) -> Quantity:
+    """Return the larger of two, as one node: of two flux densities in series, or of two radii outside.
 
-    One section is denser nearly everywhere, so that the search need not look at both pieces: hence one node.
+    One of the two is the larger nearly everywhere, and dimensions are makeable steps: the edge between both needs no
+    care of its own, which a plain maximum would get.
 
     Parameters
     ----------
     first, second : scalar, array or symbol
-        B of two sections [T].
+        Two of one kind, for example B of two sections [T].
 
     Returns
     -------
     scalar, array or symbol
-        B [T].
+        The larger.
 
     References
     ----------
@@ -113,7 +114,7 @@ def densest(first: Quantity, second: Quantity) -> Quantity:
 
     Examples
     --------
-    >>> float(densest(1.2, 1.3))
+    >>> float(larger(1.2, 1.3))
     1.3
     """
     return np.maximum(first, second)

@@ -163,7 +163,7 @@ def engaged_ampere_turns(flux_density: Quantity, magnet: PotMagnet, iron_field: 
     >>> round(float(magnet.iron_path), 3)
     0.142
     >>> round(float(engaged_ampere_turns(0.8, magnet, 300.0)), 1)
-    552.0
+    551.9
     """
     return 2 * magnet.residual_gap * magnetics.gap_field(flux_density) + iron_field * magnet.iron_path
 

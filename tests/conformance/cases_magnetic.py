@@ -126,26 +126,23 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             unknown={"pack=disc": frozenset({"hub_bore_diameter", "drag_torque_limit"})},
             feasible={
                 "spindle": case(
-                    requirements={**SPINDLE, "outer_diameter_limit": "170 mm"},
+                    requirements=SPINDLE,
+                    options={"pack": "disc"},
                     settings={
                         "parts": {
-                            "friction_pair": ["steel_steel_wet"],
-                            "inner_plate": ["core 1.5"],
-                            "outer_plate": ["core 1.5"],
+                            "friction_pair": ["sinter_bronze_dry"],
                             "winding_wire": ["Cu 0.5 class 155", "Cu 0.56 class 155"],
                         },
                         "fix": {
                             "ramp_time": "0.1 s",
                             "ring_outer_diameter": "112 mm",
-                            "ring_inner_diameter": "90 mm",
+                            "ring_inner_diameter": "88 mm",
+                            "pressure_plate_thickness": "6 mm",
                             "coil_length": "30 mm",
                             "coil_height": "20 mm",
                             "yoke_thickness": "12 mm",
                         },
-                        "limits": {
-                            "friction_surfaces": "2 .. 4",
-                            "inner_pole_width": "12 mm .. 16 mm",
-                        },
+                        "limits": {"inner_pole_width": "12 mm .. 16 mm"},
                     },
                     tighten={
                         "load_torque": "9 N*m",

@@ -49,7 +49,7 @@ CASES = [
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
         "A/m",
     ),
-    (positional(magnetics.densest), {"first": "T", "second": "T"}, "T"),
+    (positional(magnetics.larger), {"first": "T", "second": "T"}, "T"),
     (magnetics.pole_force, {"flux_density": "T", "area": "m2"}, "N"),
     (magnetics.turns, {"winding_factor": "-", "window_area": "m2", "wire_diameter": "m"}, "-"),
     (magnetics.copper_fill, {"copper_area": "m2", "wire_diameter": "m"}, "-"),
