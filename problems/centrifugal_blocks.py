@@ -365,6 +365,25 @@ def limit_spring_force(d: Declaration, name: str, springs: SpringSet, deflection
     d.at_most(name, force, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
 
 
+def limit_share_of_force(d: Declaration, name: str, springs: SpringSet, force: Any, text: str) -> None:
+    """Declare the limit of the force on one spring, from the largest force of the set.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    name : str
+        Name of the limit.
+    springs : SpringSet
+        The set.
+    force : symbol
+        Largest force of the set [N].
+    text : str
+        What the limit says.
+    """
+    d.at_most(name, force / springs.count, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
+
+
 def advise_springs(
     d: Declaration, duty: Duty, springs: SpringSet, radius: Any, preload: Any, travel: Any, what: str
 ) -> None:

@@ -238,8 +238,8 @@ def two_spring_path(problem: DesignProblem, spec: Mapping[str, Any], design: Any
         inward=float(inward),
         knots=[
             (start, 0.0),
-            (plate_start, float(two_spring.clamp_spring_travel(plate_start, s2, clamp_deflection))),
-            (contact, float(two_spring.contact_travel(contact, s2, clamp_deflection, plate))),
+            (plate_start, float(two_spring.clamp_spring_travel(plate_start, start, clamp_deflection))),
+            (contact, float(two_spring.contact_travel(contact, start, clamp_deflection, plate))),
             (full, stop),
         ],
         regimes=("at rest", "tension disc", "both", "clamping", "at the stop"),

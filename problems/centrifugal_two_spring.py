@@ -54,6 +54,16 @@ class Way:
     return_deflection: Any
     clamp_deflection: Any
 
+    @property
+    def return_rate(self) -> Any:
+        """Rate of the return springs [N/m]."""
+        return self.return_preload / self.return_deflection
+
+    @property
+    def clamp_rate(self) -> Any:
+        """Rate of the clamp springs [N/m]."""
+        return self.clamp_preload / self.clamp_deflection
+
 
 class CentrifugalTwoSpring(DesignProblem):
     """Centrifugal clutch whose flyweights press clamp springs on the plate until a stop caps them.
@@ -93,17 +103,17 @@ class CentrifugalTwoSpring(DesignProblem):
         band = centrifugal.speed_ratio(way.stop_force, end, way.contact_force, at_contact)
         blocks.declare_band(d, band, "Speed at which the clamp force is complete, over the contact speed")
         clamp = two_spring.clamp_force(way.stop_force, way.contact_force)
-        worn = two_spring.worn_clamp_force(clamp, way.returning.rate, way.clamping.rate, wear)
+        worn = two_spring.worn_clamp_force(clamp, way.return_rate, way.clamp_rate, wear)
         blocks.declare_full_clamp(d, duty, lining, worn, stop, ANALYSIS)
         blocks.declare_clamp(d, lining, clamp, "Clamp force at the stop, the largest, new lining", ANALYSIS)
         ball_blocks.limit_contact_and_clamp(d, wants, contact, clamp)
         self._limit_order(d, way, wear, rest, at_contact, radius(way.start_travel), band)
-        blocks.limit_spring_force(
-            d, "spring1_force", way.returning, way.return_deflection + way.plate_travel,
+        blocks.limit_share_of_force(
+            d, "spring1_force", way.returning, way.contact_force,
             "The return springs stand their deflection at contact",
         )  # fmt: skip
-        blocks.limit_spring_force(
-            d, "spring2_force", way.clamping, way.clamp_deflection + way.stop_travel - way.plate_travel,
+        blocks.limit_share_of_force(
+            d, "spring2_force", way.clamping, way.stop_force,
             "The clamp springs stand their deflection at the stop",
         )  # fmt: skip
         if drive.balls is not None:
@@ -167,18 +177,20 @@ class CentrifugalTwoSpring(DesignProblem):
             d, "clamp_spring", "sp2", "N_2", "the tension disc presses them on the pressure plate (R2)"
         )
         return_preload = returning.force(return_deflection)
-        contact_force = returning.force(return_deflection + plate)
+        clamp_preload = clamping.force(clamp_deflection)
+        # Through preloads and deflections: numbers and rates of the springs stand in the two preloads alone.
+        contact_force = two_spring.stretched_force(return_preload, return_deflection, plate)
         return Way(
             plate_travel=plate,
             stop_travel=stop,
             returning=returning,
             clamping=clamping,
-            clamp_preload=clamping.force(clamp_deflection),
+            clamp_preload=clamp_preload,
             return_preload=return_preload,
             contact_force=contact_force,
-            stop_force=clamping.force(clamp_deflection + stop - plate),
-            start_travel=two_spring.clamp_spring_travel(return_preload, clamping.rate, clamp_deflection),
-            contact_travel=two_spring.contact_travel(contact_force, clamping.rate, clamp_deflection, plate),
+            stop_force=two_spring.stretched_force(clamp_preload, clamp_deflection, stop - plate),
+            start_travel=two_spring.clamp_spring_travel(return_preload, clamp_preload, clamp_deflection),
+            contact_travel=two_spring.contact_travel(contact_force, clamp_preload, clamp_deflection, plate),
             return_deflection=return_deflection,
             clamp_deflection=clamp_deflection,
         )
@@ -239,7 +251,7 @@ class CentrifugalTwoSpring(DesignProblem):
             text="The clamp springs do not push the plate onto the lining at rest: it would drag at idle",
             source=f"{DERIVED}; practice 1",
         )  # fmt: skip
-        worn = two_spring.worn_contact_travel(way.contact_travel, way.returning.rate, way.clamping.rate, wear)
+        worn = two_spring.worn_contact_travel(way.contact_travel, way.return_rate, way.clamp_rate, wear)
         d.at_most(
             "stop_after_contact", worn, way.stop_travel, "mm",
             text="The tension disc reaches its stop only after the worn lining is in contact", source=DERIVED,

@@ -27,15 +27,46 @@ import numpy as np
 from problems.mechanics import Quantity
 
 
-def clamp_spring_travel(force: Quantity, clamp_rate: Quantity, deflection: Quantity) -> Quantity:
-    """By how much the clamp springs give beyond their preload, F/s2 - delta2.
+def stretched_force(preload: Quantity, deflection: Quantity, travel: Quantity) -> Quantity:
+    """Force of a spring set, from its preload and how far it is deflected further, F = F0 (1 + x/delta).
+
+    Parameters
+    ----------
+    preload : scalar, array or symbol
+        Force of a spring set at rest F0 [N].
+    deflection : scalar, array or symbol
+        Its deflection at rest delta [m].
+    travel : scalar, array or symbol
+        What is added to the deflection [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F [N].
+
+    References
+    ----------
+    Statics: F0 = s delta, so that the rate does not appear.
+
+    Examples
+    --------
+    S4, practice 1 (F10 = 60 N at s1 = 8 N/mm, that is 7.5 mm; 84 N after 3 mm):
+
+    >>> stretched_force(60.0, 7.5e-3, 3e-3)
+    84.0
+    """
+    return preload * (1 + travel / deflection)
+
+
+def clamp_spring_travel(force: Quantity, clamp_preload: Quantity, deflection: Quantity) -> Quantity:
+    """By how much the clamp springs give beyond their preload, delta2 (F/F20 - 1).
 
     Parameters
     ----------
     force : scalar, array or symbol
         Force through the clamp springs F [N].
-    clamp_rate : scalar, array or symbol
-        Rate of the clamp springs s2 [N/m].
+    clamp_preload : scalar, array or symbol
+        Preload of the clamp springs F20 [N].
     deflection : scalar, array or symbol
         Their deflection at rest delta2 [m].
 
@@ -50,12 +81,12 @@ def clamp_spring_travel(force: Quantity, clamp_rate: Quantity, deflection: Quant
 
     Examples
     --------
-    S4, practice 1 (F10 = 60 N, F20 = 50 N, s2 = 4 N/mm, so that delta2 = 12.5 mm; 2.5 mm):
+    S4, practice 1 (F10 = 60 N, F20 = 50 N at s2 = 4 N/mm, that is 12.5 mm; 2.5 mm):
 
-    >>> 1000 * clamp_spring_travel(60.0, 4e3, 12.5e-3)
+    >>> 1000 * clamp_spring_travel(60.0, 50.0, 12.5e-3)
     2.5
     """
-    return force / clamp_rate - deflection
+    return deflection * (force / clamp_preload - 1)
 
 
 def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel: Quantity) -> Quantity:
@@ -90,16 +121,16 @@ def contact_force(return_preload: Quantity, return_rate: Quantity, plate_travel:
 
 
 def contact_travel(
-    contact_force: Quantity, clamp_rate: Quantity, clamp_deflection: Quantity, plate_travel: Quantity
+    contact_force: Quantity, clamp_preload: Quantity, clamp_deflection: Quantity, plate_travel: Quantity
 ) -> Quantity:
-    """Travel of the tension disc at contact, x_c = a + Fa/s2 - delta2.
+    """Travel of the tension disc at contact, x_c = a + delta2 (Fa/F20 - 1).
 
     Parameters
     ----------
     contact_force : scalar, array or symbol
         Force at contact Fa [N].
-    clamp_rate : scalar, array or symbol
-        Rate of the clamp springs s2 [N/m].
+    clamp_preload : scalar, array or symbol
+        Preload of the clamp springs F20 [N].
     clamp_deflection : scalar, array or symbol
         Deflection of the clamp springs at rest delta2 [m].
     plate_travel : scalar, array or symbol
@@ -118,10 +149,10 @@ def contact_travel(
     --------
     S4, practice 1 (11.5 mm):
 
-    >>> 1000 * contact_travel(84.0, 4e3, 12.5e-3, 3e-3)
+    >>> 1000 * contact_travel(84.0, 50.0, 12.5e-3, 3e-3)
     11.5
     """
-    return plate_travel + clamp_spring_travel(contact_force, clamp_rate, clamp_deflection)
+    return plate_travel + clamp_spring_travel(contact_force, clamp_preload, clamp_deflection)
 
 
 def stop_force(

@@ -311,27 +311,6 @@ CASES: dict[str, Family] = {
                 },
                 tighten={"required_torque": "94 N*m", "lining_wear": "0.6 mm"},
             ),
-            "levers": Case(
-                requirements=CAPPED,
-                options={"mechanism": "lever"},
-                settings={
-                    "parts": STIFF,
-                    "limits": {
-                        "return_springs": "2 .. 3",
-                        "clamp_springs": "3 .. 4",
-                        "outer_diameter": "<= 150 mm",
-                    },
-                    "fix": {
-                        **TWO_SPRINGS,
-                        "weights": 3,
-                        "axial_arm": "30 mm",
-                        "clamp_preload_deflection": "1 mm",
-                        "rest_radius": "32 mm",
-                    },
-                    "objectives": ["outer_diameter", "engagement_band"],
-                },
-                tighten={"idle_margin_min": "1.3"},
-            ),
         },
         infeasible=Case(
             requirements={**CAPPED, "outer_diameter_limit": "90 mm"},

@@ -52,10 +52,10 @@ CASES = {
             "friction_pair": ["metal_ceramic_bronze_dry"],
         },
         {
-            "rest_radius": "36 mm .. 44 mm",
+            "rest_radius": "36 mm .. 42 mm",
             "stop_travel": "5 mm .. 9 mm",
             "clamp_preload_deflection": "0.8 mm .. 1.2 mm",
-            "return_preload_deflection": "3.8 mm .. 4.2 mm",
+            "return_preload_deflection": "3.9 mm .. 4.1 mm",
             "balls": "4 .. 5",
             "return_springs": "2 .. 3",
             "clamp_springs": "3 .. 4",
@@ -66,7 +66,7 @@ CASES = {
             "lining_inner_radius": "44 mm",
             "lining_outer_radius": "56 mm",
         },
-        {"ramp_ratio": 41},
+        {"ramp_ratio": 31},
         ("outer_diameter", "engagement_band"),
     ),
     "lever": (
@@ -95,7 +95,7 @@ CASES = {
             "return_preload_deflection": "4 mm",
             "clamp_preload_deflection": "1 mm",
         },
-        {"flyweight_mass": 61},
+        {"flyweight_mass": 41},
         ("outer_diameter", "engagement_band"),
     ),
 }
@@ -132,11 +132,11 @@ def enumerate_all(case):
 def test_no_makeable_design_beats_the_front(case):
     every, looked = enumerate_all(case)
     family, options, requirements, parts, limits, pins, _, objectives = CASES[case]
-    assert looked > 1e6
+    assert looked > 3e5
     assert len(every["mass"]) > 300
     front = synth.synthesize(
         synth.load(family, **options), requirements, objectives=list(objectives), parts=parts, limits=limits,
-        fix=pins, points=4, gap=GAP, time_limit=60,
+        fix=pins, points=3, gap=GAP, time_limit=60,
     )  # fmt: skip
     assert front.certificate.kind == "global"
     values = np.stack([every[n] for n in objectives], axis=1)

@@ -12,11 +12,12 @@ from problems.mechanics import centrifugal, two_spring
 
 SPRINGS = {"return_preload": "N", "clamp_preload": "N", "return_rate": "N/m", "clamp_rate": "N/m"}
 CASES = [
-    (two_spring.clamp_spring_travel, {"force": "N", "clamp_rate": "N/m", "deflection": "m"}, "m"),
+    (two_spring.stretched_force, {"preload": "N", "deflection": "m", "travel": "m"}, "N"),
+    (two_spring.clamp_spring_travel, {"force": "N", "clamp_preload": "N", "deflection": "m"}, "m"),
     (two_spring.contact_force, {"return_preload": "N", "return_rate": "N/m", "plate_travel": "m"}, "N"),
     (
         two_spring.contact_travel,
-        {"contact_force": "N", "clamp_rate": "N/m", "clamp_deflection": "m", "plate_travel": "m"},
+        {"contact_force": "N", "clamp_preload": "N", "clamp_deflection": "m", "plate_travel": "m"},
         "m",
     ),
     (
@@ -122,9 +123,9 @@ def test_regimes_are_the_direct_equilibrium(seed):
         assert two_spring.clamp_force_at(force, fa, fb) == pytest.approx(clamp, rel=1e-7, abs=1e-6)
         assert two_spring.stop_load(force, fb) == pytest.approx(stop, rel=1e-9, abs=1e-6)
     # The borders: travel at which the plate starts, and at which it touches.
-    start = two_spring.clamp_spring_travel(f10, c["s2"], c["delta2"])
+    start = two_spring.clamp_spring_travel(f10, f20, c["delta2"])
     assert directly(c, f10 * (1 + 1e-12))[0] == pytest.approx(start, rel=1e-7, abs=1e-11)
-    contact = two_spring.contact_travel(fa, c["s2"], c["delta2"], c["a"])
+    contact = two_spring.contact_travel(fa, f20, c["delta2"], c["a"])
     assert directly(c, fa)[0] == pytest.approx(contact, rel=1e-9)
 
 
@@ -137,7 +138,7 @@ def test_worn_lining_is_a_longer_way_of_the_plate(seed):
     new = two_spring.clamp_force(two_spring.stop_force(f20, c["s2"], c["a"], c["b"]), fa)
     worn = c | {"a": c["a"] + wear}
     predicted = two_spring.worn_clamp_force(new, c["s1"], c["s2"], wear)
-    x_c = two_spring.contact_travel(fa, c["s2"], c["delta2"], c["a"])
+    x_c = two_spring.contact_travel(fa, f20, c["delta2"], c["a"])
     worn_x = two_spring.worn_contact_travel(x_c, c["s1"], c["s2"], wear)
     assert (predicted > 0) == (worn_x < c["b"])
     if predicted > 0:
@@ -158,8 +159,8 @@ def test_no_snap_is_a_speed_that_rises_in_every_phase(seed):
     fb = two_spring.stop_force(f20, c["s2"], c["a"], c["b"])
     borders = [
         (f20, 0.0),
-        (f10, two_spring.clamp_spring_travel(f10, c["s2"], c["delta2"])),
-        (fa, two_spring.contact_travel(fa, c["s2"], c["delta2"], c["a"])),
+        (f10, two_spring.clamp_spring_travel(f10, f20, c["delta2"])),
+        (fa, two_spring.contact_travel(fa, f20, c["delta2"], c["a"])),
         (fb, c["b"]),
     ]
     rates = (c["s2"], centrifugal.series_rate(c["s1"], c["s2"]), c["s2"])
@@ -210,8 +211,8 @@ def test_practice_1_the_rounded_answer_meets_its_data():
     delta2 = ROUND["f20"] / ROUND["s2"]
     fa = two_spring.contact_force(ROUND["f10"], ROUND["s1"], ROUND["a"])
     fb = two_spring.stop_force(ROUND["f20"], ROUND["s2"], ROUND["a"], ROUND["b"])
-    x_p = two_spring.clamp_spring_travel(ROUND["f10"], ROUND["s2"], delta2)
-    x_c = two_spring.contact_travel(fa, ROUND["s2"], delta2, ROUND["a"])
+    x_p = two_spring.clamp_spring_travel(ROUND["f10"], ROUND["f20"], delta2)
+    x_c = two_spring.contact_travel(fa, ROUND["f20"], delta2, ROUND["a"])
     assert (fa, x_p, x_c) == pytest.approx((84, 2.5e-3, 11.5e-3))
     assert two_spring.clamp_force(fb, fa) == pytest.approx(27.2)
     speeds = [
