@@ -189,10 +189,12 @@ class Arithmetic:
 
 RISING = {
     ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SQRT: "sqrt", ca.OP_LOG1P: "log1p", ca.OP_EXPM1: "expm1",
-    ca.OP_ATAN: "arctan", ca.OP_ASIN: "arcsin", ca.OP_SINH: "sinh", ca.OP_TANH: "tanh", ca.OP_ASINH: "arcsinh",
+    ca.OP_ATAN: "arctan", ca.OP_SINH: "sinh", ca.OP_TANH: "tanh", ca.OP_ASINH: "arcsinh",
     ca.OP_ACOSH: "arccosh", ca.OP_ATANH: "arctanh", ca.OP_ERF: "erf", ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil",
     ca.OP_SIGN: "sign",
 }  # fmt: skip
+# Least argument for which they are defined.
+DEFINED_FROM = {ca.OP_SQRT: 0.0, ca.OP_LOG: 0.0, ca.OP_LOG1P: -1.0, ca.OP_ACOSH: 1.0}
 # Their value is one of finitely many or jumps: the center is the whole range, and there is no slope.
 JUMPING = COMPARISONS | {ca.OP_FLOOR, ca.OP_CEIL, ca.OP_SIGN}
 
@@ -217,6 +219,9 @@ class Ranges(Arithmetic):
         rule = self._RULES.get(op)
         if rule is not None:
             return rule(self, *r)
+        if op in DEFINED_FROM:
+            # Where it is not defined nothing is feasible: what counts of the argument is within the domain.
+            return self.rising(RISING[op], self._at_least(DEFINED_FROM[op], r[0]))
         if op in RISING:
             return self.rising(RISING[op], r[0])
         if op == ca.OP_MUL:
@@ -232,6 +237,11 @@ class Ranges(Arithmetic):
         if op == OP_SPECIAL:
             return self._special(int(node.constant), r)
         return ANYTHING
+
+    def _at_least(self, least: float, a: Pair) -> Pair:
+        if is_thin(a) or sign_of(a[0]) > 0 >= least:
+            return a
+        return self.do("maximum", a[0], least), a[1]
 
     def _comparison(self, op: int, r: Sequence[Pair]) -> Pair:
         do = self.do
@@ -310,7 +320,11 @@ class Ranges(Arithmetic):
         return self.rising("cosh", self.size(a))
 
     def _arccos(self, a: Pair) -> Pair:
-        return self.negative(self.add(self.rising("arcsin", a), (-math.pi / 2, -math.pi / 2)))
+        return self.negative(self.add(self._arcsin(a), (-math.pi / 2, -math.pi / 2)))
+
+    def _arcsin(self, a: Pair) -> Pair:
+        low, high = self._at_least(-1.0, a)
+        return self.rising("arcsin", a if is_thin(a) else (low, self.do("minimum", high, 1.0)))
 
     def _hypot(self, a: Pair, b: Pair) -> Pair:
         return self.rising("sqrt", self.add(self.square(a), self.square(b)))
@@ -335,8 +349,8 @@ class Ranges(Arithmetic):
         ca.OP_ADD: Arithmetic.add, ca.OP_SUB: Arithmetic.subtract, ca.OP_DIV: Arithmetic.divide,
         ca.OP_NEG: Arithmetic.negative, ca.OP_SQ: Arithmetic.square, ca.OP_FABS: Arithmetic.size,
         ca.OP_TWICE: _twice, ca.OP_INV: _inverse, ca.OP_FMIN: _least, ca.OP_FMAX: _most, ca.OP_SIN: _sine,
-        ca.OP_COS: _cosine, ca.OP_TAN: _tangent, ca.OP_COSH: _cosh, ca.OP_ACOS: _arccos, ca.OP_HYPOT: _hypot,
-        ca.OP_ATAN2: _arctan2,
+        ca.OP_COS: _cosine, ca.OP_TAN: _tangent, ca.OP_COSH: _cosh, ca.OP_ACOS: _arccos, ca.OP_ASIN: _arcsin,
+        ca.OP_HYPOT: _hypot, ca.OP_ATAN2: _arctan2,
     }  # fmt: skip
 
 

@@ -277,7 +277,7 @@ class Propagation:
             moved[i][1 + row] += step
         with np.errstate(all="ignore"):
             values = [np.broadcast_to(np.asarray(v, dtype=float), moved[0].shape) for v in evaluate(moved)]
-            goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]])
+            goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]]).reshape(-1, SAMPLES)
             sizes = _medians(np.where(goals > 0, goals, np.nan))
             self.goal_sizes = np.where(sizes > 0, sizes, 1.0)
             for j, size in enumerate(self._sizes(values)):

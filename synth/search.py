@@ -288,7 +288,7 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
 
 def _effort(instance: Instance) -> int:
     """Return how many boxes are worth looking into: with many unknowns they do not close."""
-    return EFFORT if len(instance.model.variables) < MANY else EFFORT_WITH_MANY
+    return EFFORT if int(np.sum(instance.lower < instance.upper)) < MANY else EFFORT_WITH_MANY
 
 
 class FrontSearch:

@@ -161,6 +161,35 @@ def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
         assert is_kept(tree, point, signed[k], monkeypatch, 25), k
 
 
+BORDERS = {
+    "root": lambda x, y: 10 / np.sqrt(x - y),
+    "logarithm": lambda x, y: 10 / np.log(x - y),
+    "sine": lambda x, y: 5 * np.arcsin((x - y) / 2),
+    "falling root": lambda x, y: 6 - np.sqrt(x - y),
+}
+
+
+@pytest.mark.parametrize("border", BORDERS)
+def test_no_design_is_lost_where_a_function_ends_within_a_box(border, monkeypatch):
+    class Border(synth.DesignProblem):
+        name = "border"
+
+        def declare(self, d):
+            x, y = d.variable("x", "-", 1, 10), d.variable("y", "-", 1, 10)
+            d.at_least("border", BORDERS[border](x, y), 4, "-")
+            d.derive("total", "-", x + y)
+            d.objective("total")
+
+    instance, tree = tree_of(Border(), {"total": "min"})
+    x = 1 + 9 * np.random.default_rng(0).random((3000, 2))
+    data, values, feasible = sample(instance, x, np.zeros(len(x), dtype=int))
+    signed = values["total"][:, None]
+    good = np.flatnonzero(feasible)
+    assert len(good) > 20
+    for k in good[np.argsort(signed[good, 0])][:12]:
+        assert is_kept(tree, Point(x[k], [float(column[k]) for column in data], {}), signed[k], monkeypatch, 9), k
+
+
 # -- what is proven and refuted ----------------------------------------------------------------------
 
 
