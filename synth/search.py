@@ -35,7 +35,7 @@ from synth.steps import cover_by_steps, prove_by_steps, prove_ends
 EFFORT = 20_000_000
 TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
 SOON = 150_000
-MANY, EFFORT_WITH_MANY = 7, 200_000  # variables
+MANY, EFFORT_WITH_MANY = 7, 2_000_000  # variables
 FILL_EFFORT = 20_000
 TIE_EFFORT = 8_000
 COARSE = 0.1

@@ -13,6 +13,7 @@ from synth.clock import Clock
 from synth.cover import Covered, cover
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
 from synth.purposes import Cover
+from synth.seeker import Seeker
 from synth.settle import settle_variables
 
 CAPPED, SOUGHT = 0, 1
@@ -45,7 +46,11 @@ def cover_by_steps(
     """
     half = purpose.slack[SOUGHT] / 2
     plain = np.full(len(form.goals), np.inf)
-    looked, left = 0, [form.lean(form.nothing())]
+    # The other end first: good designs there are often not far from good in both.
+    end = Cover([CAPPED], purpose.slack[CAPPED : CAPPED + 1], plain, Archive([CAPPED], form.n, len(form.goals)))
+    end.take(form.archive.combination, form.archive.variables, form.archive.phi)
+    looked, left = cover(form, pool, end, clock, rng, effort).looked, [form.lean(form.nothing())]
+    Seeker(form, purpose, rng, False).beside(clock)
     while True:
         step = _step(form, half, plain)
         outcome = cover(form, pool, step, clock, rng, effort)
