@@ -27,6 +27,15 @@ class Case:
 
 
 @dataclass(frozen=True)
+class Design:
+    """Sizes, counts and parts of one design."""
+
+    sizes: Mapping[str, str]
+    counts: Mapping[str, int]
+    parts: Mapping[str, str]
+
+
+@dataclass(frozen=True)
 class Family:
     """What the suite needs to know of a family.
 
@@ -44,6 +53,8 @@ class Family:
     needed: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by "option=value": what it must be told
     unknown: Mapping[str, frozenset[str]] = field(default_factory=dict)  # by "option=value": what it does not have
     constants: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    # By name of the option set: a feasible design where random parts of the catalogue hardly ever fit each other.
+    designs: Mapping[str, Design] = field(default_factory=dict)
 
 
 def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
@@ -203,6 +214,21 @@ TWO_SPRINGS = {
     "return_preload_deflection": "4 mm",
 }
 
+FITTING = {
+    "stop_travel": "5.4 mm",
+    "lining_inner_radius": "56 mm",
+    "lining_outer_radius": "74 mm",
+    "plate_travel": "1 mm",
+    "return_preload_deflection": "4 mm",
+    "clamp_preload_deflection": "1 mm",
+}
+FITTING_SPRINGS = {
+    "return_spring": "CS-1.25x6.3x5.5",
+    "clamp_spring": "CS-2x10x3.5",
+    "friction_pair": "metal_ceramic_bronze_dry",
+}
+FITTING_COUNTS = {"return_springs": 3, "clamp_springs": 3, "friction_surfaces": 8}
+
 CASES: dict[str, Family] = {
     "centrifugal_ball_ramp": Family(
         option_sets={"default": {}},
@@ -322,6 +348,24 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"outer_diameter", "torque_worn", "pitch_circle_room", "full_clamp_speed"}),
         sound=sound_flyweights,
+        designs={
+            "default": Design(
+                {**FITTING, "rest_radius": "48 mm", "ramp_ratio": "1.2"},
+                {**FITTING_COUNTS, "balls": 4},
+                {**FITTING_SPRINGS, "ball": "ball 30"},
+            ),
+            "lever": Design(
+                {
+                    **FITTING,
+                    "rest_radius": "36 mm",
+                    "flyweight_mass": "0.18 kg",
+                    "flyweight_arm": "80 mm",
+                    "axial_arm": "30 mm",
+                },
+                {**FITTING_COUNTS, "weights": 3},
+                FITTING_SPRINGS,
+            ),
+        },
     ),
     "cone_clutch": Family(
         option_sets={
@@ -660,7 +704,7 @@ CASES: dict[str, Family] = {
 CASES |= magnetic(Family, Case)
 
 
-def question(family: str, options: Mapping[str, str], optional: bool) -> Instance:
+def question(family: str, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:
     """Return a question to the whole catalogue, with or without the optional requirements."""
     data = CASES[family]
     requirements = {**data.requirements, **(data.optional if optional else {})}
@@ -668,7 +712,20 @@ def question(family: str, options: Mapping[str, str], optional: bool) -> Instanc
         requirements |= data.needed.get(f"{option}={value}", {})
         absent = data.unknown.get(f"{option}={value}", frozenset())
         requirements = {name: given for name, given in requirements.items() if name not in absent}
-    return Instance(synth.load(family, **options), requirements, as_catalogs(None))
+    return Instance(synth.load(family, **options), requirements, as_catalogs(None), **settings)
+
+
+def known_design(family: str, name: str, optional: bool) -> tuple[np.ndarray, list[np.ndarray]] | None:
+    """Return variables and data of the design that is known of an option set, twice, or None."""
+    design = CASES[family].designs.get(name)
+    if design is None:
+        return None
+    instance = question(
+        family, CASES[family].option_sets[name], optional,
+        fix={**design.sizes, **design.counts}, parts={slot: [row] for slot, row in design.parts.items()},
+    )  # fmt: skip
+    data = [np.broadcast_to(np.asarray(x, dtype=float), (2,)) for x in instance.data(np.zeros(2, dtype=int))]
+    return np.tile(instance.lower, (2, 1)), data
 
 
 def answer(family: str, case: Case, **more: Any) -> synth.ParetoFront:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
-from cases import CASES, question
+from cases import CASES, known_design, question
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -131,7 +131,11 @@ def traced(request):
     variables = CASES[family].sound(rng, instance, 4 * POINTS)
     data = instance.data(rng.integers(0, instance.combinations, len(variables)))
     columns = [np.broadcast_to(np.asarray(x, dtype=float), len(variables)) for x in data]
-    feasible = model.evaluate(variables, data).feasible
+    known = known_design(family, options, optional)
+    if known is not None:
+        variables = np.concatenate([variables, known[0]])
+        columns = [np.concatenate([x, own]) for x, own in zip(columns, known[1], strict=True)]
+    feasible = model.evaluate(variables, columns).feasible
     return model, low, high, np.column_stack([variables, *columns]), feasible
 
 
