@@ -371,7 +371,7 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         kinds=content["kinds"],
         limit_units=content["limit_units"],
         limit_senses=content["limit_senses"],
-        restated=content["restated"],
+        restated=dict(content["restated"]),
     )
     rows = content["parts"]
     designs = [_design_from_json(frame, d, rows) for d in content["designs"]]
