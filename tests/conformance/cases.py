@@ -272,6 +272,24 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
         sound=sound_flyweights,
+        designs={
+            "default": Design(
+                {
+                    "rest_radius": "54 mm",
+                    "plate_gap": "2 mm",
+                    "spring_preload_deflection": "2 mm",
+                    "ramp_ratio": "1",
+                    "lining_inner_radius": "60 mm",
+                    "lining_outer_radius": "80 mm",
+                },
+                {"return_springs": 3, "balls": 8, "friction_surfaces": 8},
+                {
+                    "ball": "ball 20",
+                    "return_spring": "CS-1.25x6.3x5.5",
+                    "friction_pair": "metal_ceramic_bronze_dry",
+                },
+            ),
+        },
     ),
     "disc_clutch": Family(
         option_sets={

@@ -12,7 +12,7 @@ from synth.feasibility import holds, residual
 from synth.instance import Instance, as_catalogs
 from synth.prooftree import Clusters, Point, ProofTree
 from synth.tables import Catalogs
-from tests.conformance.cases import CASES
+from tests.conformance.cases import CASES, known_design
 from tests.unit.formulas import BINARY, UNARY
 
 RNG = np.random.default_rng(0)
@@ -148,8 +148,17 @@ def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
     case = CASES[family]
     instance = Instance(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
     rng = np.random.default_rng(1)
-    x = case.sound(rng, instance, 20000)
-    data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations, len(x)))
+    known = known_design(family, "default", optional=False)
+    if known is None:
+        x = case.sound(rng, instance, 20000)
+        data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations, len(x)))
+    else:  # around a design whose parts fit each other
+        x = np.clip(
+            known[0][:1] * np.exp(rng.normal(0, 0.02, (4000, instance.lower.size))), instance.lower, instance.upper
+        )
+        data = [np.full(len(x), column[0]) for column in known[1]]
+        result = instance.model.evaluate(x, data)
+        values, feasible = result.values, result.feasible
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values() if o.default}
     tree = ProofTree(instance, senses)
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
