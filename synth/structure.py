@@ -499,8 +499,9 @@ class _Analysis:
 
     def _anything(self, k: int) -> _Term | None:
         """Return a node of which only the sign may be known."""
-        sign = self._sign(k)
-        return None if not sign else self._atom(k, sign, NEITHER, self._jumps(self.depends[k]), True)
+        sign, (low, high) = self._sign(k), self.ends[k]
+        nonzero = bool(low > 0 or high < 0)
+        return None if not sign else self._atom(k, sign, NEITHER, self._jumps(self.depends[k]), nonzero)
 
     def _jumps(self, inputs: np.ndarray) -> np.ndarray:
         return np.where(inputs[:, None], np.array([-np.inf, np.inf]), 0.0)
