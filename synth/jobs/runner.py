@@ -20,6 +20,7 @@ from synth.jobs.store import CANCELLED, LEASE, Account, Claim, Outcome, Store, n
 
 ATTEMPTS = 3  # of a question that fails, before it is answered by its error
 TICK = 0.5  # seconds between looks at what is going on
+PAUSE = 1.0  # seconds between two reports of progress, at least
 OUTAGE = 60.0  # seconds to wait for a database that does not answer
 
 T = TypeVar("T")
@@ -61,7 +62,7 @@ class Runner:
         self.started = time.monotonic()
         self.first: Account | None = None
         self.said = 0.0
-        self.pause = 1.0
+        self.pause = PAUSE
         self.cancelled = threading.Event()
         self.over = threading.Event()
         self.waiting: deque[Claim] = deque()
@@ -178,7 +179,7 @@ class Runner:
         begin = time.monotonic()
         account = self.store.account(self.job)
         self.said = time.monotonic()
-        self.pause = max(1.0, 20 * (self.said - begin))  # counting must not cost what it counts
+        self.pause = max(PAUSE, 20 * (self.said - begin))  # counting must not cost what it counts
         if self.first is None:
             self.first = account
         elapsed, fresh = self.said - self.started, account.done - self.first.done

@@ -16,6 +16,7 @@ import pytest
 
 import synth
 from synth.errors import InputError
+from synth.jobs import runner
 from synth.jobs.executors import Cluster
 from tests.batch.rod import Rod
 
@@ -73,9 +74,10 @@ def parts(tmp_path: Path) -> Iterator[Parts]:
 
 
 def test_workers_and_the_scheduler_may_die_on_the_way(
-    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    alone = synth.batch(Rod, rows(20), tmp_path / "alone", objectives=["mass"], points=1)
+    monkeypatch.setattr(runner, "PAUSE", 0.0)  # rows are solved in milliseconds: every one is to be seen
+    alone = synth.batch(Rod, rows(60), tmp_path / "alone", objectives=["mass"], points=1)
     scheduler = parts.scheduler()
     first, _ = parts.worker(), parts.worker()
     parts.ready(2)
@@ -93,10 +95,10 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
             parts.worker()
 
     result = synth.batch(
-        Rod, rows(20), tmp_path / "cluster", objectives=["mass"], points=1, scheduler=parts.address, progress=disturb
+        Rod, rows(60), tmp_path / "cluster", objectives=["mass"], points=1, scheduler=parts.address, progress=disturb
     )
     assert len(parts.processes) == 6, "everything was solved before anything was killed"
-    assert result.counts == {"optimal": 20}
+    assert result.counts == {"optimal": 60}
     written = [(r.folder / "designs.csv").read_bytes() for r in (alone, result)]
     assert written[0] == written[1]
     from synth.jobs.store import Store
