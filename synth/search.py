@@ -35,7 +35,8 @@ from synth.steps import cover_by_steps, prove_by_steps, prove_ends
 EFFORT = 20_000_000
 TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
 SOON = 150_000
-MANY, EFFORT_WITH_MANY = 7, 2_000_000  # variables
+MANY = 7  # variables
+EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
 FILL_EFFORT = 20_000
 TIE_EFFORT = 8_000
 COARSE = 0.1
@@ -287,8 +288,13 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
 
 
 def _effort(instance: Instance) -> int:
-    """Return how many boxes are worth looking into: with many unknowns they do not close."""
-    return EFFORT if int(np.sum(instance.lower < instance.upper)) < MANY else EFFORT_WITH_MANY
+    """Return how many boxes are worth looking into: with many unknowns they hardly close.
+
+    Combinations that are few are solved one by one instead.
+    """
+    if int(np.sum(instance.lower < instance.upper)) < MANY:
+        return EFFORT
+    return EFFORT_WITH_FEW_PARTS if instance.combinations <= EXHAUSTIVE_LIMIT else EFFORT_WITH_MANY
 
 
 class FrontSearch:
