@@ -38,7 +38,7 @@ SOON = 150_000
 MANY = 7  # variables
 EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
 FILL_EFFORT = 20_000
-TIE_EFFORT = 8_000
+TIE_EFFORT = 2_000
 COARSE = 0.1
 COARSE_EFFORT = 20_000
 FIRST_EFFORT = 1_000  # for one objective a first design is enough to begin with
@@ -562,9 +562,10 @@ class FrontSearch:
         fine = self._fine()
         outcome = self._covered(fine, min(self.effort, TOGETHER) if self.m == 2 else self.effort)
         if not outcome.closed and self.m == 2:
-            self.by_steps = True
             fine = self._fine()
-            outcome = self._in_steps(fine)
+            # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
+            self.by_steps = self.effort < EFFORT or len(form.archive) < self.points
+            outcome = self._in_steps(fine) if self.by_steps else self._covered(fine, self.effort)
         left = outcome.open
         if len(left):
             self._exhaust(left, fine)
