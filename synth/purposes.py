@@ -119,6 +119,10 @@ class Staircase:
             result.append(self.known[int(rows[0])] if len(rows) else c)
         return result
 
+    def unproven(self) -> list[Candidate]:
+        """Return the designs that need a proof."""
+        return [c for c in self.designs if c.phi.tobytes() not in self._proven]
+
     def _set(self) -> None:
         phi = np.array([c.phi[self.columns] for c in self.designs])
         steps = [phi[[c.phi.tobytes() not in self._proven for c in self.designs]] - self.slack]

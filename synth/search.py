@@ -30,7 +30,7 @@ from synth.robust import robust_front
 from synth.scatter import read_block
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
-from synth.steps import cover_by_steps, prove_by_steps, prove_ends
+from synth.steps import cover_by_steps, prove_by_steps
 
 EFFORT = 20_000_000
 TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
@@ -45,6 +45,7 @@ FIRST_EFFORT = 1_000  # for one objective a first design is enough to begin with
 FINE = 2.0  # every design is covered within so many times the mean distance of the points asked for
 ROUNDS = 4
 POLISHINGS = 3
+MARGIN = 0.99
 ROUNDED = 2e-9
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
@@ -331,7 +332,7 @@ class FrontSearch:
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
-        self.proven: float | None = None
+        self.proven: list[np.ndarray] = []  # slacks within which known designs cover everything
         self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.complete = False
@@ -343,6 +344,7 @@ class FrontSearch:
         self.proven_designs = set[bytes]()
         self.looked = 0
         self.by_steps = False  # whether a front at once has turned out to cost too much
+        self.may_find_more = True  # unless a try was given up
         self.recalled = list(known)
 
     def _formulation(self, conflict: bool) -> Formulation:
@@ -403,19 +405,30 @@ class FrontSearch:
 
     def _stop_early(self) -> None:
         """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""
-        multiples = [] if self.covering is None else [self._multiple(self.covering)]
-        if self.current is not None and self.clock.open:
-            open_slack = proven_slack(self.form, self.purpose, Boxes.joined(self.clock.open))
-            multiples.append(max(self._multiple(self.current), open_slack))
-        if multiples and self.closed:
-            self.proven = self._gap_of(min(multiples))
+        if self.closed:
+            self.proven = [] if self.covering is None else [self.covering.slack]
+            if self.current is not None and self.clock.open:
+                self.proven.append(self._covering_slack(self.current, Boxes.joined(self.clock.open)))
         self.closed = self.exhausted = self.complete = False
-        archive = self.form.archive
-        self.front = self._spread(list(archive), self.points)
+        some = self._spread(list(self.form.archive), self._more_than_asked)
+        self.front = self._spread(distinct(some, self.m), self.points)
 
-    def _gap_of(self, multiple: float) -> float:
-        """Return the gap that a multiple of the slack of this run stands for."""
-        return float(-np.expm1(max(multiple, 1.0) * np.log1p(-self.gap)))
+    def _covering_slack(self, purpose: Cover, left: Boxes) -> np.ndarray:
+        """Return the slack within which known designs cover all, where a cover left some boxes open."""
+        multiple = proven_slack(self.form, self.purpose, left)
+        slack: np.ndarray = np.maximum(purpose.slack, multiple * self.purpose.slack)
+        return slack
+
+    def _proven_gap(self) -> float | None:
+        """Return the gap that bounds prove of the designs listed, where it is not the one asked for; none, if any."""
+        if not self.front or not self.proven:
+            return None
+        phi = np.array([c.phi[: self.m] for c in self.front])
+        sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
+        signed = ~self.form.log_goals[: self.m]
+        gaps = [np.where(signed, s / np.maximum(sizes, 1e-9), -np.expm1(-s)).max() for s in self.proven]
+        least = max(float(min(gaps)), self.gap)
+        return least if least < 1 else None
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
         begin = time.monotonic()
@@ -572,7 +585,7 @@ class FrontSearch:
             left = left.take(fine.room(form.phi_of(left.bounds)) > 0)
             self.closed = not len(left)
             if not self.closed:
-                self.proven = self._gap_of(max(self._multiple(fine), proven_slack(form, self.purpose, left)))
+                self.proven = [self._covering_slack(fine, left)]
         self.open_combinations = float(form.cells.size(left.cell).sum())
 
     def _fine(self) -> Cover:
@@ -589,23 +602,23 @@ class FrontSearch:
         return Cover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
 
     def _covered(self, purpose: Cover, effort: float, enough: int | None = None) -> Covered:
-        """Cover everything with one slack; what is covered with it stays known if the time runs out later."""
+        """Cover everything with one slack; if the time runs out, the boxes that are open tell what is proven."""
+        self.clock.open = []
         self.current = purpose
         outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
-        self.looked += outcome.looked
-        if outcome.closed:
-            self.covering = purpose
         self.current = None
-        return outcome
+        return self._noted(purpose, outcome)
 
     def _in_steps(self, purpose: Cover) -> Covered:
         """Cover everything with one slack, one objective capped step by step."""
-        self.current = purpose
-        outcome = cover_by_steps(self.form, self.pool, purpose, self.clock, self.rng, self.effort)
+        # The boxes of a step are not all that is open: if the time runs out, they tell nothing.
+        return self._noted(purpose, cover_by_steps(self.form, self.pool, purpose, self.clock, self.rng, self.effort))
+
+    def _noted(self, purpose: Cover, outcome: Covered) -> Covered:
+        """Count the boxes; what is covered with one slack stays known if the time runs out later."""
         self.looked += outcome.looked
         if outcome.closed:
             self.covering = purpose
-        self.current = None
         return outcome
 
     def _multiple(self, purpose: Cover) -> float:
@@ -614,12 +627,10 @@ class FrontSearch:
 
     def _choose(self) -> None:
         """Choose the designs to return and prove them; where too few are known, look for more until nothing is left."""
-        for _ in range(ROUNDS):
-            # Some more than asked for: designs that turn out to be beaten by the same better one become one.
-            self.front = self._polished(self.points + self.points // 3 + 5)
+        for last in (*(False,) * (ROUNDS - 1), True):
+            self.front = self._polished(self._more_than_asked)
             self._rescale()
-            few = len(self.front) < self.points and not (self.by_steps and self._proven_at_gap())
-            if self.closed and not self.complete and few and self._look_for_more():
+            if not last and self._too_few() and self._look_for_more():
                 continue
             if not self.closed or self.complete or self._proven_at_gap() or self._prove():
                 break
@@ -627,6 +638,17 @@ class FrontSearch:
             covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, EFFORT).closed
             self.complete = covered and self._stand_for_all()
         self.front = self._spread(self.front, self.points)
+
+    @property
+    def _more_than_asked(self) -> int:
+        """Some more than asked for: designs that turn out to be equal, or beaten by the same one, become one."""
+        return self.points + self.points // 3 + 5
+
+    def _too_few(self) -> bool:
+        """Tell whether fewer designs are chosen than asked for, and there may be more."""
+        if len(self.front) >= self.points or not self.closed or self.complete:
+            return False
+        return self.may_find_more and not (self.by_steps and self._proven_at_gap())
 
     def _spread(self, designs: Sequence[Candidate], most: int) -> list[Candidate]:
         """Return those designs, at most so many, that spread best; the best in each objective among them."""
@@ -644,9 +666,11 @@ class FrontSearch:
         """Measure the gap of objectives that can be zero against their range on this front."""
         phi = np.array([c.phi for c in self.front])
         sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
-        slack = np.minimum(self.purpose.slack, self._slack(sizes)[: self.m])
-        if np.any(slack < self.purpose.slack):
-            self.purpose.slack = slack
+        needed = self._slack(sizes)[: self.m]
+        too_wide = needed < self.purpose.slack
+        if np.any(too_wide):
+            # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
+            self.purpose.slack = np.where(too_wide, MARGIN * needed, self.purpose.slack)
             self.proven_designs.clear()
 
     def _proven_at_gap(self) -> bool:
@@ -670,7 +694,7 @@ class FrontSearch:
         known, effort = self.form.archive.phi, FILL_EFFORT + self.looked
         if self.by_steps:
             # Not everything that is not dominated, but everything that the gap tells apart.
-            self.closed = self._in_steps(self._with_slack(self.purpose.slack)).closed
+            self.may_find_more = self._in_steps(self._with_slack(self.purpose.slack)).closed
             return not np.array_equal(self.form.archive.phi, known)
         outcome = self._covered(self._with_slack(np.full(self.m, TIE)), effort, self.points)
         self.complete = outcome.closed and len(self.form.archive) <= self.points
@@ -678,35 +702,22 @@ class FrontSearch:
 
     def _prove(self) -> bool:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
-        form = self.form
-        if self.by_steps:
-            return self._prove_in_steps()
-        proven = self.proven_designs
+        form, proven = self.form, self.proven_designs
         stairs = Staircase(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
-        outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
+        if self.by_steps:
+            outcome = prove_by_steps(form, self.pool, stairs, self.clock, self.rng, self.effort)
+        else:
+            outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
         self.looked += outcome.looked
         replaced = any(a is not b for a, b in zip(stairs.designs, self.front, strict=True))
         if not outcome.closed:
             self._exhaust(outcome.open, self.purpose)
-            return True
+            self.proven = [] if self.covering is None else [self.covering.slack]
         finished = stairs.finished()
-        proven.update(c.phi.tobytes() for c in finished)
         self.front = distinct(finished, self.m)
-        return not replaced or len(self.front) >= self.points
-
-    def _prove_in_steps(self) -> bool:
-        """Prove the designs chosen one after the other; tell whether all stand."""
-        form, slack = self.form, self.purpose.slack
-        asked = [c for c in self.front if c.phi.tobytes() not in self.proven_designs]
-        stand, open_ends, looked = prove_ends(form, self.pool, slack, self.clock, self.rng, self.effort)
-        each, left, more = prove_by_steps(form, self.pool, asked, slack, self.clock, self.rng, self.effort)
-        self.looked += looked + more
-        left = Boxes.joined([open_ends, left])
-        if len(left):
-            self._exhaust(left, self.purpose)
-            return True
-        self.proven_designs.update(c.phi.tobytes() for c, good in zip(asked, each, strict=True) if good)
-        return stand and all(each)
+        if outcome.closed:
+            proven.update(c.phi.tobytes() for c in finished)
+        return not outcome.closed or not replaced or len(self.front) >= self.points
 
     # -- afterwards ----------------------------------------------------------------------------
 
@@ -830,7 +841,7 @@ class FrontSearch:
     ) -> ParetoFront:
         total, selection = self.instance.combinations, self.instance.selection
         kind = "global" if self.closed else "exhaustive" if self.exhausted and not interrupted else "heuristic"
-        gap = (self.gap if designs else None) if kind == "global" else self.proven
+        gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
         solved = len(self.form.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
         certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved)

@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from synth.clock import Clock
-from synth.cover import Covered, cover
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
-from synth.purposes import Cover
+from synth.cover import Covered, best
+from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.purposes import Cover, Staircase
 from synth.seeker import Seeker
 from synth.settle import settle_variables
 
@@ -47,99 +47,75 @@ def cover_by_steps(
     half = purpose.slack[SOUGHT] / 2
     plain = np.full(len(form.goals), np.inf)
     # The other end first: good designs there are often not far from good in both.
-    end = Cover([CAPPED], purpose.slack[CAPPED : CAPPED + 1], plain, Archive([CAPPED], form.n, len(form.goals)))
-    end.take(form.archive.combination, form.archive.variables, form.archive.phi)
-    looked, left = cover(form, pool, end, clock, rng, effort).looked, [form.lean(form.nothing())]
+    _, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
+    looked, left = end.looked, [form.lean(form.nothing())]
     Seeker(form, purpose, rng, False).beside(clock)
     while True:
-        step = _step(form, half, plain)
-        outcome = cover(form, pool, step, clock, rng, effort)
+        found, outcome = best(form, pool, SOUGHT, plain.copy(), half, clock, rng, effort=effort)
         looked += outcome.looked
         left.append(form.lean(outcome.open))
-        if not len(step.known):
+        if found is None:
             break
-        _stretch(form, step.known[0], half)
+        _stretch(form, found, half)
         phi = form.archive.phi
-        good = (phi[:, SOUGHT] <= step.known.phi[0, SOUGHT] + half) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)
+        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + half) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)
         plain[CAPPED] = phi[good, CAPPED].min() - purpose.slack[CAPPED]
     still = Boxes.joined(left)
     return Covered(still.take(purpose.room(form.phi_of(still.bounds)) > 0), looked)
 
 
 def prove_by_steps(
-    form: Formulation,
-    pool: Boxes,
-    designs: list[Candidate],
-    slack: np.ndarray,
-    clock: Clock,
-    rng: np.random.Generator,
-    effort: float,
-) -> tuple[list[bool], Boxes, int]:
-    """Prove that nothing is better than a design by more than the slack in both objectives, design by design.
+    form: Formulation, pool: Boxes, stairs: Staircase, clock: Clock, rng: np.random.Generator, effort: float
+) -> Covered:
+    """Prove the designs of a staircase, as a cover of it does, design by design; the ends first.
 
-    What is better is found on the way and goes into the archive of the formulation.
+    A design that is beaten is replaced by the best that its step allows, which is thereby proven itself.
 
     Parameters
     ----------
     form, pool, clock, rng, effort
         As for :func:`cover_by_steps`.
-    designs : list of Candidate
-        None dominated by a known one.
-    slack : array (2,)
-        In phi.
+    stairs : Staircase
+        Designs, of two objectives; those that need no proof are left out.
 
     Returns
     -------
-    tuple
-        Whether each design stands, what was left open, and how many boxes were looked into.
+    Covered
+        What was left open.
     """
-    stands, left, looked = [], [form.lean(form.nothing())], 0
-    for design in designs:
-        plain = np.full(len(form.goals), np.inf)
-        plain[CAPPED] = design.phi[CAPPED] - slack[CAPPED]
-        step = _step(form, slack[SOUGHT], plain)
-        _bar(step, design.phi[SOUGHT])
-        outcome = cover(form, pool, step, clock, rng, effort)
+    nowhere, looked, left = np.full(len(form.goals), np.inf), 0, [form.lean(form.nothing())]
+
+    def least(k: int, plain: np.ndarray, phi: float) -> float:
+        nonlocal looked
+        found, outcome = best(form, pool, k, plain, stairs.slack[k], clock, rng, _bar(form, k, phi), effort)
         looked += outcome.looked
         left.append(form.lean(outcome.open))
-        stands.append(step.known.phi[0, SOUGHT] >= design.phi[SOUGHT] - slack[SOUGHT])
-    return stands, Boxes.joined(left), looked
+        if found is None or found.combination < 0:
+            return phi
+        stairs.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
+        return float(found.phi[k])
+
+    ends = [least(k, nowhere, min(c.phi[k] for c in stairs.designs)) for k in (CAPPED, SOUGHT)]
+    for design in stairs.unproven():
+        replaced = not any(c is design for c in stairs.designs)
+        if replaced or design.phi[CAPPED] <= ends[CAPPED] or design.phi[SOUGHT] <= ends[SOUGHT]:
+            continue
+        plain = nowhere.copy()
+        plain[CAPPED] = design.phi[CAPPED] - stairs.slack[CAPPED]
+        least(SOUGHT, plain, design.phi[SOUGHT])
+    return Covered(Boxes.joined(left), looked)
 
 
-def prove_ends(
-    form: Formulation, pool: Boxes, slack: np.ndarray, clock: Clock, rng: np.random.Generator, effort: float
-) -> tuple[bool, Boxes, int]:
-    """Prove that the best known in each objective is the best there is; tell so, what is open, and the boxes."""
-    stand, left, looked = True, [form.lean(form.nothing())], 0
-    for k in (CAPPED, SOUGHT):
-        best = form.archive.phi[:, k].min()
-        step = Cover([k], slack[k : k + 1], np.full(len(form.goals), np.inf), Archive([k], form.n, len(form.goals)))
-        step.take(form.archive.combination, form.archive.variables, form.archive.phi)
-        outcome = cover(form, pool, step, clock, rng, effort)
-        looked += outcome.looked
-        left.append(form.lean(outcome.open))
-        stand &= bool(step.known.phi[0, k] >= best - slack[k])
-    return stand, Boxes.joined(left), looked
+def _bar(form: Formulation, k: int, phi: float) -> Candidate:
+    """Return what must be beaten: a value of one objective that no design stands for."""
+    return Candidate(-1, np.full(form.n, np.nan), np.where(np.arange(len(form.goals)) == k, phi, -np.inf))
 
 
-def _step(form: Formulation, slack: float, plain: np.ndarray) -> Cover:
-    """Return the search for the best in the second objective, with the designs known that keep the cap."""
-    step = Cover([SOUGHT], np.array([slack]), plain.copy(), Archive([SOUGHT], form.n, len(form.goals)))
-    step.take(form.archive.combination, form.archive.variables, form.archive.phi)
-    return step
-
-
-def _bar(step: Cover, phi: float) -> None:
-    """Set what must be beaten: a value of the second objective that no design stands for."""
-    row = np.where(np.arange(len(step.plain)) == SOUGHT, phi, -np.inf)
-    step.known.add(np.array([-1]), np.full((1, step.known.variables.shape[1]), np.nan), row[None, :])
-
-
-def _stretch(form: Formulation, best: Candidate, room: float) -> None:
+def _stretch(form: Formulation, found: Candidate, room: float) -> None:
     """Add what the parts of a design reach in the first objective while the second gives way a little."""
-    given = np.where(np.arange(len(best.phi)) == SOUGHT, room, 0.0)
-    loose = Candidate(best.combination, best.variables, best.phi + given)
+    given = np.where(np.arange(len(found.phi)) == SOUGHT, room, 0.0)
+    loose = Candidate(found.combination, found.variables, found.phi + given)
     points = settle_variables(form, [loose], 2, [CAPPED])[0].variables[None, :]
-    combination = np.array([best.combination])
+    combination = np.array([found.combination])
     rows, phi = form.feasible_rows(points, combination)
     form.archive.add(combination[rows], points[rows], phi[rows])

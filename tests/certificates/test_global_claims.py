@@ -6,7 +6,7 @@ A failing id names structure and seed; ``pytest tests/certificates -k "waves-3]"
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 
@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 
 import synth
+from synth import search
+from synth.steps import cover_by_steps
 from tests.certificates.reference import TOLERANCE, Points, Reference
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
 
@@ -243,6 +245,71 @@ def test_a_front_claims_nothing_that_is_wrong(structure, seed):
 def test_what_bounds_can_prove_is_proven(structure):
     kinds = Counter(answer(structure, seed).front.certificate.kind for seed in range(INSTANCES[structure]))
     assert kinds["global"] >= INSTANCES[structure] - 1, f"{structure}: {dict(kinds)}"
+
+
+# -- fronts step by step ---------------------------------------------------------------------------
+
+TWO_OBJECTIVES = (
+    "posynomial", "signomial", "waves", "pieces", "polynomials", "discrete", "choices", "optional", "gridded",
+    "grid_off", "alternatives", "maximised", "knife_edge", "equality", "scales", "one_feasible",
+)  # fmt: skip
+IN_STEPS = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(3)]
+
+
+@pytest.fixture
+def steps(monkeypatch):
+    """Let every front of two objectives go step by step; the boxes looked into by each pass over it."""
+    looked = []
+
+    def counted(*arguments):
+        outcome = cover_by_steps(*arguments)
+        looked.append(outcome.looked)
+        return outcome
+
+    monkeypatch.setattr(search, "TOGETHER", -1)
+    monkeypatch.setattr(search, "MANY", 0)
+    monkeypatch.setattr(search, "cover_by_steps", counted)
+    return looked
+
+
+@pytest.mark.parametrize(("structure", "seed"), IN_STEPS)
+def test_a_front_step_by_step_claims_nothing_that_is_wrong(steps, structure, seed):
+    case = make(structure, seed)
+    a = Answer(case, run(case), Reference(case))
+    assert steps or not a.front.designs or len(a.case.objectives) != 2 or a.proven
+    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+
+
+def of_two(structure: str, seed: int, points: int) -> Case:
+    """Return a case with its first two objectives."""
+    case = make(structure, seed)
+    return replace(case, objectives=dict(list(case.objectives.items())[:2]), points=points)
+
+
+@pytest.mark.parametrize("points", [5, 20])
+@pytest.mark.parametrize("effort", [100, 1000, 5000])
+@pytest.mark.parametrize(
+    ("structure", "seed"), [("gridded", 3), ("hard", 0), ("waves", 0), ("waves", 1), ("products", 1)]
+)
+def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, monkeypatch, effort, points, structure, seed):
+    monkeypatch.setattr(search, "EFFORT_WITH_FEW_PARTS", effort)
+    monkeypatch.setattr(search, "EFFORT_WITH_MANY", effort)
+    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 0)  # what stays open is left to chance, and said so
+    case = of_two(structure, seed, points)
+    a = Answer(case, run(case), Reference(case))
+    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+
+
+@pytest.mark.parametrize("seconds", [0.05, 0.15, 0.5])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(steps, seconds, seed):
+    case = of_two("hard", seed, 5)
+    a = Answer(case, run(case, time_limit=seconds), Reference(case))
+    assert a.proven or a.front.interrupted == "time limit"
+    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])
 
 
 def test_there_are_enough_instances_of_every_kind():
