@@ -9,6 +9,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, tell
+from synth.terminal_options import Folder, FrontFolder, Quiet, Seed, TimeLimit
 
 if TYPE_CHECKING:
     from synth.spec import Spec
@@ -21,14 +22,14 @@ def register(app: typer.Typer) -> None:
 
 
 def near_equals(
-    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    source: FrontFolder,
+    folder: Folder,
     design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
     within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
     count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
-    seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    seed: Seed[int] = 0,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
 ) -> None:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
     check_output(folder)
@@ -55,15 +56,15 @@ def near_equals(
 
 
 def prices(
-    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    source: FrontFolder,
+    folder: Folder,
     design: Annotated[
         list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
     ] = None,
     step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    time_limit: TimeLimit = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
     check_output(folder)
