@@ -37,8 +37,8 @@ def near_equals(
         raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
     from synth.choice_console import print_near_equals
     from synth.console import output, progress_display
+    from synth.loading import load_front
     from synth.near import near_equals as find
-    from synth.results import load_front
     from synth.units import parse_quantity
 
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
@@ -70,8 +70,8 @@ def prices(
     check_output(folder)
     from synth.choice_console import print_prices
     from synth.console import output, progress_display
+    from synth.loading import load_front
     from synth.pricing import prices as find
-    from synth.results import load_front
     from synth.units import parse_quantity
 
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
@@ -105,7 +105,7 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.choice_console import comparison_explanation, print_comparison
     from synth.comparison import compare
     from synth.console import output, progress_display
-    from synth.results import write_atomically
+    from synth.files import write_atomically
     from synth.tables import Catalogs
 
     with blamed_on(asked.file), progress_display(quiet) as progress:

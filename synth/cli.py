@@ -320,7 +320,7 @@ def verify(
 ) -> None:
     """Check a saved front without the search: its files, every design, and the proof of the certificate."""
     from synth.console import output, print_verification
-    from synth.results import load_front
+    from synth.loading import load_front
     from synth.units import parse_quantity
     from synth.verify_comparison import is_comparison, verify_comparison
 
@@ -381,7 +381,7 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
 def _write_explanation(front: ParetoFront, folder: Path) -> str:
     """Keep explanation.txt beside the front where nothing is feasible, and only there."""
     from synth.console import explanation_text
-    from synth.results import write_atomically
+    from synth.files import write_atomically
 
     path = folder / "explanation.txt"
     if front.explanation is None:

@@ -75,7 +75,7 @@ def rate(
 def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
     """Return the designs of a folder or of a DESIGN.yaml, their problem and tables, and what scatters by their own."""
     if source.suffix.lower() not in FILES or source.is_dir():
-        from synth.results import load_front
+        from synth.loading import load_front
 
         front = load_front(source)
         return front, None, None, dict(front.frame.restated.get("robust") or {})

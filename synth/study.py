@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
-from synth.results import Design, Frame, ParetoFront, csv_text
+from synth.files import csv_text
+from synth.results import Design, Frame, ParetoFront
 from synth.terminal import report, write_all
 from synth.units import from_si, header
 from synth.vary import Value, Varied

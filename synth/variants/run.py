@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
+from synth.files import csv_text, write_atomically
 from synth.instance import as_catalogs
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.run import DATABASE, BatchResult
 from synth.jobs.store import Store, file_url
 from synth.model import Model
 from synth.problem import load
-from synth.results import csv_text, shown_value, write_atomically
+from synth.results import shown_value
 from synth.units import header
 from synth.variants.choose import Choice, Chooser
 from synth.variants.coverage import Asked, Structure, Variant, objective_of_pairs, pinned_by_all
