@@ -1,8 +1,8 @@
-"""Curves that clutches with a coil share: torque over the temperature of the coil, and the heat balance."""
+"""What the curves of clutches with a coil share: flux of ampere-turns, torque over temperature, heat balance."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +55,39 @@ class Warmth:
             {"x": self.ambient + rise - ZERO_CELSIUS, "label": "steady"},
             {"x": self.limit - ZERO_CELSIUS, "label": self.limited_by},
         ]
+
+
+def flux_densities(ampere_turns: Any, excitation: Callable[[Any], Any], highest: float) -> np.ndarray:
+    """Return the flux densities that ampere-turns give, by bisection.
+
+    Parameters
+    ----------
+    ampere_turns : array
+        NI [A], not negative.
+    excitation : callable
+        NI(B) [A] of a flux density [T], rising; it may divide by zero where the iron saturates.
+    highest : float
+        Flux density at which the iron saturates [T].
+
+    Returns
+    -------
+    numpy.ndarray
+        B [T].
+    """
+
+    def below_saturation(flux_density: Any) -> Any:
+        with np.errstate(divide="ignore"):  # the pole at saturation, which the bisection may touch
+            value = excitation(flux_density)
+        return np.where(np.isfinite(value), value, np.inf)
+
+    given = np.asarray(ampere_turns, dtype=float)
+    return np.array([magnetics.flux_density_at(x, below_saturation, highest) for x in given])
+
+
+def current_marks(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
+    """Return the current of a design and the highest that its wire may carry [A] as marks."""
+    highest = spec["current_density_limit"] * design.parts["winding_wire"]["copper_area"]
+    return [{"x": design.values["current"], "label": "design"}, {"x": highest, "label": "current_density_limit"}]
 
 
 def torque_over_temperature(

@@ -47,13 +47,7 @@ class Built:
     def flux_density(self, ampere_turns: Any) -> np.ndarray:
         """Return the flux densities that ampere-turns give, by bisection [T]."""
         highest = self.iron_saturation / float(np.maximum(self.pole(1.0), self.yoke(1.0)))
-        given = np.asarray(ampere_turns, dtype=float)
-        return np.array([magnetics.flux_density_at(x, self._below_saturation, highest) for x in given])
-
-    def _below_saturation(self, flux_density: Any) -> Any:
-        with np.errstate(divide="ignore"):  # the pole at saturation, which the bisection may touch
-            value = self.ampere_turns(flux_density)
-        return np.where(np.isfinite(value), value, np.inf)
+        return coil_curves.flux_densities(ampere_turns, self.ampere_turns, highest)
 
     def force(self, flux_density: Any) -> Any:
         """Return what is left for the pack [N]."""
@@ -188,13 +182,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
             {"label": "flux density [T]", "columns": ["poles [T]", "yoke [T]"]},
             {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
         ],
-        "marks": [
-            {"x": value["current"], "label": "design"},
-            {
-                "x": spec["current_density_limit"] * design.parts["winding_wire"]["copper_area"],
-                "label": "current_density_limit",
-            },
-        ],
+        "marks": coil_curves.current_marks(spec, design),
         "lines": [
             *lines,
             {"panel": 1, "y": needed, "label": "pull_in"},

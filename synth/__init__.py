@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from synth.explanation import Explanation, Relaxation, explain
     from synth.hooks import curves, second_opinion, simulate
     from synth.jobs.run import BatchResult, batch
+    from synth.loading import load_front
     from synth.near import NearEquals, near_equals
     from synth.price_list import Price, Prices
     from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
-    from synth.results import Design, ParetoFront, load_front
+    from synth.results import Design, ParetoFront
     from synth.robust import Ratings, rate
     from synth.search import synthesize
     from synth.study import Study
@@ -88,7 +89,7 @@ _HOME = {
     "explain": "synth.explanation",
     "families": "synth.problem",
     "load": "synth.problem",
-    "load_front": "synth.results",
+    "load_front": "synth.loading",
     "near_equals": "synth.near",
     "prices": "synth.pricing",
     "rate": "synth.robust",

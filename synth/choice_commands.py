@@ -9,6 +9,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, tell
+from synth.terminal_options import Folder, FrontFolder, Quiet, Seed, TimeLimit
 
 if TYPE_CHECKING:
     from synth.spec import Spec
@@ -21,14 +22,14 @@ def register(app: typer.Typer) -> None:
 
 
 def near_equals(
-    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    source: FrontFolder,
+    folder: Folder,
     design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
     within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
     count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
-    seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    seed: Seed[int] = 0,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
 ) -> None:
     """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
     check_output(folder)
@@ -36,8 +37,8 @@ def near_equals(
         raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
     from synth.choice_console import print_near_equals
     from synth.console import output, progress_display
+    from synth.loading import load_front
     from synth.near import near_equals as find
-    from synth.results import load_front
     from synth.units import parse_quantity
 
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
@@ -55,22 +56,22 @@ def near_equals(
 
 
 def prices(
-    source: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    source: FrontFolder,
+    folder: Folder,
     design: Annotated[
         list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
     ] = None,
     step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    time_limit: TimeLimit = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
     check_output(folder)
     from synth.choice_console import print_prices
     from synth.console import output, progress_display
+    from synth.loading import load_front
     from synth.pricing import prices as find
-    from synth.results import load_front
     from synth.units import parse_quantity
 
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
@@ -104,7 +105,7 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.choice_console import comparison_explanation, print_comparison
     from synth.comparison import compare
     from synth.console import output, progress_display
-    from synth.results import write_atomically
+    from synth.files import write_atomically
     from synth.tables import Catalogs
 
     with blamed_on(asked.file), progress_display(quiet) as progress:

@@ -31,6 +31,7 @@ from synth.terminal import (
     tell,
     write_all,
 )
+from synth.terminal_options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
 from synth.variants import commands as size_ranges
 
 if TYPE_CHECKING:
@@ -60,9 +61,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
-SpecFile = Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")]
 DesignFile = Annotated[Path, typer.Argument(help="A design: a spec with values and parts.", metavar="DESIGN.yaml")]
-Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")]
 
 
 def main() -> None:
@@ -154,19 +153,14 @@ def run(
     spec: SpecFile,
     folder: Folder,
     points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
-    gap: Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")] = None,
-    grid: Annotated[bool | None, typer.Option("--grid/--no-grid", help="Makeable sizes only.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of the random starts.")] = None,
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
+    gap: Gap = None,
+    grid: Grid[bool | None] = None,
+    seed: Seed[int | None] = None,
+    time_limit: TimeLimit = None,
     workers: Annotated[int | None, typer.Option(help="Processes to use.")] = None,
-    objective: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"
-        ),
-    ] = None,
+    objective: Objectives = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Search the designs for a spec, show them ranked and save them."""
     from synth.spec import read_spec
@@ -197,8 +191,8 @@ def explain(
     folder: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for explanation.csv and .json.", metavar="DIR")
     ] = None,
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
 ) -> None:
     """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
     from synth.console import output, print_explanation, progress_display
@@ -319,14 +313,14 @@ def curves(
 
 @app.command()
 def verify(
-    folder: Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")],
+    folder: FrontFolder,
     time_limit: Annotated[
         str | None, typer.Option(help="Give the proof up after this time, in seconds or such as '2 min'.")
     ] = None,
 ) -> None:
     """Check a saved front without the search: its files, every design, and the proof of the certificate."""
     from synth.console import output, print_verification
-    from synth.results import load_front
+    from synth.loading import load_front
     from synth.units import parse_quantity
     from synth.verify_comparison import is_comparison, verify_comparison
 
@@ -387,7 +381,7 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
 def _write_explanation(front: ParetoFront, folder: Path) -> str:
     """Keep explanation.txt beside the front where nothing is feasible, and only there."""
     from synth.console import explanation_text
-    from synth.results import write_atomically
+    from synth.files import write_atomically
 
     path = folder / "explanation.txt"
     if front.explanation is None:

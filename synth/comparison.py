@@ -20,8 +20,9 @@ import numpy as np
 from synth.clock import Stopped
 from synth.errors import InputError
 from synth.feasibility import Status
+from synth.files import csv_text, save_files
 from synth.pareto import rank, spread_subset
-from synth.results import Certificate, Design, ParetoFront, csv_text, design_columns, design_row, save_files
+from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.search import FrontSearch, pose
 from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
 from synth.tables import Catalogs

@@ -18,7 +18,8 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from synth.results import Design, ParetoFront, write_atomically
+from synth.files import write_atomically
+from synth.results import Design, ParetoFront
 from synth.units import format_quantity, from_si, split_header
 
 if TYPE_CHECKING:

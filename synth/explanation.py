@@ -14,11 +14,12 @@ import casadi as ca
 from synth.analysis import evaluate
 from synth.clock import Stopped
 from synth.errors import InputError
+from synth.files import write_atomically
 from synth.instance import SIGNS, Instance, as_mapping, catalogs_for
 from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
-from synth.results import Design, ParetoFront, write_atomically
+from synth.results import Design, ParetoFront
 from synth.search import one_best
 from synth.special import expanded
 from synth.tables import Catalogs

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from synth.results import installed_versions
+from synth.front_record import installed_versions
 
 
 @lru_cache(maxsize=1)

@@ -23,11 +23,12 @@ from synth.clock import Clock, Stopped
 from synth.cover import cover
 from synth.errors import InputError
 from synth.feasibility import Status
+from synth.files import csv_text, save_files
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
 from synth.instance import Instance
 from synth.purposes import Cover
 from synth.question import combination_of, question_of
-from synth.results import Design, ParetoFront, csv_text, design_columns, design_row, save_files
+from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.seeker import EDGE, Seeker, roundings
 from synth.settle import settle_discrete, settle_variables
 from synth.units import parse_quantity

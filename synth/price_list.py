@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.results import Frame, csv_text, write_atomically
+from synth.files import csv_text, write_atomically
+from synth.results import Frame
 
 if TYPE_CHECKING:
     import pandas as pd

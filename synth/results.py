@@ -1,22 +1,18 @@
-"""Results: designs and fronts, immutable, and the files they are saved to."""
+"""Results: designs and fronts, immutable, and the tables that are made of them."""
 
 from __future__ import annotations
 
-import csv
-import hashlib
-import io
-import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from synth.errors import InputError
 from synth.feasibility import Status
+from synth.files import csv_text, save_files
+from synth.front_record import digest_of, front_record, record_text
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.units import format_quantity, from_si, header
 
@@ -24,9 +20,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.verify import Verification
-
-FORMAT = 1
-RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
 
 
 class PartRow(Mapping[str, Any]):
@@ -126,29 +119,6 @@ class Design:
         text: str = yaml.safe_dump(self.to_spec(), sort_keys=False, allow_unicode=True, width=120)
         return text
 
-    def _as_json(self) -> dict[str, Any]:
-        return {
-            "rank": self.rank,
-            "score": self.score,
-            "status": self.status.value,
-            "gap": self.gap,
-            "note": self.note,
-            "alternatives": list(self.alternatives),
-            "objectives": _clean(self.objectives),
-            "values": _clean(self.values),
-            "choices": dict(self.choices),
-            "parts": {slot: f"{row['table']}/{row}" for slot, row in self.parts.items()},
-            "limits": {n: [_finite(v), _finite(x)] for n, (v, x) in self.limits.items()},
-            "residuals": _clean(self.residuals),
-            "utilisation": {n: None if u is None else _finite(u) for n, u in self.utilisation.items()},
-            "elasticity": {o: _clean(e) for o, e in self.elasticity.items()},
-            "off_grid": dict(self.off_grid),
-            "advice": list(self.advice),
-            "violated": list(self.violated),
-            "not_checked": list(self.not_checked),
-            **({"robust": _plain(self.robust)} if self.robust else {}),
-        }
-
 
 @dataclass(frozen=True)
 class Certificate:
@@ -222,7 +192,7 @@ class ParetoFront:
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""
         width = max(2, len(str(len(self.designs))))
-        found = {"designs.csv": self._csv(), "front.json": self._json()}
+        found = {"designs.csv": self._csv(), "front.json": record_text(front_record(self))}
         if any(design.robust for design in self.designs):
             found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
@@ -271,152 +241,10 @@ class ParetoFront:
     def _csv(self) -> str:
         return csv_text(*self._table())
 
-    def _json(self) -> str:
-        rows: dict[str, dict[str, Any]] = {}
-        for design in self.designs:
-            for row in design.parts.values():
-                rows.setdefault(f"{row['table']}/{row}", {k: _finite(v) for k, v in row.items()})
-        frame = self.frame
-        content = {
-            "format": FORMAT,
-            "family": frame.family,
-            "title": frame.title,
-            "options": dict(frame.options),
-            "requirements": dict(frame.requirements),
-            "requirement_values_si": dict(frame.requirement_values),
-            "not_asked": list(frame.not_asked),
-            "objectives": dict(frame.objectives),
-            "units": dict(frame.units),
-            "kinds": dict(frame.kinds),
-            "limit_units": dict(frame.limit_units),
-            "limit_senses": dict(frame.limit_senses),
-            "restated": _plain(frame.restated),
-            "settings": dict(self.settings),
-            "versions": installed_versions(),
-            "status": self.status.value,
-            "interrupted": self.interrupted,
-            "complete": self.complete,
-            "certificate": self.certificate.__dict__ | {"gap": _finite(self.certificate.gap)},
-            "statistics": _plain(self.statistics),
-            "explanation": _plain(self.explanation),
-            "parts": rows,
-            "designs": [d._as_json() for d in self.designs],
-        }
-        content["digest"] = self.digest_of(content)
-        return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-
     @staticmethod
     def digest_of(content: Mapping[str, Any]) -> str:
         """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
-        text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
-        return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
-
-
-def load_front(folder: str | Path) -> ParetoFront:
-    """Rebuild a front from the files that ``save`` wrote.
-
-    Parameters
-    ----------
-    folder : path
-        The folder, or its front.json.
-
-    Raises
-    ------
-    InputError
-        When there is no front, or it is of another format.
-    """
-    path = Path(folder)
-    path = path / "front.json" if path.is_dir() else path
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, json.JSONDecodeError) as error:
-        raise InputError("front", str(path), f"a front.json that clutchsynth wrote ({error})") from error
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise InputError(
-            f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
-        )
-    return front_of_record(content, path)
-
-
-def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
-    """Rebuild a front from the content of its front.json.
-
-    Parameters
-    ----------
-    content : dict
-    path : Path
-        Where it stands, for messages.
-
-    Raises
-    ------
-    InputError
-        When it is not complete.
-    """
-    try:
-        return _front_from_json(content, path.parent)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(f"front {path}", str(error), "a front.json that is complete") from error
-
-
-def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
-    frame = Frame(
-        family=content["family"],
-        title=content["title"],
-        options=content["options"],
-        requirements=content["requirements"],
-        requirement_values=content["requirement_values_si"],
-        not_asked=tuple(content["not_asked"]),
-        objectives=content["objectives"],
-        units=content["units"],
-        kinds=content["kinds"],
-        limit_units=content["limit_units"],
-        limit_senses=content["limit_senses"],
-        restated=dict(content["restated"]),
-    )
-    rows = content["parts"]
-    designs = [_design_from_json(frame, d, rows) for d in content["designs"]]
-    return ParetoFront(
-        frame=frame,
-        designs=designs,
-        status=Status(content["status"]),
-        complete=content["complete"],
-        statistics=content["statistics"],
-        certificate=Certificate(**content["certificate"]),
-        explanation=content["explanation"],
-        settings=content["settings"],
-        interrupted=content["interrupted"],
-        record=content,
-        folder=folder,
-    )
-
-
-def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str, Any]]) -> Design:
-    parts = {}
-    for slot, key in d["parts"].items():
-        row = rows[key]
-        parts[slot] = PartRow(row["table"], row["hash"], {k: v for k, v in row.items() if k not in ("table", "hash")})
-    return Design(
-        frame=frame,
-        values={n: _number(v) for n, v in d["values"].items()},
-        parts=parts,
-        choices=d["choices"],
-        objectives={n: _number(v) for n, v in d["objectives"].items()},
-        limits={n: (_number(v), _number(x)) for n, (v, x) in d["limits"].items()},
-        residuals={n: _number(v) for n, v in d["residuals"].items()},
-        utilisation={n: None if u is None else float(u) for n, u in d["utilisation"].items()},
-        status=Status(d["status"]),
-        elasticity={o: {n: _number(v) for n, v in e.items()} for o, e in d["elasticity"].items()},
-        gap=d["gap"],
-        rank=d["rank"],
-        score=d["score"],
-        note=d["note"],
-        alternatives=tuple(d["alternatives"]),
-        off_grid=d["off_grid"],
-        advice=tuple(d["advice"]),
-        violated=tuple(d["violated"]),
-        not_checked=tuple(d["not_checked"]),
-        robust=d.get("robust", {}),
-    )
+        return digest_of(content)
 
 
 def _order(frame: Frame) -> tuple[list[str], list[str]]:
@@ -443,82 +271,9 @@ def design_row(frame: Frame, design: Design) -> list[Any]:
     return row + [design.utilisation.get(n) for n in frame.limit_units]
 
 
-def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Return a table as CSV in full precision; nothing stands where there is no value."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
-    for row in rows:
-        writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
-    return buffer.getvalue()
-
-
-def save_files(folder: str | Path, files: Mapping[str, str]) -> Path:
-    """Write the files of a result and take away designs of an earlier one; return the folder.
-
-    Every file is written beside its place and then renamed, so nothing half-written is ever seen.
-    """
-    target = Path(folder)
-    if target.exists() and not target.is_dir():
-        raise InputError("output", str(folder), "a folder; this is a file")
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        for stale in [*target.glob("design_*.yaml"), target / "robust.csv"]:
-            if stale.name not in files:
-                stale.unlink(missing_ok=True)
-        for name, text in files.items():
-            write_atomically(target / name, text)
-    except OSError as error:
-        raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
-    return target
-
-
-def write_atomically(path: Path, text: str) -> None:
-    """Write a text file so that it is either the old one or the whole new one."""
-    temporary = path.with_name(f".{path.name}.{hashlib.sha256(str(path).encode()).hexdigest()[:8]}.tmp")
-    try:
-        temporary.write_text(text, encoding="utf-8", newline="")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def installed_versions() -> dict[str, str]:
-    """Return the versions of the packages that decide the numbers."""
-    result = {}
-    for name in RECORDED_PACKAGES:
-        try:
-            result[name] = version(name)
-        except PackageNotFoundError:
-            result[name] = "not installed"
-    return result
-
-
-def _number(value: Any) -> float:
-    return float("nan") if value is None else float(value)
-
-
 def shown_value(value: float, unit: str) -> float | None:
     """Return an SI value in the unit of its column; None where it does not exist."""
     return float(from_si(value, unit)) if math.isfinite(value) else None
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float) and math.isinf(value):
-        return "inf" if value > 0 else "-inf"  # JSON has no infinity; float() reads these words back
-    return None if isinstance(value, float) and math.isnan(value) else value
-
-
-def _clean(mapping: Mapping[str, Any]) -> dict[str, Any]:
-    return {k: _finite(float(v)) for k, v in mapping.items()}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
-    return _finite(value)
 
 
 def _percent(gap: float | None) -> str:

@@ -14,13 +14,14 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.feasibility import Status
+from synth.files import csv_text, save_files
 from synth.instance import Instance, catalogs_for
 from synth.pareto import rank
 from synth.posed import nominal, posed
 from synth.problem import DesignProblem, load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
-from synth.results import Design, ParetoFront, csv_text, design_columns, design_row, save_files
+from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.scatter import LIMITS, Asked, read_block
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, pair
+from synth.terminal_options import Folder, Quiet, TimeLimit
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
@@ -23,7 +24,7 @@ def register(app: typer.Typer) -> None:
 
 def rate(
     source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    folder: Folder,
     over: Annotated[
         list[str] | None,
         typer.Option(
@@ -35,8 +36,8 @@ def rate(
     samples: Annotated[int | None, typer.Option(help="Points of the range, a power of 2.")] = None,
     confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
-    time_limit: Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
 ) -> None:
     """Tell the worst limit and the yield of designs whose friction, duty or sizes scatter."""
     pairs = [pair("--over", text) for text in over or []]
@@ -74,7 +75,7 @@ def rate(
 def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
     """Return the designs of a folder or of a DESIGN.yaml, their problem and tables, and what scatters by their own."""
     if source.suffix.lower() not in FILES or source.is_dir():
-        from synth.results import load_front
+        from synth.loading import load_front
 
         front = load_front(source)
         return front, None, None, dict(front.frame.restated.get("robust") or {})

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
+from synth.files import csv_text
 from synth.results import Design, Frame, ParetoFront
 from synth.terminal import report, write_all
 from synth.units import from_si, header
@@ -361,16 +360,6 @@ def binding(design: Design) -> list[str]:
         for name, used in design.utilisation.items()
         if used is not None and used >= BINDING and design.frame.limit_senses[name] != "equal"
     ]
-
-
-def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Return a table as CSV in full precision; nothing stands where there is no value."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
-    for row in rows:
-        writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
-    return buffer.getvalue()
 
 
 def best_design(front: ParetoFront | None, objective: str) -> Design | None:

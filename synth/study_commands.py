@@ -9,6 +9,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, objectives, tell
+from synth.terminal_options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
 
 if TYPE_CHECKING:
     from synth.spec import Spec
@@ -21,7 +22,7 @@ def register(app: typer.Typer) -> None:
 
 
 def whatif(
-    spec: Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")],
+    spec: SpecFile,
     vary: Annotated[
         list[str],
         typer.Option(
@@ -30,25 +31,20 @@ def whatif(
             metavar="TEXT",
         ),
     ],
-    folder: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")],
+    folder: Folder,
     points: Annotated[int | None, typer.Option(help="At most this many designs per step.")] = None,
-    gap: Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")] = None,
-    grid: Annotated[bool | None, typer.Option("--grid/--no-grid", help="Makeable sizes only.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Seed of the random starts.")] = None,
+    gap: Gap = None,
+    grid: Grid[bool | None] = None,
+    seed: Seed[int | None] = None,
     time_limit: Annotated[
         str | None, typer.Option(help="Stop after this time for all steps, in seconds or such as '2 min'.")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Threads to use.")] = None,
-    objective: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"
-        ),
-    ] = None,
+    objective: Objectives = None,
     breaks: Annotated[
         bool, typer.Option("--breaks/--no-breaks", help="Find where the best parts or counts change.")
     ] = True,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Answer a spec for many values of a requirement, limit, weight, part or option; run again to go on."""
     from synth.spec import read_spec

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
+from synth.files import write_atomically
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -65,8 +66,6 @@ def as_csv(frame: pd.DataFrame) -> str:
 
 def write_all(folder: Path, files: Mapping[str, str]) -> None:
     """Write files that are all complete before the first one is touched."""
-    from synth.results import write_atomically
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in files.items():

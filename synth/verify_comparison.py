@@ -16,7 +16,8 @@ import numpy as np
 import yaml
 
 from synth.errors import InputError
-from synth.results import ParetoFront, load_front
+from synth.loading import load_front
+from synth.results import ParetoFront
 from synth.verify import UNREADABLE, Verification, checked
 
 FILE = "comparison.json"

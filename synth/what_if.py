@@ -16,16 +16,12 @@ import numpy as np
 from synth.breaks import find_breaks, weight_breaks
 from synth.clock import Stopped
 from synth.errors import InputError
+from synth.files import write_atomically
 from synth.fingerprint import code_digest
+from synth.loading import front_of_record, load_front
 from synth.pareto import rank
 from synth.problem import DesignProblem
-from synth.results import (
-    Design,
-    ParetoFront,
-    front_of_record,
-    load_front,
-    write_atomically,
-)
+from synth.results import Design, ParetoFront
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
 from synth.vary import Steps, Value, steps_of

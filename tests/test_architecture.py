@@ -15,7 +15,15 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 ENGINE = ("synth", "synth/jobs", "synth/jobs/migrations", "synth/jobs/migrations/versions", "synth/variants")
-PACKAGES = (*ENGINE, "problems", "problems/blocks", "problems/mechanics", "catalogs", "reports")
+PACKAGES = (
+    *ENGINE,
+    "problems",
+    "problems/blocks",
+    "problems/centrifugal_blocks",
+    "problems/mechanics",
+    "catalogs",
+    "reports",
+)
 OURS = {package.split("/")[0] for package in PACKAGES}
 
 
@@ -75,6 +83,7 @@ MAY_IMPORT = {
         "problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special",
     },
     "problems/blocks": {"problems", "numpy", "synth.declaration", "synth.errors"},
+    "problems/centrifugal_blocks": {"problems", "synth.declaration"},
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
     "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},

@@ -12,6 +12,7 @@ import typer
 
 from synth.errors import InputError
 from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, objectives, tell
+from synth.terminal_options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
 
 if TYPE_CHECKING:
     from synth.jobs.models import Job
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
 
 RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
-Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")]
 Workers = Annotated[int | None, typer.Option(help="Processes of this machine; by default one per core.")]
 Scheduler = Annotated[
     str | None,
@@ -35,7 +35,6 @@ Database = Annotated[
         metavar="URL",
     ),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]
 JobName = Annotated[str, typer.Argument(help="The folder of a batch, or the id of a job.", metavar="JOB")]
 
 jobs_app = typer.Typer(help="List, show, cancel and resume batches.", no_args_is_help=True, rich_markup_mode=None)
@@ -50,23 +49,16 @@ def register(app: typer.Typer) -> None:
 def batch(
     rows: RowsFile,
     folder: Folder,
-    family: Annotated[str | None, typer.Option(help="Family of the rows that name none.", metavar="FAMILY")] = None,
-    mapping: Annotated[
-        Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
-    ] = None,
-    points: Annotated[int | None, typer.Option(help="At most this many designs per row.")] = None,
-    gap: Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")] = None,
-    grid: Annotated[bool, typer.Option("--grid/--no-grid", help="Makeable sizes only.")] = True,
-    seed: Annotated[int, typer.Option(help="Seed of the random starts.")] = 0,
+    family: RowFamily = None,
+    mapping: Headings = None,
+    points: RowPoints = None,
+    gap: Gap = None,
+    grid: Grid[bool] = True,
+    seed: Seed[int] = 0,
     time_limit: Annotated[
         str | None, typer.Option(help="Stop each row after this time, in seconds or such as '2 min'.")
     ] = None,
-    objective: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"
-        ),
-    ] = None,
+    objective: Objectives = None,
     catalogs: Annotated[Path | None, typer.Option(help="Folder with your own tables.", metavar="DIR")] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,

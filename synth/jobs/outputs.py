@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from synth.errors import InputError
+from synth.files import write_atomically
+from synth.front_record import installed_versions
 from synth.jobs.store import Answered, Store, has_died, new_owner
-from synth.results import installed_versions, write_atomically
 
 FORMAT = 1
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")

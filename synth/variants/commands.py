@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from synth.errors import InputError
-from synth.jobs.commands import Database, Quiet, Workers, batch_job, finish
+from synth.jobs.commands import Database, Workers, batch_job, finish
 from synth.terminal import STOPPED, check_output, report, write_all
+from synth.terminal_options import Headings, Quiet, RowFamily, RowPoints
 
 
 def register(app: typer.Typer) -> None:
@@ -39,11 +40,9 @@ def size_range(
     folder: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for the results; by default DIR.", metavar="DIR")
     ] = None,
-    family: Annotated[str | None, typer.Option(help="Family of the rows that name none.", metavar="FAMILY")] = None,
-    mapping: Annotated[
-        Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
-    ] = None,
-    points: Annotated[int | None, typer.Option(help="At most this many designs per row.")] = None,
+    family: RowFamily = None,
+    mapping: Headings = None,
+    points: RowPoints = None,
     workers: Workers = None,
     database: Database = None,
     quiet: Quiet = False,

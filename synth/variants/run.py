@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import time
@@ -16,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
+from synth.files import csv_text, write_atomically
 from synth.instance import as_catalogs
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.run import DATABASE, BatchResult
 from synth.jobs.store import Store, file_url
 from synth.model import Model
 from synth.problem import load
-from synth.results import shown_value, write_atomically
+from synth.results import shown_value
 from synth.units import header
 from synth.variants.choose import Choice, Chooser
 from synth.variants.coverage import Asked, Structure, Variant, objective_of_pairs, pinned_by_all
@@ -111,13 +110,7 @@ class SizeRange:
 
 def _csv(rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> str:
     names = list(columns) or list(dict.fromkeys(name for row in rows for name in row))
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(names)
-    for row in rows:
-        cells = [row.get(name) for name in names]
-        writer.writerow(["" if x is None else repr(x) if isinstance(x, float) else x for x in cells])
-    return buffer.getvalue()
+    return csv_text(names, [[row.get(name) for name in names] for row in rows])
 
 
 def size_range(

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import os
 import re
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any
@@ -16,8 +13,8 @@ from typing import Any
 import pytest
 
 import synth
-from synth.cli import main
 from synth.jobs import commands
+from tests.endtoend.entry import at_once
 
 RULES = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
 GOOD = {
@@ -29,15 +26,9 @@ GOOD = {
 
 def clutchsynth(*words: str | Path, folder: Path) -> CompletedProcess[str]:
     """Run the entry point in this process, its workers too: imports would cost most."""
-    out, err = io.StringIO(), io.StringIO()
-    texts = [str(word) for word in words]
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
-        patch.setattr(sys, "argv", ["clutchsynth", *texts])
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(commands, "_processes", lambda workers: None)
-        patch.chdir(folder)
-        with pytest.raises(SystemExit) as end:
-            main()
-    return CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
+        return at_once(*words, folder=folder)
 
 
 def write(folder: Path, *rows: dict[str, Any], name: str = "rows.csv") -> Path:

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import shutil
-import subprocess
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
 
-from synth.cli import main
+from tests.endtoend.entry import at_once
 
 SPEC = """
 family: multi_plate_clutch
@@ -26,28 +22,17 @@ points: 4
 """
 
 
-def clutchsynth(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run the entry point in this process."""
-    out, err = io.StringIO(), io.StringIO()
-    texts = [str(word) for word in words]
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
-        patch.setattr(sys, "argv", ["clutchsynth", *texts])
-        with pytest.raises(SystemExit) as end:
-            main()
-    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
-
-
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("choice")
     (folder / "spec.yaml").write_text(SPEC)
-    assert clutchsynth("run", folder / "spec.yaml", "-o", folder / "out", "--quiet").returncode == 0
+    assert at_once("run", folder / "spec.yaml", "-o", folder / "out", "--quiet").returncode == 0
     return folder
 
 
 def test_near_equals_are_shown_saved_and_hold(saved: Path) -> None:
     folder = saved / "near"
-    done = clutchsynth("near-equals", saved / "out", "--design", 2, "--within", "25 %", "--count", 2, "-o", folder)
+    done = at_once("near-equals", saved / "out", "--design", 2, "--within", "25 %", "--count", 2, "-o", folder)
     assert done.returncode == 0
     assert "near-equals of design 2" in done.stdout
     assert "no further one does (proven)" in done.stdout
@@ -57,18 +42,18 @@ def test_near_equals_are_shown_saved_and_hold(saved: Path) -> None:
     assert [row["number"] for row in rows] == ["0", "1", "2"]
     assert float(rows[1]["change: mass [%]"]) <= 25
     for number in (1, 2):
-        assert clutchsynth("check", folder / f"design_{number:02d}.yaml").returncode == 0
+        assert at_once("check", folder / f"design_{number:02d}.yaml").returncode == 0
 
 
 def test_nothing_near_ends_with_three(saved: Path) -> None:
-    done = clutchsynth("near-equals", saved / "out", "--within", "0.01 %", "-o", saved / "none")
+    done = at_once("near-equals", saved / "out", "--within", "0.01 %", "-o", saved / "none")
     assert done.returncode == 3
     assert "proven: no other combination of parts, counts and choices comes within 0.01 %" in done.stdout
     assert (saved / "none" / "near_equals.json").exists()
 
 
 def test_out_of_time_ends_with_four(saved: Path) -> None:
-    done = clutchsynth("near-equals", saved / "out", "--time-limit", "1e-9", "--quiet", "-o", saved / "stopped")
+    done = at_once("near-equals", saved / "out", "--time-limit", "1e-9", "--quiet", "-o", saved / "stopped")
     assert done.returncode == 4
     assert (saved / "stopped" / "near_equals.csv").exists()
 
@@ -82,14 +67,14 @@ def test_out_of_time_ends_with_four(saved: Path) -> None:
     ],
 )
 def test_careless_flags_are_refused_and_nothing_is_written(saved: Path, words: list[str], expected: list[str]) -> None:
-    done = clutchsynth("near-equals", saved / "out", *words, "-o", saved / "never")
+    done = at_once("near-equals", saved / "out", *words, "-o", saved / "never")
     assert done.returncode == 2
     assert all(word in done.stderr for word in expected)
     assert not (saved / "never").exists()
 
 
 def test_the_front_is_not_written_over(saved: Path) -> None:
-    done = clutchsynth("near-equals", saved / "out", "-o", saved / "out")
+    done = at_once("near-equals", saved / "out", "-o", saved / "out")
     assert done.returncode == 2
     assert "another folder" in done.stderr
 
@@ -99,7 +84,7 @@ def test_the_front_is_not_written_over(saved: Path) -> None:
 
 def test_prices_are_shown_and_saved_beside_the_front(saved: Path) -> None:
     folder = saved / "out"
-    done = clutchsynth("prices", folder, "--design", 2, "--design", 1, "-o", folder)
+    done = at_once("prices", folder, "--design", 2, "--design", 1, "-o", folder)
     assert done.returncode == 0, done.stderr
     assert "prices of design 2" in done.stdout
     assert "prices of design 1" not in done.stdout
@@ -115,18 +100,18 @@ def test_prices_are_shown_and_saved_beside_the_front(saved: Path) -> None:
     assert float(force["load_torque"]["down"]) == pytest.approx(1.0, rel=1e-4)
     assert "load_torque costs 1 % actuation_force" in force["load_torque"]["sentence"]
     assert (folder / "design_02.yaml").exists()
-    again = clutchsynth("prices", folder, "--all", "-o", folder)
+    again = at_once("prices", folder, "--all", "-o", folder)
     assert "prices of design 1" in again.stdout
     assert "prices of design 2" in again.stdout
 
 
 def test_prices_out_of_time_end_with_four_and_go_on(saved: Path) -> None:
     folder = saved / "late"
-    done = clutchsynth("prices", saved / "out", "--time-limit", "1e-9", "-o", folder)
+    done = at_once("prices", saved / "out", "--time-limit", "1e-9", "-o", folder)
     assert done.returncode == 4
     assert "designs are kept, run again to go on" in done.stdout
     assert (folder / "prices.csv").read_text().startswith("design,objective,quantity,kind")
-    assert clutchsynth("prices", saved / "out", "--quiet", "-o", folder).returncode == 0
+    assert at_once("prices", saved / "out", "--quiet", "-o", folder).returncode == 0
     assert len((folder / "prices.csv").read_text().splitlines()) > 20
 
 
@@ -140,14 +125,14 @@ def test_prices_out_of_time_end_with_four_and_go_on(saved: Path) -> None:
     ],
 )
 def test_careless_prices_are_refused_and_nothing_is_written(saved: Path, words: list[str], expected: list[str]) -> None:
-    done = clutchsynth("prices", saved / "out", *words, "-o", saved / "never")
+    done = at_once("prices", saved / "out", *words, "-o", saved / "never")
     assert done.returncode == 2
     assert all(word in done.stderr for word in expected)
     assert not (saved / "never").exists()
 
 
 def test_prices_of_what_is_no_front_are_refused(saved: Path) -> None:
-    done = clutchsynth("prices", saved / "spec.yaml", "-o", saved / "never")
+    done = at_once("prices", saved / "spec.yaml", "-o", saved / "never")
     assert done.returncode == 2
     assert "a front.json that clutchsynth wrote" in done.stderr
 
@@ -179,7 +164,7 @@ points: 6
 def compared(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     folder = tmp_path_factory.mktemp("several")
     (folder / "several.yaml").write_text(SEVERAL)
-    done = clutchsynth("run", folder / "several.yaml", "-o", folder / "out")
+    done = at_once("run", folder / "several.yaml", "-o", folder / "out")
     assert done.returncode == 0, done.stderr
     return folder / "out", done.stdout
 
@@ -200,12 +185,12 @@ def test_several_families_make_one_front_with_a_line_each(compared: tuple[Path, 
     with (folder / "designs.csv").open() as file:
         assert {row["family"] for row in csv.DictReader(file)} <= {"disc_clutch", "cone_clutch"}
     assert (folder / "cone_clutch" / "front.json").exists()
-    assert clutchsynth("check", folder / "design_01.yaml").returncode == 0
+    assert at_once("check", folder / "design_01.yaml").returncode == 0
 
 
 def test_a_comparison_is_verified_over_all_its_families(compared: tuple[Path, str], tmp_path: Path) -> None:
     folder = compared[0]
-    done = clutchsynth("verify", folder)
+    done = at_once("verify", folder)
     assert done.returncode == 0, done.stdout
     assert "proven again that no feasible design improves one of them" in " ".join(done.stdout.split())
     # A comparison that keeps silent about the best family does not hold.
@@ -216,7 +201,7 @@ def test_a_comparison_is_verified_over_all_its_families(compared: tuple[Path, st
     worse = {n: v * 1.5 for n, v in heavier[-1]["objectives"].items()}
     content["designs"][-1]["objectives"] = worse
     (copy / "comparison.json").write_text(json.dumps(content))
-    done = clutchsynth("verify", copy)
+    done = at_once("verify", copy)
     assert done.returncode == 5
     assert "evaluated it is" in done.stdout
     assert "beats design" in done.stdout
@@ -227,7 +212,7 @@ def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Pa
         SEVERAL.replace("load_torque: 60 N*m", "load_torque: 60 N*m\n  actuation_force_limit: 300 N")
         .replace("pressure_plate_thickness: 3 mm .. 4 mm}", "pressure_plate_thickness: 3 mm .. 4 mm}")
     )  # fmt: skip
-    done = clutchsynth("run", tmp_path / "tight.yaml", "-o", tmp_path / "out")
+    done = at_once("run", tmp_path / "tight.yaml", "-o", tmp_path / "out")
     assert done.returncode == 3, done.stdout
     text = (tmp_path / "out" / "explanation.txt").read_text()
     assert "disc_clutch (infeasible)" in text
@@ -249,7 +234,7 @@ def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Pa
 def test_a_careless_sheet_is_refused(tmp_path: Path, old: str, new: str, words: list[str]) -> None:
     assert old in SEVERAL
     (tmp_path / "bad.yaml").write_text(SEVERAL.replace(old, new))
-    done = clutchsynth("run", tmp_path / "bad.yaml", "-o", tmp_path / "out")
+    done = at_once("run", tmp_path / "bad.yaml", "-o", tmp_path / "out")
     assert done.returncode == 2
     assert all(word in done.stderr for word in ["bad.yaml", *words]), done.stderr
     assert not (tmp_path / "out").exists()
@@ -257,6 +242,6 @@ def test_a_careless_sheet_is_refused(tmp_path: Path, old: str, new: str, words: 
 
 def test_several_families_are_no_design_to_check(compared: tuple[Path, str], tmp_path: Path) -> None:
     (tmp_path / "design.yaml").write_text(SEVERAL + "values: {ramp_time: 1 s}\n")
-    done = clutchsynth("check", tmp_path / "design.yaml")
+    done = at_once("check", tmp_path / "design.yaml")
     assert done.returncode == 2
     assert "one family" in done.stderr

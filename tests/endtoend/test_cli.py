@@ -10,19 +10,16 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
 import yaml
 
 import synth
-from synth.cli import main
+from tests.endtoend.entry import COMMAND, ROOT, at_once, clutchsynth
 
-ROOT = Path(__file__).parents[2]
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
-COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
 HEAVY = (
     "casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib", "sqlalchemy", "alembic", "distributed",
     "multiprocessing",
@@ -36,25 +33,6 @@ requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 3
 fix: {ramp_time: 2 s, d_out: 262 mm, d_in: 158 mm, inner_plate: core 4, outer_plate: core 2, pair: seed_multiplate_ref}
 limits: {friction_surfaces: 10 .. 14}
 """
-
-
-def clutchsynth(*words: str | Path, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*COMMAND, *map(str, words)], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
-        timeout=120, check=False,
-    )  # fmt: skip
-
-
-def at_once(*words: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """Run the same entry point in this process: for the many cases that end before a search, imports cost most."""
-    out, err = io.StringIO(), io.StringIO()
-    texts = [str(word) for word in words]
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
-        patch.setattr(sys, "argv", ["clutchsynth", *texts])
-        patch.chdir(folder or ROOT)
-        with pytest.raises(SystemExit) as end:
-            main()
-    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
 
 
 def refused(done: subprocess.CompletedProcess[str]) -> str:

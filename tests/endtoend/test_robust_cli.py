@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
-import subprocess
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
 
-from synth.cli import main
+from tests.endtoend.entry import at_once
 
 SPEC = """
 family: multi_plate_clutch
@@ -24,22 +20,11 @@ points: 2
 """
 
 
-def clutchsynth(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run the entry point in this process."""
-    out, err = io.StringIO(), io.StringIO()
-    texts = [str(word) for word in words]
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
-        patch.setattr(sys, "argv", ["clutchsynth", *texts])
-        with pytest.raises(SystemExit) as end:
-            main()
-    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
-
-
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("robust")
     (folder / "spec.yaml").write_text(SPEC)
-    done = clutchsynth("run", folder / "spec.yaml", "-o", folder / "out", "--quiet")
+    done = at_once("run", folder / "spec.yaml", "-o", folder / "out", "--quiet")
     assert done.returncode == 0, done.stderr
     return folder
 
@@ -51,7 +36,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 def test_a_saved_front_is_rated(saved: Path) -> None:
     folder = saved / "rated"
-    done = clutchsynth("rate", saved / "out", "-o", folder, "--over", "friction=+-10 %", "--samples", 256)
+    done = at_once("rate", saved / "out", "-o", folder, "--over", "friction=+-10 %", "--samples", 256)
     assert done.returncode == 3, done.stderr
     assert "none of 2 designs keeps all limits over the whole range" in done.stdout
     assert max(len(line) for line in done.stdout.splitlines() if not line.startswith("written")) <= 100
@@ -70,7 +55,7 @@ def test_a_saved_front_is_rated(saved: Path) -> None:
 
 def test_a_given_design_is_rated_and_what_hardly_scatters_is_kept(saved: Path) -> None:
     design = saved / "out" / "design_01.yaml"
-    done = clutchsynth(
+    done = at_once(
         "rate", design, "-o", saved / "one", "--over", "friction_pair.density=+-10 %", "--confidence", "99 %"
     )
     assert done.returncode == 0, done.stdout + done.stderr
@@ -79,7 +64,7 @@ def test_a_given_design_is_rated_and_what_hardly_scatters_is_kept(saved: Path) -
 
 
 def test_out_of_time_ends_with_four(saved: Path) -> None:
-    done = clutchsynth(
+    done = at_once(
         "rate", saved / "out", "-o", saved / "late", "--over", "friction=+-10 %", "--time-limit", "1e-9", "--quiet"
     )
     assert done.returncode == 4
@@ -99,7 +84,7 @@ def test_out_of_time_ends_with_four(saved: Path) -> None:
     ],
 )
 def test_careless_flags_are_refused_and_nothing_is_written(saved: Path, words: list[str], expected: list[str]) -> None:
-    done = clutchsynth("rate", saved / "out", "-o", saved / "never", *words)
+    done = at_once("rate", saved / "out", "-o", saved / "never", *words)
     assert done.returncode == 2
     assert all(word in done.stderr for word in expected), done.stderr
     assert not (saved / "never").exists()
@@ -111,7 +96,7 @@ ROBUST = SPEC + 'robust: {friction: "+-10 %", load_torque: "590 .. 620 N*m", sam
 @pytest.fixture(scope="module")
 def robust(saved: Path) -> tuple[Path, str]:
     (saved / "robust.yaml").write_text(ROBUST)
-    done = clutchsynth("run", saved / "robust.yaml", "-o", saved / "robust")
+    done = at_once("run", saved / "robust.yaml", "-o", saved / "robust")
     assert done.returncode == 0, done.stderr
     return saved / "robust", done.stdout
 
@@ -125,26 +110,26 @@ def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, 
     assert {float(row["yield"]) for row in designs} == {1.0}
     assert all(row["proof"] in ("proven", "bounded") for row in rows(folder / "robust.csv"))
     assert "utilisation: torque_capacity (friction low, load_torque high)" in designs[0]
-    assert clutchsynth("check", folder / "design_01.yaml").returncode == 0
-    assert "torque_capacity (friction low," in clutchsynth("check", folder / "design_01.yaml").stdout
-    done = clutchsynth("verify", folder)
+    assert at_once("check", folder / "design_01.yaml").returncode == 0
+    assert "torque_capacity (friction low," in at_once("check", folder / "design_01.yaml").stdout
+    done = at_once("verify", folder)
     assert done.returncode == 0, done.stdout
     # The question repeats what scatters: nothing needs to be said again.
-    assert clutchsynth("rate", folder, "-o", tmp_path / "again", "--quiet").returncode == 0
-    assert clutchsynth("rate", folder / "design_02.yaml", "-o", tmp_path / "one", "--quiet").returncode == 0
-    assert clutchsynth("simulate", folder / "design_01.yaml", "-o", tmp_path / "sim").returncode == 0
+    assert at_once("rate", folder, "-o", tmp_path / "again", "--quiet").returncode == 0
+    assert at_once("rate", folder / "design_02.yaml", "-o", tmp_path / "one", "--quiet").returncode == 0
+    assert at_once("simulate", folder / "design_01.yaml", "-o", tmp_path / "sim").returncode == 0
 
 
 def test_a_folder_that_is_used_again_keeps_nothing_of_the_range(saved: Path, robust: tuple[Path, str]) -> None:
     folder = saved / "twice"
     (saved / "rate.yaml").write_text(ROBUST.replace("robust: {", "robust: {mode: rate, "))
-    assert clutchsynth("run", saved / "rate.yaml", "-o", folder, "--quiet").returncode == 0
+    assert at_once("run", saved / "rate.yaml", "-o", folder, "--quiet").returncode == 0
     assert {row["robust"] for row in rows(folder / "designs.csv")} == {"no"}
     assert [row["mass [kg]"] for row in rows(folder / "designs.csv")] == [
         row["mass [kg]"] for row in rows(saved / "out" / "designs.csv")
     ]
-    assert clutchsynth("verify", folder).returncode == 0
-    assert clutchsynth("run", saved / "spec.yaml", "-o", folder, "--quiet").returncode == 0
+    assert at_once("verify", folder).returncode == 0
+    assert at_once("run", saved / "spec.yaml", "-o", folder, "--quiet").returncode == 0
     assert not (folder / "robust.csv").exists()
     assert "yield" not in rows(folder / "designs.csv")[0]
 
@@ -167,19 +152,19 @@ def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new:
     text = ROBUST.replace(old, new)
     text = text.replace("256}", "256]") if "robust: [" in new else text
     (tmp_path / "robust.yaml").write_text(text)
-    done = clutchsynth("run", tmp_path / "robust.yaml", "-o", tmp_path / "out")
+    done = at_once("run", tmp_path / "robust.yaml", "-o", tmp_path / "out")
     assert done.returncode == 2
     assert all(word in done.stderr for word in ["robust.yaml", *words]), done.stderr
     assert not (tmp_path / "out").exists()
 
 
 def test_studies_do_not_take_a_range(saved: Path, robust: tuple[Path, str]) -> None:
-    done = clutchsynth("whatif", saved / "robust.yaml", "-o", saved / "study", "--vary", "load_torque=600,610 N*m")
+    done = at_once("whatif", saved / "robust.yaml", "-o", saved / "study", "--vary", "load_torque=600,610 N*m")
     assert done.returncode == 2
     assert "no robust block here" in done.stderr
 
 
 def test_the_front_is_not_written_over(saved: Path) -> None:
-    done = clutchsynth("rate", saved / "out", "-o", saved / "out", "--over", "friction=+-5 %")
+    done = at_once("rate", saved / "out", "-o", saved / "out", "--over", "friction=+-5 %")
     assert done.returncode == 2
     assert "another folder" in done.stderr

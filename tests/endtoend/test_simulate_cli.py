@@ -11,9 +11,10 @@ from typing import Any
 
 import pytest
 import yaml
-from test_cli import HEAVY, HOIST, LECTURE, at_once, clutchsynth, quantity, refused
+from test_cli import HEAVY, HOIST, LECTURE, quantity, refused
 
 from synth import terminal
+from tests.endtoend.entry import at_once, clutchsynth
 
 SIMULATED = ["second_opinion.csv", "startup.csv", "startup.svg", "temperature.csv", "temperature.svg"]
 

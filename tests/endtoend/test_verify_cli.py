@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import json
 import shutil
 import subprocess
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
 
-from synth.cli import main
 from synth.results import ParetoFront
+from tests.endtoend.entry import COMMAND, at_once
 
-COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
 # One ring, three plate numbers: the force is all that is left to find.
 SPEC = """
 family: multi_plate_clutch
@@ -26,20 +22,9 @@ limits: {friction_surfaces: 10 .. 14}
 """
 
 
-def clutchsynth(*words: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run the entry point in this process."""
-    out, err = io.StringIO(), io.StringIO()
-    texts = [str(word) for word in words]
-    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
-        patch.setattr(sys, "argv", ["clutchsynth", *texts])
-        with pytest.raises(SystemExit) as end:
-            main()
-    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
-
-
 def ran(folder: Path, spec: str = SPEC) -> Path:
     (folder / "spec.yaml").write_text(spec)
-    clutchsynth("run", folder / "spec.yaml", "-o", folder / "out", "--quiet")
+    at_once("run", folder / "spec.yaml", "-o", folder / "out", "--quiet")
     return folder / "out"
 
 
@@ -73,12 +58,12 @@ def test_a_front_that_was_saved_holds(saved: Path) -> None:
 
 
 def test_front_json_may_be_named_itself(saved: Path) -> None:
-    assert clutchsynth("verify", saved / "front.json").returncode == 0
+    assert at_once("verify", saved / "front.json").returncode == 0
 
 
 def test_an_infeasible_question_is_proven_again(tmp_path: Path) -> None:
     # Around a ring of 262 mm the drum is 280 mm wide.
-    done = clutchsynth("verify", ran(tmp_path, SPEC.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")))
+    done = at_once("verify", ran(tmp_path, SPEC.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")))
     assert done.returncode == 0
     assert "no design is feasible" in done.stdout
 
@@ -86,7 +71,7 @@ def test_an_infeasible_question_is_proven_again(tmp_path: Path) -> None:
 def test_a_changed_number_ends_with_five(copy: Path) -> None:
     path = copy / "front.json"
     path.write_text(path.read_text(encoding="utf-8").replace('"startup_torque": "1080', '"startup_torque": "1090'))
-    done = clutchsynth("verify", copy)
+    done = at_once("verify", copy)
     assert done.returncode == 5
     lines = done.stdout.splitlines()
     assert lines[0] == "- front.json was changed after it was saved: its checksum does not fit"
@@ -97,7 +82,7 @@ def test_a_changed_number_ends_with_five(copy: Path) -> None:
 
 def test_a_design_that_is_gone_is_missed(copy: Path) -> None:
     rewritten(copy, lambda content: content["designs"].pop())
-    done = clutchsynth("verify", copy)
+    done = at_once("verify", copy)
     assert done.returncode == 5
     text = " ".join(done.stdout.split())
     assert "checksum" not in text
@@ -108,13 +93,13 @@ def test_a_design_that_is_gone_is_missed(copy: Path) -> None:
 def test_a_changed_table_beside_it_is_named(copy: Path) -> None:
     path = copy / "designs.csv"
     path.write_text(path.read_text(encoding="utf-8").replace("optimal", "Optimal"))
-    done = clutchsynth("verify", copy)
+    done = at_once("verify", copy)
     assert done.returncode == 5
     assert done.stdout.startswith("- designs.csv says something else than front.json\n")
 
 
 def test_a_proof_that_is_given_up_does_not_hold(saved: Path) -> None:
-    done = clutchsynth("verify", saved, "--time-limit", "0.000001 s")
+    done = at_once("verify", saved, "--time-limit", "0.000001 s")
     assert done.returncode == 5
     assert "could not be proven" in done.stdout
 
@@ -128,13 +113,13 @@ def test_what_is_no_front_is_refused(what: str, tmp_path: Path) -> None:
         (folder / "front.json").write_text('{"format": 17}')
     if what == "broken":
         (folder / "front.json").write_text('{"format": 1, "designs"')
-    done = clutchsynth("verify", folder)
+    done = at_once("verify", folder)
     assert (done.returncode, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
     assert done.stderr.startswith("clutchsynth: front")
 
 
 def test_a_time_that_is_none_is_refused(saved: Path) -> None:
-    done = clutchsynth("verify", saved, "--time-limit", "soon")
+    done = at_once("verify", saved, "--time-limit", "soon")
     assert done.returncode == 2
     assert "--time-limit" in done.stderr

@@ -1,5 +1,7 @@
 """Checks that apply to any formula: units, symbols, arrays."""
 
+from functools import partial, wraps
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -48,6 +50,21 @@ DIMENSION = {
     "V s/(A m)": (1, 1, -2, 0, -2),
     "ohm m": (1, 3, -3, 0, -2),
 }
+
+
+def positional(function):
+    """Formulas that the search keeps as one node take their arguments by position."""
+
+    @wraps(function)
+    def call(**values):
+        return function(*values.values())
+
+    return call
+
+
+def name_of(function):
+    """Return the name of a formula, also of one with some arguments set."""
+    return function.func.__name__ if isinstance(function, partial) else function.__name__
 
 
 def draw(units, ranges, rng):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from of_a_family import remarks
 from scipy.optimize import brentq
 
 import synth
@@ -188,10 +189,6 @@ def test_what_the_window_allows_is_the_closed_form():
     assert frame["ball_friction [-]"].iloc[0] == pytest.approx(most, rel=1e-12)
     assert (frame.diff().dropna()["ball_friction [-]"] < 0).all()
     assert frame["no friction [-]"].to_numpy() == pytest.approx(135 / 80)
-
-
-def remarks(found):
-    return {text.split(":")[0] for text in found.advice}
 
 
 def test_remarks():

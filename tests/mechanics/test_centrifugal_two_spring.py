@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from of_a_family import remarks
 from scipy.optimize import brentq
 
 import synth
@@ -246,10 +247,6 @@ def test_each_mechanism_has_requirements_of_its_own():
         design("ball_ramp", {"mechanism_efficiency": 0.9})
     with pytest.raises(synth.InputError, match="mechanism"):
         synth.describe(synth.load(FAMILY, mechanism="rods"))
-
-
-def remarks(found):
-    return {text.split(":")[0] for text in found.advice}
 
 
 def test_remarks():

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from of_a_family import requirements_in_si
 from start_by_steps import start
 
 import synth
@@ -265,8 +266,7 @@ def test_dry_greased_and_oiled_pairs_of_the_family():
 
 def spec_of(options=None, requirements=None):
     problem = synth.load("cone_clutch", **(options or {}))
-    instance = Instance(problem, BASE | (requirements or {}), as_catalogs(None))
-    return problem, {n: instance.requirements.get(n) for n in instance.model.declaration.requirements}
+    return problem, requirements_in_si(problem, BASE | (requirements or {}))
 
 
 def test_curves_without_a_design_cross_zero_where_the_cones_lock():

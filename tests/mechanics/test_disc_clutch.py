@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from of_a_family import requirements_in_si
 from start_by_steps import start
 
 import synth
@@ -257,8 +258,7 @@ def test_only_dry_pairs_of_the_family():
 
 def spec_of(options=None, requirements=None):
     problem = synth.load("disc_clutch", **(options or {}))
-    instance = Instance(problem, BASE | (requirements or {}), as_catalogs(None))
-    return problem, {n: instance.requirements.get(n) for n in instance.model.declaration.requirements}
+    return problem, requirements_in_si(problem, BASE | (requirements or {}))
 
 
 def test_curves_of_a_requirement_are_the_sizing():

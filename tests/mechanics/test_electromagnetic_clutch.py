@@ -6,11 +6,11 @@ import math
 import numpy as np
 import pytest
 from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
+from of_a_family import remarks, requirements_in_si
 from scipy.optimize import brentq
 
 import synth
 from problems.mechanics import magnetics, pot_magnet
-from synth.instance import Instance, as_catalogs
 
 SHAPE = pot_magnet.PotMagnet(0.02, 0.015, 0.03, 0.022, 0.012, 0.4e-3)
 FIELDS = list(SHAPE.__dataclass_fields__)
@@ -316,7 +316,7 @@ def test_remark(kind, requirements, values, code):
 
 
 def test_remarks_that_do_not_concern_a_design_are_silent():
-    codes = {remark.split(":")[0] for remark in design("disc", {"jerk_limit": "1e5 rad/s3"}).advice}
+    codes = remarks(design("disc", {"jerk_limit": "1e5 rad/s3"}))
     assert not codes & {"armature_sticks", "no_return_springs", "twin_disc_release"}
 
 
@@ -324,8 +324,7 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 
 
 def spec_of(kind, requirements=None):
-    instance = Instance(PROBLEMS[kind], BASE | (requirements or {}), as_catalogs(None))
-    return {n: instance.requirements.get(n) for n in instance.model.declaration.requirements}
+    return requirements_in_si(PROBLEMS[kind], BASE | (requirements or {}))
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,10 +1,10 @@
 """Every formula of the friction clutches: units, and the same numbers on floats, arrays and symbols."""
 
 import inspect
-from functools import partial, wraps
+from functools import partial
 
 import pytest
-from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
+from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of, positional
 
 from problems.mechanics import cone, disc, guide_friction, heat, motors, plates, ring, startup
 
@@ -37,16 +37,6 @@ SPLINES = {"friction_radius": "m", "inner_spline_radius": "m", "outer_spline_rad
 HEAT = {"friction_work": "J", "switching_rate": "1/s"}
 WEDGE = {"half_angle": "-", "mu": "-"}
 COOLING = {"heat_transfer": "W/(m2 K)", "cooled_area": "m2"}
-
-
-def positional(function):
-    """Formulas that the search keeps as one node take their arguments by position."""
-
-    @wraps(function)
-    def call(**values):
-        return function(*values.values())
-
-    return call
 
 
 CASES = [
@@ -319,10 +309,6 @@ OTHERWISE_TESTED = {
 }
 
 
-def _name(function):
-    return function.func.__name__ if isinstance(function, partial) else function.__name__
-
-
 def _ranges(units):
     if "driver_torque" in units:
         return {"torque": (3.0, 6.0), "driver_torque": (0.5, 2.0), "load_torque": (0.5, 2.0)}
@@ -333,7 +319,7 @@ def _ranges(units):
     return RANGES
 
 
-IDS = [f"{number}-{_name(case[0])}" for number, case in enumerate(CASES)]
+IDS = [f"{number}-{name_of(case[0])}" for number, case in enumerate(CASES)]
 
 
 @pytest.mark.parametrize(("function", "units", "result_unit"), CASES, ids=IDS)
@@ -347,7 +333,7 @@ def test_floats_arrays_and_symbols_agree(function, units, result_unit):
 
 
 def test_no_formula_is_left_out():
-    covered = {_name(case[0]) for case in CASES} | OTHERWISE_TESTED
+    covered = {name_of(case[0]) for case in CASES} | OTHERWISE_TESTED
     # Lambdas stand for functions with several results or a free number of arguments.
     covered |= {"plate_torque", "first_phase_push_force", "constant_torque_slip"}
     for module in (ring, guide_friction, startup, heat, plates, motors, disc, cone):

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from of_a_family import requirements_in_si
 
 import synth
-from synth.instance import Instance, as_catalogs
 
 FAMILY = synth.load("magnetic_powder_clutch")
 BASE = {"required_torque": "30 N*m"}
@@ -275,9 +275,7 @@ def test_orders_of_magnitude_of_a_catalogue(torque, power, mass, values):
 
 
 def spec_of(requirements=None):
-    problem = FAMILY
-    instance = Instance(problem, BASE | (requirements or {}), as_catalogs(None))
-    return problem, {n: instance.requirements.get(n) for n in instance.model.declaration.requirements}
+    return FAMILY, requirements_in_si(FAMILY, BASE | (requirements or {}))
 
 
 @pytest.mark.parametrize("coil", ["stationary", "rotating"])

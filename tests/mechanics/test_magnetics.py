@@ -2,29 +2,17 @@
 
 import inspect
 import math
-from functools import wraps
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
+from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, positional
 from scipy.integrate import quad
 
 import catalogs
 from problems.mechanics import magnetics, powder
 from synth.errors import InputError
-
-
-def positional(function):
-    """Formulas that the search keeps as one node take their arguments by position."""
-
-    @wraps(function)
-    def call(**values):
-        return function(*values.values())
-
-    return call
-
 
 HEAT = {"cold_loss": "W", "runaway_loss": "W", "ambient_ratio": "-", "other_heat": "W"}
 WINDOW = {"bore_radius": "m", "height": "m", "length": "m"}

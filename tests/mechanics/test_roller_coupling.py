@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from of_a_family import requirements_in_si
 
 import synth
 from synth.instance import Instance, as_catalogs
@@ -55,10 +56,7 @@ def design(options=None, requirements=None, values=None, parts=None, **more):
 
 
 def spec_of(options=None, requirements=None):
-    """Return all requirements in SI, None where an optional one is not given."""
-    instance = Instance(family(**(options or {})), BASE | (requirements or {}), as_catalogs(None))
-    names = instance.model.declaration.requirements
-    return {name: instance.requirements.get(name) for name in names}
+    return requirements_in_si(family(**(options or {})), BASE | (requirements or {}))
 
 
 def by_hand(roller, material, torque, speed, e, alpha, h, chi, balance, crowned):

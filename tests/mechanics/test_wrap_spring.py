@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from of_a_family import remarks, requirements_in_si
 
 import synth
 from synth.instance import Instance, as_catalogs
@@ -400,13 +401,12 @@ def test_figures_that_no_part_can_have_are_refused_with_the_table(table, column,
     ],
 )
 def test_remark(make, options, requirements, values, parts, code):
-    remarks = {r.split(":")[0] for r in make(options, requirements, values, parts).advice}
-    assert code in remarks
-    assert code not in {r.split(":")[0] for r in make().advice}
+    assert code in remarks(make(options, requirements, values, parts))
+    assert code not in remarks(make())
 
 
 def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
-    def remarks(friction, a, b):
+    def remarked(friction, a, b):
         frame = pd.DataFrame(PAIR | {"mu_min [-]": [0.7, 0.7], "mu_max [-]": [friction, friction]})
         found = synth.evaluate(
             synth.load("wrap_spring", wire_choice="custom"),
@@ -416,13 +416,13 @@ def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
             catalogs={"friction_materials": frame},
         )
         assert np.isfinite(found.values["slip_torque"])
-        return {remark.split(":")[0] for remark in found.advice}
+        return remarks(found)
 
-    assert "locked" in remarks(0.9, "3 mm", "4 mm")
-    assert "locked" not in remarks(0.7, "3 mm", "4 mm")
-    assert "unwound_shape" in remarks(0.9, "4.1 mm", "1 mm")
-    assert "unwound_shape" in remarks(0.9, "1 mm", "6.1 mm")
-    assert "unwound_shape" not in remarks(0.9, "2 mm", "4 mm")
+    assert "locked" in remarked(0.9, "3 mm", "4 mm")
+    assert "locked" not in remarked(0.7, "3 mm", "4 mm")
+    assert "unwound_shape" in remarked(0.9, "4.1 mm", "1 mm")
+    assert "unwound_shape" in remarked(0.9, "1 mm", "6.1 mm")
+    assert "unwound_shape" not in remarked(0.9, "2 mm", "4 mm")
 
 
 # -- slots, ladders, defaults ----------------------------------------------------------------------
@@ -472,11 +472,6 @@ def test_objectives_are_surely_positive_so_that_the_gap_is_relative(torque, more
 # -- curves ----------------------------------------------------------------------------------------
 
 
-def spec_of(problem, requirements):
-    instance = Instance(problem, requirements, as_catalogs(None))
-    return {**dict.fromkeys(instance.not_asked), **instance.requirements}
-
-
 def check_frames(frames):
     for key, frame in frames.items():
         assert key.isidentifier()
@@ -494,7 +489,7 @@ def check_frames(frames):
 def test_curves_of_an_interference_fit_pass_through_its_values(model):
     requirements = BASE | {"overrun_speed": "200 1/min", "overrun_duty": 0.1, "spring_speed": "900 1/min"}
     problem = synth.load("wrap_spring", model=model)
-    spec = spec_of(problem, requirements)
+    spec = requirements_in_si(problem, requirements)
     found = clutch({"model": model}, requirements)
     v, frames = found.values, problem.curves(spec, found)
     check_frames(frames)
@@ -533,7 +528,7 @@ def test_curves_of_an_interference_fit_pass_through_its_values(model):
 def test_curves_of_a_clearance_fit_pass_through_its_values():
     problem = synth.load("wrap_spring_actuated")
     requirements = ACTUATED | {"spring_speed": "900 1/min"}
-    spec, found = spec_of(problem, requirements), actuated(None, requirements)
+    spec, found = requirements_in_si(problem, requirements), actuated(None, requirements)
     v, frames = found.values, problem.curves(spec, found)
     check_frames(frames)
     friction = frames["torque_over_friction"].set_index("friction coefficient [-]")
@@ -551,7 +546,7 @@ def test_curves_of_a_clearance_fit_pass_through_its_values():
 @pytest.mark.parametrize(("family", "given"), [("wrap_spring", BASE), ("wrap_spring_actuated", ACTUATED)])
 def test_a_requirement_alone_has_curves(family, given):
     problem = synth.load(family)
-    frames = problem.curves(spec_of(problem, given))
+    frames = problem.curves(requirements_in_si(problem, given))
     check_frames(frames)
     (frame,) = frames.values()
     falling = frame.iloc[:, 1].to_numpy()
@@ -563,6 +558,6 @@ def test_the_curves_of_a_wire_of_ones_own_need_no_slot():
     values = POINT | {"a": "3 mm", "b": "4 mm"}
     parts = {"friction_pair": PARTS["friction_pair"]}
     found = synth.evaluate(problem, BASE | WIRE, values=values, parts=parts)
-    frames = problem.curves(spec_of(problem, BASE | WIRE), found)
+    frames = problem.curves(requirements_in_si(problem, BASE | WIRE), found)
     stress = frames["along_the_coils"]["overload stress [N/mm2]"].iloc[-1]
     assert stress == pytest.approx(found.values["wire_stress"] / 1e6, rel=1e-9)

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
+from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
@@ -369,11 +369,7 @@ RANGES = {"interference": (0.01, 0.4), "bore_diameter": (0.2, 0.4), "spring_inde
 NO_FORMULA_OF_ARGUMENTS = {"tip_coil_loss"}
 
 
-def _name(function):
-    return function.func.__name__ if isinstance(function, partial) else function.__name__
-
-
-IDS = [f"{number}-{_name(case[0])}" for number, case in enumerate(CASES)]
+IDS = [f"{number}-{name_of(case[0])}" for number, case in enumerate(CASES)]
 
 
 @pytest.mark.parametrize(("function", "units", "result_unit"), CASES, ids=IDS)
@@ -392,4 +388,4 @@ def test_no_formula_is_left_out():
         for name, member in inspect.getmembers(ws, inspect.isfunction)
         if member.__module__ == ws.__name__ and not name.startswith("_")
     }
-    assert public == {_name(case[0]) for case in CASES} | NO_FORMULA_OF_ARGUMENTS
+    assert public == {name_of(case[0]) for case in CASES} | NO_FORMULA_OF_ARGUMENTS

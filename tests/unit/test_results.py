@@ -10,7 +10,9 @@ import pytest
 import yaml
 
 import synth
-from synth.results import FORMAT, Certificate, write_atomically
+from synth.files import write_atomically
+from synth.front_record import FORMAT
+from synth.results import Certificate
 from synth.units import from_si
 from tests.unit.strut import NEEDED, RODS, Strut
 

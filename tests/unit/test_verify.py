@@ -12,7 +12,8 @@ import pytest
 
 import synth
 from synth.instance import Instance
-from synth.results import ParetoFront, PartRow, load_front
+from synth.loading import load_front
+from synth.results import ParetoFront, PartRow
 from synth.tables import Catalogs
 from synth.verify import uncovered
 from tests.unit.strut import NEEDED, RODS, Strut

@@ -1,0 +1,29 @@
+"""Arguments and options that several commands share; ``Grid`` and ``Seed`` take their type in brackets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import typer
+
+T = TypeVar("T")
+
+SpecFile = Annotated[Path, typer.Argument(help="A spec, YAML or JSON.", metavar="SPEC.yaml")]
+FrontFolder = Annotated[Path, typer.Argument(help="A folder that run has written.", metavar="DIR")]
+
+Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.", metavar="DIR")]
+RowFamily = Annotated[str | None, typer.Option(help="Family of the rows that name none.", metavar="FAMILY")]
+Headings = Annotated[
+    Path | None, typer.Option(help="YAML: headings of the table and the names they stand for.", metavar="FILE")
+]
+RowPoints = Annotated[int | None, typer.Option(help="At most this many designs per row.")]
+Gap = Annotated[float | None, typer.Option(help="How far from proven a design may be, as a fraction.")]
+Grid = Annotated[T, typer.Option("--grid/--no-grid", help="Makeable sizes only.")]
+Seed = Annotated[T, typer.Option(help="Seed of the random starts.")]
+TimeLimit = Annotated[str | None, typer.Option(help="Stop after this time, in seconds or such as '2 min'.")]
+Objectives = Annotated[
+    list[str] | None,
+    typer.Option("--objective", help="An objective, name or name=min or name=max; repeat it.", metavar="NAME[=SENSE]"),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Write the files, show nothing.")]

@@ -1,0 +1,37 @@
+"""The entry point as tests run it: in a process of its own, or in this one."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import pytest
+
+from synth.cli import main
+
+ROOT = Path(__file__).parents[2]
+COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
+
+
+def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run it in a process of its own, as a person does."""
+    return subprocess.run(
+        [*COMMAND, *map(str, words)], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
+        timeout=120, check=False,
+    )  # fmt: skip
+
+
+def at_once(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    """Run it in this process: where a search is short or none is made, imports cost most."""
+    out, err = io.StringIO(), io.StringIO()
+    texts = [str(word) for word in words]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.setattr(sys, "argv", ["clutchsynth", *texts])
+        patch.chdir(folder)
+        with pytest.raises(SystemExit) as end:
+            main()
+    return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
