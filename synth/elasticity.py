@@ -12,7 +12,8 @@ import numpy as np
 from synth.batch_nlp import Tasks
 from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
-from synth.instance import Instance, number
+from synth.instance import Instance, numeric
+from synth.model import Model
 from synth.special import expanded
 
 NOISE = 1e-6
@@ -164,18 +165,30 @@ def followers(instance: Instance) -> dict[str, dict[str, float]]:
     active = {name: r for name, r in declared.items() if r.sx is not None}
     moved: dict[str, dict[str, float]] = {name: {name: 1.0} for name in active}
     values = {**{str(active[n].sx): v for n, v in instance.requirements.items()}, **instance.row_values}
-    for name, r in active.items():
-        if name in instance.given or r.default is None or isinstance(r.default, float):
+    slopes: dict[str, list[tuple[str, Any, list[str]]]] = model.function("slopes of defaults", lambda: _slopes(model))
+    for name, made in slopes.items():
+        if name in instance.given:
             continue
-        expression = expanded(r.default, model.calls)
-        for other, earlier in active.items():
-            slope = number(ca.gradient(expression, earlier.sx), values)
+        for other, function, names in made:
+            slope = float(function.call([values[n] for n in names])[0])
             if slope:
                 for origin in moved:
                     share = moved[origin].get(other, 0.0)
                     if share:
                         moved[origin][name] = moved[origin].get(name, 0.0) + share * slope
     return moved
+
+
+def _slopes(model: Model) -> dict[str, list[tuple[str, Any, list[str]]]]:
+    """Return, per requirement whose default is made of others, the functions that give its slopes to each."""
+    active = {name: r for name, r in model.declaration.requirements.items() if r.sx is not None}
+    result: dict[str, list[tuple[str, Any, list[str]]]] = {}
+    for name, r in active.items():
+        if r.default is not None and not isinstance(r.default, float):
+            expression = expanded(r.default, model.calls)
+            slopes = {other: ca.gradient(expression, earlier.sx) for other, earlier in active.items()}
+            result[name] = [(other, *numeric(slope)) for other, slope in slopes.items() if not slope.is_zero()]
+    return result
 
 
 def _gradient(form: Formulation) -> Any:

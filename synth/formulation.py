@@ -193,6 +193,8 @@ class Formulation:
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
         self.conflict, self.compiled, self.alike = conflict, compiled, alike
         self.immovable = self._immovable()
+        moved = [model.program.dependence([k]) for k in range(self.n)]
+        self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
         self.contracted = 0
         self.workers = 1
         self.nlp_solves = 0

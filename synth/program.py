@@ -106,6 +106,7 @@ class Program:
         self.n_inputs = len(inputs)
         self.nodes: list[Node] = []
         self._numbers: dict[tuple[int, tuple[int, ...], float], int] = {}
+        self._dependent: dict[tuple[int, ...], np.ndarray] = {}
         self.input_nodes = [self._number(ca.OP_INPUT, (), float(k)) for k in range(self.n_inputs)]
         self.specials = list(dict.fromkeys(call.function for call in calls))
         symbols, numbers = list(inputs), list(self.input_nodes)
@@ -185,8 +186,12 @@ class Program:
         return ca.SX.unary(node.op, args[0]) if len(args) == 1 else ca.SX.binary(node.op, args[0], args[1])
 
     def dependence(self, inputs: Sequence[int]) -> np.ndarray:
-        """Return, for every node, whether it depends on any of the inputs (given by number)."""
-        return self.downstream([self.input_nodes[k] for k in inputs])
+        """Return, for every node, whether it depends on any of the inputs (given by number); the array is kept."""
+        key = tuple(inputs)
+        if key not in self._dependent:
+            self._dependent[key] = self.downstream([self.input_nodes[k] for k in key])
+            self._dependent[key].setflags(write=False)
+        return self._dependent[key]
 
     def downstream(self, sources: Iterable[int]) -> np.ndarray:
         """Return, for every node, whether it is one of the given nodes or depends on one."""
@@ -199,6 +204,7 @@ class Program:
     def with_inputs(self, nodes: Sequence[int]) -> Program:
         """Return the same program with some inner nodes as further inputs, behind the others."""
         result = copy.copy(self)
+        result._dependent = {}
         result.nodes = list(self.nodes)
         for position, k in enumerate(nodes):
             result.nodes[k] = Node(ca.OP_INPUT, (), float(self.n_inputs + position))

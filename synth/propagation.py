@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -17,7 +18,7 @@ from synth.intervals import Cut, Goal
 from synth.native import COMPILED_FROM
 from synth.native_boxes import Packed, Prepared, Question, compiled
 from synth.program import OP_SPECIAL
-from synth.special import expanded
+from synth.special import SpecialCall, expanded
 
 SAMPLES = 256
 STEP = 1e-4
@@ -43,6 +44,15 @@ class Propagated:
     high: np.ndarray
     goals: list[Any]
     open: list[Any]
+
+
+@dataclass(frozen=True)
+class Lessons:
+    """What solved problems tell about where to split, per set of objectives that are capped."""
+
+    learned: np.ndarray
+    importance: np.ndarray
+    count: np.ndarray
 
 
 class Propagation:
@@ -184,7 +194,7 @@ class Propagation:
         needed = set(model.program.needed(wanted)) if wanted else set()
         read = {k for k, node in enumerate(model.program.input_nodes[self.n :]) if node in needed}
         for refusal in instance.joint_refusals:
-            symbols = {str(s) for s in ca.symvar(expanded(refusal.when, model.calls))}
+            symbols = model.function(("symbols", id(refusal)), partial(_symbols, refusal.when, model.calls))
             read |= {k for k, e in enumerate(model.data_inputs) if str(e.sx) in symbols}
         result = []
         for f, name in enumerate(names):
@@ -461,14 +471,22 @@ class Propagation:
         self.weights = self._weights()
 
     @property
-    def lessons(self) -> int:
+    def taught(self) -> int:
         """Return how many solved problems were learned from."""
         return int(self._lessons.sum())
 
-    def taught_by(self, other: Propagation) -> None:
-        """Take what was learned for the same limits and objectives."""
-        self._learned, self._importance, self._lessons = other._learned, other._importance, other._lessons
+    def lessons(self) -> Lessons:
+        """Return what was learned so far."""
+        return Lessons(self._learned.copy(), self._importance.copy(), self._lessons.copy())
+
+    def taught_by(self, lessons: Lessons) -> bool:
+        """Take what was learned for the same limits and objectives; tell whether they are the same in number."""
+        if lessons.learned.shape != self._learned.shape:
+            return False
+        self._learned, self._importance = lessons.learned.copy(), lessons.importance.copy()
+        self._lessons = lessons.count.copy()
         self.weights = self._weights()
+        return True
 
     def _pattern(self, objectives: np.ndarray) -> np.ndarray:
         """Return the number of each set of objectives (..., bits)."""
@@ -506,3 +524,8 @@ def _medians(values: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         result: np.ndarray = np.where(count > 0, 0.5 * (middle[0] + middle[1]), 0.0)[..., 0]
     return result
+
+
+def _symbols(expression: Any, calls: Sequence[SpecialCall]) -> set[str]:
+    """Return the symbols that an expression reads, special functions written out."""
+    return {str(s) for s in ca.symvar(expanded(expression, calls))}

@@ -22,6 +22,7 @@ from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
 from synth.problem import DesignProblem, load
+from synth.propagation import Lessons
 from synth.purposes import Cover, Staircase, proven_slack
 from synth.rating import Rater
 from synth.recall import recall
@@ -150,14 +151,23 @@ class Question:
         time_limit: float | None = None,
         known: Sequence[Design] = (),
         explained: bool = True,
+        lessons: Lessons | None = None,
     ) -> ParetoFront:
         """Search the designs.
 
-        ``known`` are designs of a similar question: where to look first. They prove nothing, and no design is taken
-        from them that this question does not allow. ``explained``: tell why, where nothing is feasible.
+        ``known`` are designs of a similar question, where to look first, ``lessons`` what its search has learned. They
+        prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
+        where nothing is feasible.
         """
-        search = self.search(workers, progress, time_limit, known)
+        search = self.search(workers, progress, time_limit, known, lessons)
         return search.run(list(self.weights.values()), self.settings, explained)
+
+    def experience(self, time_limit: float | None = None) -> tuple[ParetoFront, Lessons | None]:
+        """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
+        search = self.search(time_limit=time_limit)
+        front = search.run(list(self.weights.values()), self.settings, explained=False)
+        # What was learned where nothing was feasible does not help where something is.
+        return front, search.form.propagation.lessons() if front.designs and not search.in_conflict else None
 
     def search(
         self,
@@ -165,12 +175,13 @@ class Question:
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
         known: Sequence[Design] = (),
+        lessons: Lessons | None = None,
     ) -> FrontSearch:
         """Return the search that answers."""
         points, gap, seed = (self.settings[name] for name in ("points", "gap", "seed"))
         return FrontSearch(
             self.instance, self.chosen, points, gap, seed, progress, time_limit, int(workers),
-            known=known, alike=self.alike,
+            known=known, alike=self.alike, lessons=lessons,
         )  # fmt: skip
 
 
@@ -314,6 +325,7 @@ class FrontSearch:
         effort: int | None = None,
         known: Sequence[Design] = (),
         alike: int = 1,
+        lessons: Lessons | None = None,
     ) -> None:
         # A question that is worth only some effort is not worth compiling for, nor solving what stays open.
         self.effort, self.thorough = (_effort(instance), True) if effort is None else (effort, False)
@@ -337,6 +349,7 @@ class FrontSearch:
         self.front: list[Candidate] = []
         self.complete = False
         self.scalar_problems = 0
+        self.solves_to_find: int | None = None  # of the designs listed; settling ties and prices come after
         self.open_combinations = float(instance.combinations)
         self.purpose = self._purpose(None)
         self.covering: Cover | None = None  # the finest cover that is finished
@@ -346,6 +359,7 @@ class FrontSearch:
         self.by_steps = False  # whether a front at once has turned out to cost too much
         self.may_find_more = True  # unless a try was given up
         self.recalled = list(known)
+        self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
 
     def _formulation(self, conflict: bool) -> Formulation:
         goals = with_ties(self.instance.model, self.chosen)
@@ -388,6 +402,7 @@ class FrontSearch:
             if len(self.form.archive):
                 if self.m > 1:
                     self._timed("front", self._choose)
+                self.solves_to_find = self.form.nlp_solves
                 designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
             elif explained:
                 searched = set(self.form.solved_combinations)
@@ -538,7 +553,9 @@ class FrontSearch:
     def _coarse(self) -> None:
         """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
         if self.recalled and recall(self.form, self.purpose, self.recalled, self.rng):
-            self._seek(self._fine())
+            # For one objective little is left to look for, where what is worth splitting is known as well.
+            if self.m > 1 or not self.taught:
+                self._seek(self._fine())
             return
         if self._look_round() or not len(self.pool):
             return
@@ -552,7 +569,7 @@ class FrontSearch:
         self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
         self.form.work = known.work
         self.form.solved_combinations = known.solved_combinations
-        self.form.propagation.taught_by(known.propagation)
+        self.form.propagation.taught_by(known.propagation.lessons())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
         self.purpose = self._purpose(None)
         self.pool = self.form.root()
@@ -853,6 +870,7 @@ class FrontSearch:
             "scalar_problems": self.scalar_problems,
             "designs_known": len(self.form.archive),
             "nlp_solves": self.form.nlp_solves,
+            "nlp_solves_to_find": self.solves_to_find,
             "outer_trials": self.outer_trials,
             "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
             "rows_used": {s.slot: len(s.rows) for s in selection.slots},

@@ -71,7 +71,7 @@ class Seeker:
         Before that, optima tell what is worth splitting.
         """
         form = self.form
-        found = len(form.archive) > 0 and form.propagation.lessons >= LESSONS
+        found = len(form.archive) > 0 and form.propagation.taught >= LESSONS
         return len(self.purpose.columns) > 1 or form.conflict or not found
 
     def _settle_best(self) -> None:

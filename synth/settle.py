@@ -96,9 +96,9 @@ def settle_variables(
     caps = np.full(phi.shape, np.inf)
     caps[:, :traded] = phi[:, :traded] + TIE
     for j in range(goals) if order is None else order:
-        moving = np.flatnonzero(np.any(high > low, axis=1))
+        moving = np.flatnonzero(np.any((high > low) & form.seen_by_goal[j], axis=1))
         if not len(moving):
-            break
+            continue
         tasks = Tasks(
             weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
             slopes=np.zeros((len(moving), goals)),

@@ -13,6 +13,7 @@ from synth.analysis import chosen_objectives
 from synth.errors import InputError
 from synth.instance import Instance, catalogs_for
 from synth.jobs.cells import READERS
+from synth.jobs.school import place
 from synth.jobs.store import digest, encoded
 from synth.jobs.table import RowTable
 from synth.jobs.vocabulary import FAMILY, FIX, LIMITS, OPTIONS, PARTS, STRUCTURE, Universe, Word, words_of
@@ -61,6 +62,7 @@ class Asked:
     key: str | None
     question: Mapping[str, Any] | None
     structure: str
+    place: tuple[float, ...]
     unused: tuple[str, ...]
     faults: tuple[Fault, ...]
 
@@ -217,12 +219,12 @@ class Questioner:
             self._check_width(line, cells)
             family = self._cell(FAMILY, cells)
             family = self._family(line, cells)
-            question, unused = self._question(line, cells, family)
+            question, values, unused = self._question(line, cells, family)
             structure = digest([question["family"], question["options"], sorted(question["requirements"])])
             key = self._check(line, question)
         except _Wrong as wrong:
-            return Asked(line, cells, family, None, None, structure, (), tuple(wrong.faults))
-        return Asked(line, cells, family, key, question, structure, tuple(unused), ())
+            return Asked(line, cells, family, None, None, structure, (), (), tuple(wrong.faults))
+        return Asked(line, cells, family, key, question, structure, place(values), tuple(unused), ())
 
     def _check_width(self, line: int, cells: tuple[str, ...]) -> None:
         if len(cells) != len(self.columns):
@@ -246,10 +248,14 @@ class Questioner:
             raise _Wrong([Fault(line, self.structural[FAMILY].title, named, right)])
         return named
 
-    def _question(self, line: int, cells: tuple[str, ...], family: str) -> tuple[dict[str, Any], list[str]]:
+    def _question(
+        self, line: int, cells: tuple[str, ...], family: str
+    ) -> tuple[dict[str, Any], list[float], list[str]]:
+        """Return what a row asks, its requirements in SI in the order of their names, and the columns not used."""
         variant, options, ignored = self._variant(line, cells, family)
         faults: list[Fault] = []
         requirements: dict[str, str] = {}
+        numbers: dict[str, float] = {}
         given: dict[str, dict[str, Any]] = {
             name: {str(k): v for k, v in self.common.get(name, {}).items()} for name in (LIMITS, FIX, PARTS)
         }
@@ -272,12 +278,12 @@ class Questioner:
                 continue
             sources[word.name] = column
             try:
-                value = self._value(column, word, text)
+                value, number = self._value(column, word, text)
             except InputError as error:
                 faults.append(Fault(line, column.title, text, error.expected))
                 continue
             if word.kind == "requirement":
-                requirements[word.name] = value
+                requirements[word.name], numbers[word.name] = value, number
             elif word.name in given[FIX]:
                 right = f"{word.name} in one place: it stands in column {FIX} too"
                 faults.append(Fault(line, column.title, text, right))
@@ -292,13 +298,13 @@ class Questioner:
             "requirements": dict(sorted(requirements.items())),
             **{name: dict(sorted(entries.items())) for name, entries in given.items()},
         }
-        return question, unused
+        return question, [numbers[name] for name in question["requirements"]], unused
 
     @staticmethod
-    def _value(column: Column, word: Word, text: str) -> str:
-        """Return a cell with its unit; refuse what is no number of the kind."""
+    def _value(column: Column, word: Word, text: str) -> tuple[str, float]:
+        """Return a cell with its unit, and its number in SI (0 for words); refuse what is no number of the kind."""
         if word.unit is None:
-            return text
+            return text, 0.0
         stated = text
         if column.unit not in (None, "-"):
             try:
@@ -306,8 +312,7 @@ class Questioner:
             except InputError:
                 if not LETTER.search(text):
                     raise
-        parse_quantity(stated, word.unit, column.title)
-        return stated
+        return stated, parse_quantity(stated, word.unit, column.title)
 
     def problems(self) -> list[type[DesignProblem]]:
         """Return the classes of the families that rows name, those registered and the user's own."""

@@ -19,6 +19,7 @@ from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.outputs import write_outputs
 from synth.jobs.questions import Asked, Questioner, canonical_position, read_mapping
 from synth.jobs.runner import Runner, Shares
+from synth.jobs.school import School
 from synth.jobs.store import DONE, OPEN, Store, digest, encoded, file_url
 from synth.jobs.table import read_table
 from synth.problem import families, load
@@ -248,12 +249,14 @@ class BatchJob:
             return True
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
-            asked, first = 0, list[Asked]()
+            asked, first, school = 0, list[Asked](), School()
             for count, row in enumerate(self.questioner.rows(), start=1):
-                asked += row.question is not None
+                if row.key is not None and row.question is not None:
+                    asked += 1
+                    school.show(row.structure, row.key, row.place, row.question)
                 if count <= SHOWN_FAULTS and not asked:
                     first.append(row)
-                pickle.dump(self._recorded(row), checked)
+                pickle.dump((self._recorded(row), row.place), checked)
             if not asked:
                 self._refuse(first, count if first else 0)
             checked.seek(0)
@@ -262,7 +265,7 @@ class BatchJob:
                     "id": self.id, "basis": self.basis, "source": self.table.name,
                     "folder": str(self.folder.resolve()), "content": self._content(),
                 },
-                (pickle.load(checked) for _ in range(count)),
+                (_taught(school, *pickle.load(checked)) for _ in range(count)),
                 ROWS_PER_UNIT if self._is_single() else FRONTS_PER_UNIT,
             )  # fmt: skip
 
@@ -330,7 +333,6 @@ class BatchJob:
             question = {
                 "key": row.key,
                 "structure": row.structure,
-                "position": canonical_position((encoded(row.question),)),
                 "content": row.question,
             }
         return {
@@ -410,6 +412,21 @@ def work_off(
     else:
         store.set_state(job, DONE, "done")
     return stopped
+
+
+def _taught(school: School, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
+    """Return a row as it is kept: with the question whose experience helps it."""
+    question = record["question"]
+    if question is None:
+        return record
+    key, asked, teacher = school.taught(question["structure"], question["key"], where, question["content"])
+    # Questions with one teacher stand together, so that few processes need its experience.
+    position = canonical_position((encoded(question["content"]),))
+    return {
+        **record,
+        "key": key,
+        "question": {**question, "key": key, "content": asked, "position": teacher.encode() + b"\0" + position},
+    }
 
 
 def resume(

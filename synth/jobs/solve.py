@@ -1,14 +1,15 @@
 """One unit of work: questions in, answers out. Nothing here knows of the database, of other units or of the time.
 
-The answer to a question depends on the question alone, not on what it is solved together with, where or when: that
-is why a batch gives the same bytes however it is spread and interrupted.
+The answer to a question depends on the question alone (a teacher that it names is part of it), not on what it is
+solved together with, where or when: that is why a batch gives the same bytes however it is spread and interrupted.
 """
 
 from __future__ import annotations
 
+import json
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +17,12 @@ from synth.errors import InputError
 
 if TYPE_CHECKING:
     from synth.problem import DesignProblem
+    from synth.propagation import Lessons
     from synth.results import Design, ParetoFront
+    from synth.search import Question
     from synth.tables import Catalogs
 
+LIKE = "like"  # where a question names the one whose experience helps
 LONGEST_ERROR = 2000
 
 
@@ -67,7 +71,8 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     Parameters
     ----------
     question : mapping
-        ``family``, ``options``, ``requirements``, ``limits``, ``fix``, ``parts``.
+        ``family``, ``options``, ``requirements``, ``limits``, ``fix``, ``parts``, and ``like`` where the experience
+        with a similar question helps: that question.
     settings : mapping
         ``objectives``, ``points``, ``gap``, ``grid``, ``seed``, ``time_limit``.
     shared : Shared
@@ -78,16 +83,14 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     dict
         ``status``, ``seconds``, ``layout`` (the columns of the designs; None without any) and ``content``.
     """
-    from synth.search import synthesize
-
     begin = time.monotonic()
-    problem = _problem(shared, question["family"], tuple(sorted(question["options"].items())))
+    known: Sequence[Design] = ()
+    lessons: Lessons | None = None
+    if LIKE in question:
+        known, lessons = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
     try:
-        front = synthesize(
-            problem, question["requirements"], catalogs=_catalogs(shared),
-            parts=question["parts"], limits=question["limits"], fix=question["fix"],
-            **{name: value for name, value in settings.items() if value is not None},
-        )  # fmt: skip
+        posed = _posed(question, settings, shared)
+        front = posed.answer(time_limit=settings["time_limit"], known=known, lessons=lessons)
     except InputError as refusal:
         # The rows were checked; what only the search can see is still said in its words.
         seconds = time.monotonic() - begin
@@ -95,6 +98,30 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     if front.interrupted == "interrupted":
         raise KeyboardInterrupt  # whoever pressed Ctrl-C wants the batch to stop, not half an answer
     return record(front, time.monotonic() - begin)
+
+
+def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
+    """Check a question as a whole."""
+    from synth.search import pose
+
+    return pose(
+        _problem(shared, question["family"], tuple(sorted(question["options"].items()))), question["requirements"],
+        catalogs=_catalogs(shared), parts=question["parts"], limits=question["limits"], fix=question["fix"],
+        **{name: settings[name] for name in ("objectives", "points", "gap", "grid", "seed")},
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=8)
+def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], Lessons | None]:
+    """Return what the search for a similar question has found and learned; nothing where it fails."""
+    stated = json.loads(settings)
+    try:
+        front, lessons = _posed(json.loads(question), stated, shared).experience(stated["time_limit"])
+    except Exception:  # its own row tells why
+        return (), None
+    if front.interrupted == "interrupted":
+        raise KeyboardInterrupt
+    return front.designs, lessons
 
 
 def record(front: ParetoFront, seconds: float) -> dict[str, Any]:
@@ -107,6 +134,7 @@ def record(front: ParetoFront, seconds: float) -> dict[str, Any]:
         "complete": front.complete,
         "interrupted": front.interrupted,
         "nlp_solves": front.statistics.get("nlp_solves"),
+        "nlp_solves_to_find": front.statistics.get("nlp_solves_to_find"),
         "explanation": "" if front.explanation is None else " ".join(str(front.explanation.get("message", "")).split()),
     }
     if not front.designs:

@@ -116,7 +116,7 @@ def test_a_batch_is_measured() -> None:
     found = batch.measure(2, 1, "tiny", None)
     assert (found["rows"], found["with designs"], found["global"]) == (2, 1, 2)
     assert found["combinations"] == 30
-    assert found["NLPs, median"] > 0
+    assert found["NLPs in all, median"] > 0
     assert 0 < found["MiB, master"]
     spent = batch.overhead(4)
     assert 0 < spent["claim and keep ms"]
