@@ -74,7 +74,10 @@ def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, points: int
 ) -> None:
     monkeypatch.setattr(school, "ONE_IN", 4)
-    table = [{"id": f"R{k}", "force [kN]": 10 + k, "diameter_limit [mm]": 30 + k % 3} for k in range(24 if points == 1 else 12)]
+    table = [
+        {"id": f"R{k}", "force [kN]": 10 + k, "diameter_limit [mm]": 30 + k % 3}
+        for k in range(24 if points == 1 else 12)
+    ]
     shuffled = list(table)
     random.Random(1).shuffle(shuffled)
     objectives = ["mass"] if points == 1 else ["mass", "diameter"]
