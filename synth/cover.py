@@ -66,6 +66,7 @@ def cover(
     Covered
     """
     every = reaches_beyond(purpose, form.bounded)
+    form.focus()
     seeker, looked = Seeker(form, purpose, rng, every), 0
     boxes = boxes if every else form.lean(boxes)
     nothing = boxes.take(slice(0, 0))

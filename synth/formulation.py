@@ -30,6 +30,7 @@ TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
 CAP_ROWS = 512
+FOCUS = 64  # designs known at which it is measured what boxes are split along
 EDGE = 1e-3  # share of max and min by which their edge is rounded off for a first solve
 
 
@@ -202,6 +203,7 @@ class Formulation:
         self.solved_combinations: set[int] = set()
         self.archive = Archive(range(traded), self.n, len(self.goals))
         self._rows: Rows | None = None
+        self._focused: np.ndarray | None = None
         self.propagation = Propagation(instance, cuts, self.goals, self.bounded, conflict, compiled, alike)
         self.cells = self.propagation.cells
         self.width = self.propagation.width
@@ -631,6 +633,15 @@ class Formulation:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
         prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
         self.propagation.learn(prices[found.converged], importance[found.converged])
+
+    def focus(self) -> None:
+        """Split boxes from now on where it matters at the designs known."""
+        known = self.archive.phi
+        if not len(known) or known is self._focused:
+            return
+        self._focused = known
+        rows = np.unique(np.linspace(0, len(known) - 1, FOCUS).astype(int))
+        self.propagation.focus(self.archive.variables[rows], self.archive.combination[rows])
 
     def void(self, data: Sequence[Any], count: int) -> np.ndarray:
         """Return which limits do not count for which designs (designs, limits): a column has no value."""

@@ -30,6 +30,7 @@ SOME = 1e-3  # share of the multipliers of all objectives from which one counts 
 ENOUGH = 8  # problems solved before their own weights are believed
 # Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
 PARTS_FIRST = 3.0
+ANYWHERE = 0.1  # what influences anywhere count beside those at the designs known
 PIVOT_OF = 2  # variables that an inner node depends on to be worth carrying
 MOST_PIVOTS = 1
 COMPILE_AFTER = 20_000  # boxes of a question; as many as NumPy does in about a tenth of a second
@@ -129,7 +130,7 @@ class Propagation:
         self.low, self.high = np.array([a for a, _ in ends]), np.array([b for _, b in ends])
         self.positive = self.low > 0
         self.grids = [*instance.grids(), *(np.empty(0) for _ in self.pivots)]
-        self._influence = self._influences()
+        self._influence = self._anywhere = self._influences()
         weights = self._influence.sum(axis=0)
         trees = [ClusterTree(f, weights[[self.n + i for i in f.inputs]]) for f in self.factors]
         self.cells = Cells(trees, instance.radix)
@@ -142,10 +143,7 @@ class Propagation:
         self._lessons = np.zeros(1 << self._bits, dtype=np.int64)
         self._importance = np.zeros(1 << self._bits)
         self.weights = self._weights()
-        moving = np.concatenate(
-            [self._influence[:, : self.n], self._influence[:, len(self._influence[0]) - len(self.pivots) :]], axis=1
-        )
-        self._steep = np.maximum(moving, self._floor).astype(np.float32)
+        self._steep = self._steep_of_moving()
         self._range = np.maximum(self.high - self.low, 1e-300)
         self._codes: dict[tuple[bool, bool], Code] = {}
         self._prepared: dict[bool, Prepared] = {}
@@ -256,9 +254,8 @@ class Propagation:
 
         A median over random points; it only decides where boxes are split, never what is excluded.
         """
-        program, n = self.model.program, self.n
+        n = self.n
         rng = np.random.default_rng(0)
-        nodes = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
         share, low, high = rng.random((SAMPLES, n)), self.low[:n], self.high[:n]
         with np.errstate(all="ignore"):
             ratio = low * (high / low) ** share
@@ -269,31 +266,66 @@ class Propagation:
             for position, k in enumerate(factor.inputs):
                 data[k] = factor.columns[digits, position]
         inputs = [points[:, i] for i in range(n)] + data
+        self._relative = [bool(np.all(x > 0)) for x in inputs]
+        self._reach = [float(np.ptp(x)) for x in inputs]
+        result, self.goal_sizes = self._steepness(inputs)
+        return result
+
+    def focus(self, variables: np.ndarray, combinations: np.ndarray) -> None:
+        """Measure influences at some designs: what matters there counts more than what matters anywhere.
+
+        Like all influences these decide where boxes are split, never what is excluded.
+        """
+        data = self.instance.data(combinations)
+        data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in data]
+        near, _ = self._steepness([variables[:, i] for i in range(self.n)] + data)
+        self._influence = np.maximum(near, ANYWHERE * self._anywhere)
+        self._spreads = [self._spread(tree) for tree in self.cells.trees]
+        self._steep = self._steep_of_moving()
+        self._prepared.clear()
+
+    def _steep_of_moving(self) -> np.ndarray:
+        """Return the influences of variables and pivots."""
+        first_pivot = self._influence.shape[1] - len(self.pivots)
+        moving = np.concatenate([self._influence[:, : self.n], self._influence[:, first_pivot:]], axis=1)
+        steep: np.ndarray = np.maximum(moving, self._floor).astype(np.float32)
+        return steep
+
+    def _steepness(self, inputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Return the influences as medians over some designs, and the sizes of the objectives there.
+
+        Parameters
+        ----------
+        inputs : list of array (designs,)
+            Variables and data.
+        """
+        program, n, count = self.model.program, self.n, len(inputs[0])
+        nodes = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
         moving = list(range(n)) + [n + k for f in self.factors for k in f.inputs]
         pivoted = program.with_inputs(self.pivots)
         evaluate = self.model.function(("influence", tuple(nodes), self.pivots), lambda: pivoted.compile(nodes))
         at_pivots = self.model.function(("pivots", self.pivots), lambda: program.compile(self.pivots))
         with np.errstate(all="ignore"):
-            inputs += [np.broadcast_to(np.asarray(v, dtype=float), (SAMPLES,)) for v in at_pivots(inputs)]
+            inputs = inputs + [np.broadcast_to(np.asarray(v, dtype=float), (count,)) for v in at_pivots(inputs)]
         moving += range(len(inputs) - len(self.pivots), len(inputs))
         result = np.zeros((len(self.cuts) + len(self.goals), len(inputs)))
         scales = np.ones(len(moving))
         # The points as they are, and with one input after the other a little larger: all in one evaluation.
         moved = [np.tile(x, (1 + len(moving), 1)) for x in inputs]
+        relative = [*self._relative, *(True for _ in self.pivots)]
         for row, i in enumerate(moving):
-            step = inputs[i] * STEP if np.all(inputs[i] > 0) else np.full(SAMPLES, STEP * np.ptp(inputs[i]))
+            step = inputs[i] * STEP if relative[i] else np.full(count, STEP * self._reach[i])
             # Variables are measured as widths() does, columns as clusters do.
-            scales[row] = STEP if np.all(inputs[i] > 0) or i < n else step[0]
+            scales[row] = STEP if relative[i] or i < n else step[0]
             moved[i][1 + row] += step
         with np.errstate(all="ignore"):
             values = [np.broadcast_to(np.asarray(v, dtype=float), moved[0].shape) for v in evaluate(moved)]
-            goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]]).reshape(-1, SAMPLES)
+            goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]]).reshape(-1, count)
             sizes = _medians(np.where(goals > 0, goals, np.nan))
-            self.goal_sizes = np.where(sizes > 0, sizes, 1.0)
             for j, size in enumerate(self._sizes(values)):
                 steep = _medians(np.abs(size[1:] - size[0]) / scales[:, None])
                 result[j, moving] = np.minimum(steep, LARGEST_INFLUENCE)
-        return result
+        return result, np.where(sizes > 0, sizes, 1.0)
 
     def _sizes(self, values: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Return limits as log(value/limit) and objectives as logarithms, or as scaled differences."""

@@ -14,6 +14,7 @@ from synth.analysis import chosen_objectives, make_design, make_frame, part_row,
 from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
 from synth.cover import Covered, best, cover
+from synth.dives import dive
 from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
@@ -38,7 +39,7 @@ TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easie
 SOON = 150_000
 MANY = 7  # variables
 EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
-FILL_EFFORT = 20_000
+FILL_EFFORT = 100_000
 TIE_EFFORT = 2_000
 COARSE = 0.1
 COARSE_EFFORT = 20_000
@@ -50,6 +51,7 @@ MARGIN = 0.99
 ROUNDED = 2e-9
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
+SCARCE = 16  # designs known below which it is worth looking harder before all is covered
 OUTER_TRIALS = 576
 
 
@@ -562,14 +564,15 @@ class FrontSearch:
         self._prepare_for_conflict()
         self._look_round()
 
-    def _prepare_for_conflict(self) -> None:
-        """Begin again with boxes that also carry what limits share, and keep what is known."""
-        known, self.in_conflict = self.form, True
-        self.form = self._formulation(conflict=True)
+    def _prepare_for_conflict(self, conflict: bool = True) -> None:
+        """Begin again with boxes that also carry what limits share, or without, and keep what is known."""
+        known, self.in_conflict = self.form, conflict
+        self.form = self._formulation(conflict)
         self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
         self.form.work = known.work
         self.form.solved_combinations = known.solved_combinations
-        self.form.propagation.taught_by(known.propagation.lessons())
+        if conflict:
+            self.form.propagation.taught_by(known.propagation.lessons())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
         self.purpose = self._purpose(None)
         self.pool = self.form.root()
@@ -588,9 +591,11 @@ class FrontSearch:
 
     def _cover(self) -> None:
         """Cover everything as finely as the points asked for need, at most as the gap."""
+        scarce = self.m == 2 and self.instance.combinations > EXHAUSTIVE_LIMIT and self._dive()
         form = self.form
         fine = self._fine()
-        outcome = self._covered(fine, min(self.effort, TOGETHER) if self.m == 2 else self.effort)
+        together = SOON if scarce else TOGETHER
+        outcome = self._covered(fine, min(self.effort, together) if self.m == 2 else self.effort)
         if not outcome.closed and self.m == 2:
             fine = self._fine()
             # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
@@ -604,6 +609,18 @@ class FrontSearch:
             if not self.closed:
                 self.proven = [self._covering_slack(fine, left)]
         self.open_combinations = float(form.cells.size(left.cell).sum())
+
+    def _dive(self) -> bool:
+        """Look for more where few designs are known; tell whether they are still few, but not none."""
+        if not len(self.form.archive):
+            self._covered(self._with_slack(self.purpose.slack), min(self.effort, TOGETHER), enough=0)
+        if not 0 < len(self.form.archive) < SCARCE:
+            return False
+        if self.in_conflict:
+            self._prepare_for_conflict(False)
+        dive(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
+        self._seek(self._fine())
+        return len(self.form.archive) < SCARCE
 
     def _fine(self) -> Cover:
         """Return the cover that is as fine as the points asked for need, at most as the gap."""
@@ -653,7 +670,10 @@ class FrontSearch:
                 break
         if self.closed and not self.complete and len(self.front) < self.points:
             covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, EFFORT).closed
-            self.complete = covered and self._stand_for_all()
+            if covered:
+                # Now each design stands that no known one beats, also those that were found meanwhile.
+                self.front = self._polished(self._more_than_asked)
+                self.complete = len(self.front) <= self.points and self._stand_for_all()
         self.front = self._spread(self.front, self.points)
 
     @property

@@ -120,6 +120,36 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     assert form.propagation._lessons.sum() > 0
 
 
+class Lidded(synth.DesignProblem):
+    """A frame of any size with a lid: anywhere the frame weighs most by far, in a good design the lid does."""
+
+    name, title = "lidded", "Lidded"
+
+    def declare(self, d):
+        frame, lid = d.variable("frame", "-", 1, 100), d.part("lid", "rows")
+        d.derive("mass", "kg", frame**3 + 100 * lid.size)
+        d.at_least("room", frame * lid.size, 1.5, "-")
+        d.objective("mass")
+
+
+def test_boxes_are_split_along_what_matters_at_the_designs_known():
+    rows = pd.DataFrame({"designation": list("abcd"), "size [-]": [1.0, 1.1, 1.3, 1.6]})
+    problem = Lidded()
+    form = Formulation(Instance(problem, {}, catalogs_for(problem, {"rows": rows})), {"mass": "min"}, 1)
+    caps = np.array([np.inf])
+    before = form.contract(form.root(), caps)
+    point, combination = np.array([[1.5]]), np.array([0])
+    feasible, phi = form.feasible_rows(point, combination)
+    form.archive.add(combination[feasible], point[feasible], phi[feasible])
+    form.focus()
+    after = form.contract(form.root(), caps)
+    assert before.scores[0, 0] > before.scores[0, 1]
+    assert after.scores[0, 0] < before.scores[0, 0]
+    assert after.scores[0, 1] > before.scores[0, 1]
+    for name in ("cell", "low", "high", "bounds"):
+        np.testing.assert_array_equal(getattr(after, name), getattr(before, name))
+
+
 class Clearance(synth.DesignProblem):
     """The smallest clearance of a pair: no bound knows it to be positive, and the best is far below the usual."""
 

@@ -1,0 +1,90 @@
+"""Looks for designs where hardly any are known: in a few promising combinations to the bottom, not in all a little.
+
+Where sizes are coarse steps and limits are tight, most combinations whose continuous problem has a good optimum have no
+makeable design near it. A small tree over such combinations alone finds what rounding misses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.batch_nlp import MISSED, Tasks
+from synth.clock import Clock
+from synth.cover import cover
+from synth.formulation import Archive, Formulation
+from synth.purposes import Cover
+
+MOST_DIVES = 40
+PATIENCE = 2  # dives without success, per objective
+SOLVED = 4096  # continuous problems of a dive
+PROMISING = 12  # combinations of a dive
+EFFORT = 30_000  # boxes of a dive
+TIE_WEIGHT = 1e-6
+
+
+def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator) -> None:
+    """Improve the best design known in each objective in turn, until nothing better comes.
+
+    It proves nothing.
+
+    Parameters
+    ----------
+    form : Formulation
+        Its archive holds what is known, at least one design, and takes what is found.
+    columns : list of int
+        Numbers of the objectives that are traded off.
+    slack : array (columns,)
+        In phi; less is no progress.
+    clock : Clock
+    rng : Generator
+    """
+    failures = 0
+    for turn in range(MOST_DIVES):
+        place = turn % len(columns)
+        k = columns[place]
+        best = form.archive.phi[:, k].min()
+        combinations = _promising(form, columns, k, float(slack[place]), rng)
+        if len(combinations):
+            nothing = Archive([k], form.n, len(form.goals))
+            purpose = Cover([k], slack[place : place + 1], np.full(len(form.goals), np.inf), nothing)
+            purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
+            cover(form, form.leaves(combinations), purpose, clock, rng, EFFORT)
+        failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
+        if failures >= PATIENCE * len(columns):
+            return
+
+
+def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, rng: np.random.Generator) -> np.ndarray:
+    """Return combinations near the designs known that could be better in one objective if all sizes were makeable.
+
+    The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
+    """
+    combinations, start = _two_parts_away(form, rng)
+    weights = np.zeros((len(combinations), len(form.goals)))
+    weights[:, list(columns)] = TIE_WEIGHT
+    weights[:, k] = 1.0
+    free = np.full(weights.shape, np.inf)
+    found = form.solve_many(Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0), combinations, start)
+    reach = np.where(found.violation <= MISSED, found.phi[:, k], np.nan)
+    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
+    if not len(good):
+        return combinations[:0]
+    good = good[np.argsort(reach[good], kind="stable")]
+    chosen: np.ndarray = combinations[good[np.unique((rng.random(PROMISING) ** 2 * len(good)).astype(int))]]
+    return chosen
+
+
+def _two_parts_away(form: Formulation, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return random combinations that differ from a design known in at most two parts, with its variables."""
+    archive, radix = form.archive, np.array(form.instance.radix)
+    parents = rng.integers(len(archive), size=SOLVED)
+    digits = np.stack(form.instance.digits(archive.combination[parents]), axis=1)
+    for _ in range(2):
+        part = rng.choice(np.flatnonzero(radix > 1), SOLVED)
+        digits[np.arange(SOLVED), part] = rng.integers(radix[part])
+    numbers = form.cells.number(list(digits.T), SOLVED)
+    combinations, first = np.unique(numbers, return_index=True)
+    keep = form.not_refused(combinations)
+    return combinations[keep], archive.variables[parents[first[keep]]]
