@@ -12,6 +12,7 @@ differentiated piecewise as they stand; the general solver with its explicit bra
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -28,7 +29,7 @@ from synth.program import Program
 # Rows broken by more than this count as missed, and the problem is tried again from another start.
 MISSED = 1e-7
 OTHER_STARTS = (0.75, 0.25)
-CHUNK = 6000
+CHUNK, NATIVE_CHUNK = 6000, 512  # problems at a time; the result is the same for any number
 
 
 @dataclass(frozen=True)
@@ -142,6 +143,7 @@ class BatchNlp:
         high: np.ndarray,
         bounds: Sequence[float],
         void: np.ndarray,
+        workers: int = 1,
     ) -> Solutions:
         """Solve all problems, each from its start, and again from other starts where that fails.
 
@@ -156,6 +158,8 @@ class BatchNlp:
             Constant right sides, in the order of the cuts.
         void : array of bool (problems, cuts)
             Limits that do not count.
+        workers : int
+            Threads that may solve at the same time, where the code is compiled.
 
         Returns
         -------
@@ -163,19 +167,25 @@ class BatchNlp:
         """
         count = len(tasks.weights)
         columns = [np.asarray(x, dtype=float) for x in data]
-        parts = []
-        for first in range(0, max(count, 1), CHUNK):
-            rows = slice(first, min(first + CHUNK, count))
-            parts.append(
-                self._solve_part(
-                    Tasks(
-                        tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
-                        tasks.t_weight, tasks.elastic, None if tasks.moved is None else tasks.moved[rows],
-                    ),
-                    [x if x.ndim == 0 else x[rows] for x in columns],
-                    start[rows], low[rows], high[rows], bounds, void[rows],
-                )
+        chunk = NATIVE_CHUNK if self.native and workers > 1 else CHUNK
+
+        def solved(first: int) -> Solutions:
+            rows = slice(first, min(first + chunk, count))
+            return self._solve_part(
+                Tasks(
+                    tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
+                    tasks.t_weight, tasks.elastic, None if tasks.moved is None else tasks.moved[rows],
+                ),
+                [x if x.ndim == 0 else x[rows] for x in columns],
+                start[rows], low[rows], high[rows], bounds, void[rows],
             )  # fmt: skip
+
+        begins = range(0, max(count, 1), chunk)
+        if self.native and min(workers, len(begins)) > 1:
+            with ThreadPoolExecutor(min(workers, len(begins))) as threads:
+                parts = list(threads.map(solved, begins))
+        else:
+            parts = [solved(first) for first in begins]
         return Solutions(
             **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Solutions)}
         )

@@ -618,7 +618,7 @@ class Formulation:
         def solved(edge: float, begin: np.ndarray) -> Solutions:
             nlp = self.batch_nlp(edge)
             before = nlp.steps
-            found = nlp.solve(tasks, data, begin, low, high, self.bounds, void)
+            found = nlp.solve(tasks, data, begin, low, high, self.bounds, void, self.workers)
             self.work += (nlp.steps - before) * len(self.model.program.nodes)
             return found
 

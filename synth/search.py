@@ -36,7 +36,7 @@ from synth.steps import cover_by_steps, prove_by_steps
 
 EFFORT = 20_000_000
 TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
-SOON = 150_000
+SOON, QUICKLY = 150_000, 50_000
 MANY = 7  # variables
 EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
 FILL_EFFORT = 100_000
@@ -493,7 +493,7 @@ class FrontSearch:
         found, outcome, slack = self._best_within(k, plain, start, first)
         if not outcome.closed and effort is None and not self.in_conflict:
             # What is feasible is so narrow that it costs most to tell which limits leave nothing.
-            self._prepare_for_conflict()
+            self._begin_again(conflict=True)
             found, outcome, slack = self._best_within(k, plain, found, self.effort)
         if not outcome.closed and effort is None:
             purpose = Cover([k], np.array([slack]), plain, Archive([k], self.form.n, len(self.form.goals)))
@@ -561,11 +561,11 @@ class FrontSearch:
             return
         if self._look_round() or not len(self.pool):
             return
-        self._prepare_for_conflict()
+        self._begin_again(conflict=True)
         self._look_round()
 
-    def _prepare_for_conflict(self, conflict: bool = True) -> None:
-        """Begin again with boxes that also carry what limits share, or without, and keep what is known."""
+    def _begin_again(self, conflict: bool) -> None:
+        """Begin again with boxes that also carry what limits share (conflict) or do not, and keep what is known."""
         known, self.in_conflict = self.form, conflict
         self.form = self._formulation(conflict)
         self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
@@ -594,7 +594,7 @@ class FrontSearch:
         scarce = self.m == 2 and self.instance.combinations > EXHAUSTIVE_LIMIT and self._dive()
         form = self.form
         fine = self._fine()
-        together = SOON if scarce else TOGETHER
+        together = QUICKLY if scarce else TOGETHER
         outcome = self._covered(fine, min(self.effort, together) if self.m == 2 else self.effort)
         if not outcome.closed and self.m == 2:
             fine = self._fine()
@@ -617,7 +617,7 @@ class FrontSearch:
         if not 0 < len(self.form.archive) < SCARCE:
             return False
         if self.in_conflict:
-            self._prepare_for_conflict(False)
+            self._begin_again(conflict=False)
         dive(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
         self._seek(self._fine())
         return len(self.form.archive) < SCARCE

@@ -10,13 +10,15 @@ from __future__ import annotations
 import numpy as np
 
 from synth.clock import Clock
-from synth.cover import Covered, best
+from synth.cover import Covered, best, cover
 from synth.formulation import TIE, Boxes, Candidate, Formulation
 from synth.purposes import Cover, Staircase
 from synth.seeker import Seeker
 from synth.settle import settle_variables
 
 CAPPED, SOUGHT = 0, 1
+PROOF = 0.8  # share of the slack
+NARROW = 20.0  # in units of the slack
 
 
 def cover_by_steps(
@@ -24,8 +26,9 @@ def cover_by_steps(
 ) -> Covered:
     """Cover everything by known designs, as ``cover`` does, for two objectives.
 
-    Half of the slack is for the proof of a step, half for the choice of the design that stands for it: the one that
-    reaches furthest in the other objective.
+    Most of the slack is for the proof of a step, the rest for the choice of the design that stands for it: the one that
+    reaches furthest in the other objective. Where little is left between the two ends it is covered at once: each step
+    would look at much the same boxes.
 
     Parameters
     ----------
@@ -44,22 +47,32 @@ def cover_by_steps(
     Covered
         What steps left open, without what was covered meanwhile.
     """
-    half = purpose.slack[SOUGHT] / 2
+    proof = PROOF * purpose.slack[SOUGHT]
+    choice = purpose.slack[SOUGHT] - proof
     plain = np.full(len(form.goals), np.inf)
     # The other end first: good designs there are often not far from good in both.
-    _, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
-    looked, left = end.looked, [form.lean(form.nothing())]
+    first, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
+    looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
     Seeker(form, purpose, rng, False).beside(clock)
     while True:
-        found, outcome = best(form, pool, SOUGHT, plain.copy(), half, clock, rng, effort=effort)
+        found, outcome = best(form, pool, SOUGHT, plain.copy(), proof, clock, rng, effort=effort)
         looked += outcome.looked
         left.append(form.lean(outcome.open))
         if found is None:
             break
-        _stretch(form, found, half)
+        _stretch(form, found, choice)
         phi = form.archive.phi
-        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + half) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)
+        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)
         plain[CAPPED] = phi[good, CAPPED].min() - purpose.slack[CAPPED]
+        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= NARROW * purpose.slack[CAPPED]:
+            # Nothing is better in the first objective than its end, so nothing useful is worse than that in the second.
+            between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - purpose.slack[SOUGHT], plain)
+            rest = Cover(purpose.columns, purpose.slack, between, form.archive)
+            outcome = cover(form, pool, rest, clock, rng, min(effort, 2 * outcome.looked))
+            looked += outcome.looked
+            if outcome.closed:
+                break
+            narrow = False
     still = Boxes.joined(left)
     return Covered(still.take(purpose.room(form.phi_of(still.bounds)) > 0), looked)
 
