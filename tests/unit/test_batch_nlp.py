@@ -6,7 +6,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import casadi as ca
@@ -444,9 +444,9 @@ class Clutch:
         point = np.stack([outer, outer * rng.uniform(0.65, 0.78, count), force, ramp], axis=1)
         return rng.integers(0, self.instance.combinations, count), point
 
-    def solve(self, compiled: bool) -> Solutions:
+    def solve(self, compiled: bool, workers: int = 1) -> Solutions:
         solver = BatchNlp(self.model.program, self.n, self.rows, native=compiled)
-        return solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void)
+        return solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void, workers)
 
     def cost(self, phi: np.ndarray, t: np.ndarray) -> np.ndarray:
         return (self.tasks.weights * phi).sum(axis=1) + self.tasks.t_weight * t
@@ -518,6 +518,17 @@ def test_compiled_and_not_compiled_give_the_same(kind):
     assert np.sum(difference > 1e-8) <= 2
     violation = clutch.judged(compiled.variables, compiled.t)[1]
     np.testing.assert_allclose(np.minimum(violation, 1e3), np.minimum(compiled.violation, 1e3), atol=1e-9)
+
+
+@BOTH
+@pytest.mark.parametrize("kind", ["chebyshev", "single"])
+def test_the_answers_do_not_depend_on_the_number_of_threads(compiled, kind):
+    clutch = Clutch(600, 4, kind)  # more than one thread takes at a time
+    alone = clutch.solve(compiled)
+    for workers in (2, 3):
+        together = clutch.solve(compiled, workers)
+        for field in fields(Solutions):
+            np.testing.assert_array_equal(getattr(together, field.name), getattr(alone, field.name), field.name)
 
 
 @BOTH
