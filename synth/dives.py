@@ -66,7 +66,8 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
     weights[:, list(columns)] = TIE_WEIGHT
     weights[:, k] = 1.0
     free = np.full(weights.shape, np.inf)
-    found = form.solve_many(Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0), combinations, start)
+    tasks = Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0)
+    found = form.solve_many(tasks, combinations, start, rough=True)
     reach = np.where(found.violation <= MISSED, found.phi[:, k], np.nan)
     good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
     if not len(good):

@@ -601,10 +601,12 @@ class Formulation:
         high: np.ndarray | None = None,
         skipped: np.ndarray | None = None,
         data: Sequence[Any] | None = None,
+        rough: bool = False,
     ) -> Solutions:
         """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
 
-        ``skipped`` marks limits that are left out; ``data``: in place of that of the question.
+        ``skipped`` marks limits that are left out; ``data``: in place of that of the question. ``rough``: answers may
+        be near optima, where limits have edges.
         """
         count = len(combinations)
         data = self.instance.data(combinations) if data is None else data
@@ -626,6 +628,8 @@ class Formulation:
             return solved(0.0, start)
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
         rounded = solved(EDGE, start)
+        if rough:
+            return rounded
         sharp = solved(0.0, rounded.variables)
         return sharp.replaced(~sharp.converged, rounded)
 
