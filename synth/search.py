@@ -48,6 +48,7 @@ FINE = 2.0  # every design is covered within so many times the mean distance of 
 ROUNDS = 4
 POLISHINGS = 3
 MARGIN = 0.99
+ROWS = 256  # of a large comparison at a time
 ROUNDED = 2e-9
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
@@ -242,10 +243,14 @@ def distinct(candidates: Sequence[Candidate], m: int) -> list[Candidate]:
     """Return the designs that no other one equals or beats in the first objectives, but for rounding."""
     phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
     room = ROUNDED * np.maximum(np.abs(phi), 1.0)
-    beats = np.all(phi[:, None, :] <= phi[None, :, :] + room[None, :, :], axis=2)
-    # Of those that beat each other by rounding alone the first stays.
-    earlier = np.arange(len(phi))[:, None] < np.arange(len(phi))[None, :]
-    return [c for c, gone in zip(candidates, np.any(beats & (~beats.T | earlier), axis=0), strict=True) if not gone]
+    number, gone = np.arange(len(phi)), np.zeros(len(phi), dtype=bool)
+    for first in range(0, len(phi), ROWS):
+        own = slice(first, first + ROWS)
+        beaten = np.all(phi[:, None, :] <= (phi + room)[None, own, :], axis=2)
+        beats = np.all(phi[None, own, :] <= (phi + room)[:, None, :], axis=2)
+        # Of those that beat each other by rounding alone the first stays.
+        gone[own] = np.any(beaten & (~beats | (number[:, None] < number[None, own])), axis=0)
+    return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]
 
 
 def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
