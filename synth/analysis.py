@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -18,6 +18,9 @@ from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
 from synth.special import expanded
 from synth.units import format_quantity, parse_quantity
+
+if TYPE_CHECKING:
+    from synth.formulation import Candidate, Formulation
 
 ON_GRID = 1e-9
 
@@ -109,6 +112,30 @@ def make_design(
         off_grid=off_grid(model.variables, variables),
         **more,
     )
+
+
+def found_design(
+    form: Formulation, frame: Frame, candidate: Candidate, result: Evaluation, row: int, **more: Any
+) -> Design:
+    """Return a design that a search has found, from row ``row`` of what has been evaluated; ``more`` as make_design."""
+    parts, _, choices = form.instance.describe(candidate.combination)
+    rows = {slot: part_row(table, number) for slot, (table, number) in parts.items()}
+    instance = form.instance.of(candidate.combination)
+    return make_design(instance, frame, candidate.variables, result, row, rows, choices, **more)
+
+
+def offered(instance: Instance) -> dict[str, Any]:
+    """Return what a question leaves to choose from, for the statistics of a front."""
+    selection = instance.selection
+    return {
+        "combinations": instance.combinations,
+        "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
+        "rows_used": {s.slot: len(s.rows) for s in selection.slots},
+        "counts": {n: len(v) for n, v in selection.counts.items()},
+        "choices": {n: len(v) for n, v in selection.choices.items()},
+        "rows_left_out": selection.left_out,
+        "not_asked": list(instance.not_asked),
+    }
 
 
 def _message(code: str, message: str, source: str) -> str:

@@ -81,8 +81,8 @@ def cover(
             return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
         batch, queue = queue.take(slice(0, BATCH)), queue.take(slice(BATCH, None))
         looked += len(batch)
-        batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds)), every_goal=every)
-        batch = batch.take(purpose.room(form.phi_of(batch.bounds)) > 0)
+        batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
+        batch = batch.take(purpose.room(form.phi_of(batch.bounds), batch.cell) > 0)
         if not len(batch):
             continue
         seeker.look(batch)
@@ -93,7 +93,7 @@ def cover(
                 stuck = Boxes.joined([stuck, seeker.settle(small)])
         fresh.append(batch)
     left = Boxes.joined([queue, *fresh, stuck])
-    return Covered(left.take(purpose.room(form.phi_of(left.bounds)) > 0), looked)
+    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
 
 
 def best(
@@ -136,7 +136,7 @@ def _latest(fresh: list[Boxes]) -> Boxes:
 def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> Boxes:
     """Return boxes with most room first; covered ones are dropped."""
     lower = form.phi_of(waiting.bounds)
-    space = purpose.room(lower)
+    space = purpose.room(lower, waiting.cell)
     keep = np.flatnonzero(space > 0)
     # While no design is known, all room is infinite; then low bounds promise most.
     low = lower[:, purpose.columns].mean(axis=1)

@@ -73,9 +73,8 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     start = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
     positions = requirement_positions(form)
-    moved = followers(form.instance)
+    moved = [_followers_of(form, c) for c in combinations]
     speaking = {name: _speaking_of(form, position) for name, position in positions.items()}
-    spoken = {name: np.any([speaking[other] for other in moved[name]], axis=0) for name in positions}
     tight = _tight(form, start, combinations)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     for k in range(chosen):
@@ -90,7 +89,8 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
             }
             for q, name in enumerate(positions):
                 # Where a tight limit speaks of it, the least change breaks what no variable can restore.
-                if abs(found.requirements[i, q]) > NOISE and not np.any(tight[i] & spoken[name]):
+                spoken = np.any([speaking[other] for other in moved[i][name]], axis=0)
+                if abs(found.requirements[i, q]) > NOISE and not np.any(tight[i] & spoken):
                     own[name] = float(found.requirements[i, q])
             results[i][form.names[k]] = own
     return results
@@ -120,7 +120,7 @@ def optima(
     with np.errstate(all="ignore"):
         limits = signs * answer.cut_multipliers * np.where(logs, 1.0, bounds / sizes)
     limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
-    positions, moved = requirement_positions(form), followers(form.instance)
+    positions = requirement_positions(form)
     slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
     requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
     for i in np.flatnonzero(answer.converged):
@@ -129,9 +129,10 @@ def optima(
             form, answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
         )
         ends[i] = at_ends * answer.variables[i]
-        for q, name in enumerate(positions):
+        moved = _followers_of(form, combinations[i])
+        for q, (name, position) in enumerate(positions.items()):
             slope = sum(share * float(own[positions[other]]) for other, share in moved[name].items())
-            requirements[i, q] = slope * form.instance.requirements[name]
+            requirements[i, q] = slope * point[position]
     return Optima(
         answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
     )  # fmt: skip
@@ -157,6 +158,15 @@ def immovable(form: Formulation) -> np.ndarray:
     """Return which limits no variable moves; here gridded ones are continuous."""
     moving = form.model.program.dependence(np.flatnonzero(form.lower < form.upper).tolist())
     return np.array([not any(moving[k] for k in (c.value, c.limit) if k is not None) for c in form.cuts], dtype=bool)
+
+
+def _followers_of(form: Formulation, combination: int) -> dict[str, dict[str, float]]:
+    """Return what moves with each requirement in the question that a combination belongs to; worked out once."""
+    instance = form.instance.of(int(combination))
+    known = form.followers.get(id(instance))
+    if known is None:
+        known = form.followers[id(instance)] = followers(instance)
+    return known
 
 
 def followers(instance: Instance) -> dict[str, dict[str, float]]:

@@ -201,6 +201,7 @@ class Formulation:
         self.nlp_solves = 0
         self.work = 0  # of the solver without compiled code: steps times nodes of the program
         self.solved_combinations: set[int] = set()
+        self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
         self.archive = Archive(range(traded), self.n, len(self.goals))
         self._rows: Rows | None = None
         self._focused: np.ndarray | None = None
@@ -254,11 +255,14 @@ class Formulation:
 
     def leaves(self, combinations: np.ndarray, low: np.ndarray | None = None, high: np.ndarray | None = None) -> Boxes:
         """Return a box per combination, over the whole range of the variables unless ends are given."""
+        boxes = self._boxes(self.cell_of(combinations))
+        return boxes if low is None or high is None else replace(boxes, low=low, high=high)
+
+    def cell_of(self, combinations: np.ndarray) -> np.ndarray:
+        """Return the cell of each combination (combinations, factors)."""
         digits = self.instance.digits(combinations)
         leaves = [tree.leaf_of_row[d] for tree, d in zip(self.cells.trees, digits, strict=True)]
-        cell = np.stack(leaves, axis=1) if leaves else np.zeros((len(combinations), 0), dtype=np.int32)
-        boxes = self._boxes(cell)
-        return boxes if low is None or high is None else replace(boxes, low=low, high=high)
+        return np.stack(leaves, axis=1) if leaves else np.zeros((len(combinations), 0), dtype=np.int32)
 
     def whole(self, combination: int) -> Boxes:
         """Return the box of one combination over the whole range of the variables."""

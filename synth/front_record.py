@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
@@ -65,13 +66,15 @@ def digest_of(content: Mapping[str, Any]) -> str:
 
 def installed_versions() -> dict[str, str]:
     """Return the versions of the packages that decide the numbers."""
-    result = {}
-    for name in RECORDED_PACKAGES:
-        try:
-            result[name] = version(name)
-        except PackageNotFoundError:
-            result[name] = "not installed"
-    return result
+    return {name: _installed(name) for name in RECORDED_PACKAGES}
+
+
+@cache
+def _installed(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 def _design_record(design: Design) -> dict[str, Any]:

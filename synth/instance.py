@@ -189,6 +189,7 @@ class Instance:
             self._select_rows(as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}"))
             self._select_counts()
             self._refuse_rows()
+        self.apart = 0  # factors, from the first, that tell questions apart and are not for the search to choose
         self.radix = [len(s.rows) for s in self.selection.slots]
         self.radix += [len(v) for v in self.selection.counts.values()]
         self.radix += [len(v) for v in self.selection.choices.values()]
@@ -565,6 +566,20 @@ class Instance:
         return [f"{v:g}" for v in self.selection.counts[name]]
 
     # -- combinations --------------------------------------------------------------------------
+
+    def factors(self) -> list[str]:
+        """Return the names of slots, counts and choices, in the order of the digits of a combination."""
+        selection = self.selection
+        return [*(s.slot for s in selection.slots), *selection.counts, *selection.choices]
+
+    def owners(self) -> tuple[int, ...]:
+        """Return, per data input of the model, the number of the factor it belongs to; -1: the question fixes it."""
+        names = self.factors()
+        return tuple(names.index(e.name) if e.name in names else -1 for e in self.model.data_inputs)
+
+    def of(self, combination: int) -> Instance:
+        """Return the question that a combination belongs to."""
+        return self
 
     def digits(self, combinations: np.ndarray) -> list[np.ndarray]:
         """Return, per slot, count and choice, the position of each combination in what remains of it."""

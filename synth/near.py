@@ -204,11 +204,11 @@ class _Near:
         self.own = own
         self.found: dict[int, tuple[float, Candidate]] = {}
 
-    def caps(self, lower: np.ndarray) -> np.ndarray:
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return the caps, the same for every box."""
         return np.tile(self.plain[: lower.shape[1]] + TIE, (len(lower), 1))
 
-    def room(self, lower: np.ndarray) -> np.ndarray:
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how far within the caps a box could be."""
         with np.errstate(all="ignore"):
             distance = (self.plain[self.columns] + TIE - lower[:, self.columns]).min(axis=1)
@@ -234,6 +234,10 @@ class _Near:
         """Return by how much designs are worse than the chosen one, as a share of what is allowed."""
         worse: np.ndarray = ((phi[:, self.columns] - self.own[self.columns]) / self.slack).max(axis=1)
         return worse
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return nothing: no design here is better than another."""
+        return []
 
 
 class _Enumeration:

@@ -92,14 +92,12 @@ class Propagation:
         self.n = len(self.model.variables)
         self.bounds = [cut.bound for cut in cuts]
         model = self.model
-        names = [s.slot for s in instance.selection.slots]
-        names += [*instance.selection.counts, *instance.selection.choices]
-        owner = tuple(names.index(e.name) if e.name in names else -1 for e in model.data_inputs)
+        names, owner = instance.factors(), instance.owners()
         layout = Layout(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
         plain = tuple(replace(c, bound=0.0) for c in cuts)
 
         def contractor(wanted: Sequence[Goal], pivots: tuple[int, ...]) -> Contractor:
-            key = ("contractor", plain, tuple(wanted), pivots)
+            key = ("contractor", layout, plain, tuple(wanted), pivots)
             made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted, pivots))
             return made
 

@@ -19,11 +19,18 @@ class Purpose(Protocol):
     slack: np.ndarray
     plain: np.ndarray
 
-    def caps(self, lower: np.ndarray) -> np.ndarray:
-        """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return, per box with these lower bounds of phi, what a design must keep to be of use.
 
-    def room(self, lower: np.ndarray) -> np.ndarray:
+        ``cell`` (boxes, factors) tells which combinations a box holds; only where several questions are answered
+        together does it matter.
+        """
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than needed a box could be: the least distance to a cap, 0 if it is of no use."""
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return the designs that are best, where there is one objective: they are made as good as they can be."""
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many were of use."""
@@ -47,14 +54,14 @@ class Cover:
     def __init__(self, columns: Sequence[int], slack: np.ndarray, plain: np.ndarray, known: Archive) -> None:
         self.columns, self.slack, self.plain, self.known = list(columns), slack, plain, known
 
-    def caps(self, lower: np.ndarray) -> np.ndarray:
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
         caps = np.tile(self.plain[: lower.shape[1]] + TIE, (len(lower), 1))
         own = self.known.caps(lower[:, self.columns], self.slack)
         caps[:, self.columns] = np.minimum(caps[:, self.columns], own)
         return caps
 
-    def room(self, lower: np.ndarray) -> np.ndarray:
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than the designs known a box could be."""
         if not len(lower):
             return np.empty(0)
@@ -71,6 +78,12 @@ class Cover:
         new = int((self.room(phi) > 0).sum())
         self.known.add(combinations, variables, phi)
         return new
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return the best design of an archive in the one objective."""
+        allowed = np.flatnonzero(np.all(archive.phi <= self.plain + TIE, axis=1))
+        k = self.columns[0]
+        return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
 
 class Staircase:
@@ -132,7 +145,7 @@ class Staircase:
             steps.append(row)
         self.steps = np.concatenate(steps)
 
-    def caps(self, lower: np.ndarray) -> np.ndarray:
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to beat one of the designs."""
         caps = np.full(lower.shape, np.inf)
         own = lower[:, self.columns]
@@ -140,7 +153,7 @@ class Staircase:
         caps[:, self.columns] = np.minimum(below, self.known.caps(own, self.slack))
         return caps
 
-    def room(self, lower: np.ndarray) -> np.ndarray:
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how far below one of the designs a box could be."""
         own = lower[:, self.columns]
         with np.errstate(all="ignore"):
@@ -188,6 +201,10 @@ class Staircase:
         if len(beaten):
             self._set()
         return len(beaten)
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return nothing: a staircase is one of several objectives."""
+        return []
 
 
 def beating(rows: np.ndarray, phi: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.analysis import chosen_objectives, make_design, make_frame, part_row, with_ties
+from synth.analysis import chosen_objectives, found_design, make_frame, offered, with_ties
 from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
 from synth.cover import Covered, best, cover
@@ -31,7 +31,7 @@ from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
 from synth.scatter import read_block
 from synth.seeker import Seeker
-from synth.settle import polish_extremes, same_designs, settle_discrete, settle_variables, solve_everywhere
+from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 
 EFFORT = 20_000_000
@@ -818,18 +818,14 @@ class FrontSearch:
         ranking = rank(self.chosen, values, weights)
         designs = []
         for position, k in enumerate(ranking.order):
-            c = settled[k]
-            parts, _, choices = self.instance.describe(c.combination)
             proven = self.closed and settle
             designs.append(
-                make_design(
-                    self.instance,
+                found_design(
+                    self.form,
                     frame,
-                    c.variables,
+                    settled[k],
                     result,
                     k,
-                    {slot: part_row(table, row) for slot, (table, row) in parts.items()},
-                    choices,
                     status=Status.OPTIMAL if proven else Status.FEASIBLE,
                     gap=self.gap if proven else None,
                     rank=position + 1,
@@ -850,28 +846,10 @@ class FrontSearch:
             caps[0] = chosen[0].phi[0] + TIE
             better = self._best(1, caps, chosen[0], TIE_EFFORT)
             chosen[0] = chosen[0] if better is None else better
-        chosen = settle_discrete(form, chosen, self.m, range(len(form.goals)))
-        chosen = settle_variables(form, chosen, self.m)
-        kept, alternatives = [], []
-        for candidate, ties in zip(chosen, same_designs(form, self.pool, chosen, self.m), strict=True):
-            current = min(ties, key=lambda c: tuple(np.round(c.phi[self.m :], 9)), default=candidate)
-            others = [c.combination for c in ties if c.combination != current.combination]
-            kept.append(current)
-            alternatives.append(tuple(self._difference(current.combination, other) for other in others))
-        stay = {id(c) for c in distinct(kept, self.m)}
-        pairs = [(c, a) for c, a in zip(kept, alternatives, strict=True) if id(c) in stay]
+        settled = settle_ties(form, self.pool, chosen, self.m)
+        stay = {id(c) for c in distinct([c for c, _ in settled], self.m)}
+        pairs = [(c, a) for c, a in settled if id(c) in stay]
         return [c for c, _ in pairs], [a for _, a in pairs]
-
-    def _difference(self, combination: int, other: int) -> str:
-        own, its = self.instance.describe(combination), self.instance.describe(other)
-        words = []
-        for slot in own[0]:
-            if own[0][slot] != its[0][slot]:
-                table, row = its[0][slot]
-                words.append(f"{slot} {table.designations[row]}")
-        words += [f"{n} {its[1][n]:g}" for n in own[1] if own[1][n] != its[1][n]]
-        words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
-        return ", ".join(words)
 
     def _result(
         self,
@@ -881,14 +859,14 @@ class FrontSearch:
         explanation: Mapping[str, Any] | None,
         interrupted: str,
     ) -> ParetoFront:
-        total, selection = self.instance.combinations, self.instance.selection
+        total = self.instance.combinations
         kind = "global" if self.closed else "exhaustive" if self.exhausted and not interrupted else "heuristic"
         gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
         solved = len(self.form.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
         certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved)
         statistics = {
-            "combinations": total,
+            **offered(self.instance),
             "excluded_by_bound": excluded,
             "solved": solved,
             "boxes": self.form.contracted,
@@ -897,12 +875,6 @@ class FrontSearch:
             "nlp_solves": self.form.nlp_solves,
             "nlp_solves_to_find": self.solves_to_find,
             "outer_trials": self.outer_trials,
-            "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
-            "rows_used": {s.slot: len(s.rows) for s in selection.slots},
-            "counts": {n: len(v) for n, v in selection.counts.items()},
-            "choices": {n: len(v) for n, v in selection.choices.items()},
-            "rows_left_out": selection.left_out,
-            "not_asked": list(self.instance.not_asked),
             "seconds": {**self.stage_seconds, "total": time.monotonic() - self.started},
         }
         status = Status.OPTIMAL if designs and kind == "global" else Status.FEASIBLE if designs else Status.NOT_SOLVED

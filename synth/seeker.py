@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
-from synth.formulation import SNAP, TIE, Boxes, Candidate, Formulation
+from synth.formulation import SNAP, Boxes, Candidate, Formulation
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
 from synth.settle import settle_variables
@@ -52,12 +52,12 @@ class Seeker:
         if form.n and not len(form.archive):
             self._conflicts(batch)
         phi = form.phi_of(batch.bounds)
-        space, along = self.purpose.room(phi), phi[:, self.purpose.columns[0]]
+        space, along = self.purpose.room(phi, batch.cell), phi[:, self.purpose.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, PROBES)))
         if form.n and self._worth_solving():
             most = MOST_NLPS if len(self.purpose.columns) > 1 else LEAST_NLPS
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
-            chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds)) > 0)
+            chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
             self.nlps = min(2 * self.nlps, MOST_NLPS) if 4 * good > len(chosen) else max(self.nlps // 2, LEAST_NLPS)
             found += good
@@ -75,14 +75,11 @@ class Seeker:
         return len(self.purpose.columns) > 1 or form.conflict or not found
 
     def _settle_best(self) -> None:
-        """Make the best design as good as its parts and makeable values allow: what was rounded may leave much."""
-        k, archive = self.purpose.columns[0], self.form.archive
-        allowed = np.flatnonzero(np.all(archive.phi <= self.purpose.plain + TIE, axis=1))
-        if not len(allowed):
-            return
-        best = archive[int(allowed[np.argmin(archive.phi[allowed, k])])]
-        exact = settle_variables(self.form, [best], 0, [k])[0]
-        self.offer(exact.variables[None, :], np.array([exact.combination]))
+        """Make what is best as good as its parts and makeable values allow: what was rounded may leave much."""
+        best = self.purpose.leading(self.form.archive)
+        exact = settle_variables(self.form, best, 0, self.purpose.columns)
+        if exact:
+            self.offer(np.array([c.variables for c in exact]), np.array([c.combination for c in exact]))
 
     def _conflicts(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
@@ -98,11 +95,12 @@ class Seeker:
         if not form.gridded.any():
             self.offer(found.variables, combinations)
 
-    def _learn(self, tasks: Tasks, found: Solutions) -> None:
+    def _learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
         """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
         if self.form.conflict:
-            excess = np.nan_to_num(-self.purpose.room(found.phi), nan=np.inf, posinf=np.inf)
+            room = self.purpose.room(found.phi, self.form.cell_of(combinations))
+            excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
             importance = np.maximum(excess, float(self.purpose.slack.min())) ** -2.0
         self.form.learn(tasks, found, importance)
 
@@ -115,13 +113,14 @@ class Seeker:
         self.offer(low[point], form.combination(small.take(point)), exact=True)
         rest = small.take(~point)
         self.offer(form.inside(rest, 0.5), form.combination(rest))
-        rest = rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
+        rest = rest.take(self.purpose.room(form.phi_of(rest.bounds), rest.cell) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
         self.offer(form.inside(rest, 0.5), form.combination(rest), exact=True)
-        return rest.take(self.purpose.room(form.phi_of(rest.bounds)) > 0)
+        return rest.take(self.purpose.room(form.phi_of(rest.bounds), rest.cell) > 0)
 
     def _tightened(self, boxes: Boxes) -> Boxes:
-        return self.form.contract(boxes, self.purpose.caps(self.form.phi_of(boxes.bounds)), every_goal=self.every)
+        caps = self.purpose.caps(self.form.phi_of(boxes.bounds), boxes.cell)
+        return self.form.contract(boxes, caps, every_goal=self.every)
 
     def _probe(self, boxes: Boxes) -> int:
         """Evaluate points of a random combination of each box; gridded variables are fixed in its middle first."""
@@ -260,14 +259,15 @@ class Seeker:
         """Solve many problems over the whole range of the variables; return how many designs are new."""
         form, columns = self.form, self.purpose.columns
         found = form.solve_many(tasks, combinations, start)
-        self._learn(tasks, found)
+        self._learn(tasks, combinations, found)
         if not form.gridded.any():
             return self.offer(found.variables, combinations)
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= MISSED) & np.all(np.isfinite(phi), axis=1))
-        space, along = self.purpose.room(phi[good]), phi[good][:, columns[0]]
+        cell = form.cell_of(combinations[good])
+        space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], ROUNDED_OFF)]
-        return self._round(form.leaves(combinations[good]), found.variables[good]) if len(good) else 0
+        return self.round_off(form.leaves(combinations[good]), found.variables[good]) if len(good) else 0
 
     def _upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
@@ -301,13 +301,13 @@ class Seeker:
         settled = form.gridded & (low == high)
         low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
         answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
-        self._learn(tasks, answer)
+        self._learn(tasks, combinations, answer)
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
         rest = np.flatnonzero(~whole)
-        return found + (self._round(boxes.take(rest), answer.variables[rest]) if len(rest) else 0)
+        return found + (self.round_off(boxes.take(rest), answer.variables[rest]) if len(rest) else 0)
 
-    def _round(self, boxes: Boxes, variables: np.ndarray) -> int:
+    def round_off(self, boxes: Boxes, variables: np.ndarray) -> int:
         """Try the makeable points around continuous optima."""
         form = self.form
         low, high, source = roundings(form, variables)

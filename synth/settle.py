@@ -10,6 +10,7 @@ import numpy as np
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.instance import Instance
 from synth.purposes import Purpose
 
 STARTS = 6
@@ -116,6 +117,39 @@ def settle_variables(
     return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
 
 
+def settle_ties(
+    form: Formulation, pool: Boxes, chosen: Sequence[Candidate], traded: int
+) -> list[tuple[Candidate, tuple[str, ...]]]:
+    """Settle what the traded objectives leave open, and name other combinations that are as good.
+
+    Returns
+    -------
+    list of (Candidate, tuple of str)
+        Per design the one that stands for it, and in what others that tie with it differ.
+    """
+    chosen = settle_discrete(form, chosen, traded, range(len(form.goals)))
+    chosen = settle_variables(form, chosen, traded)
+    result = []
+    for candidate, ties in zip(chosen, same_designs(form, pool, chosen, traded), strict=True):
+        current = min(ties, key=lambda c: tuple(np.round(c.phi[traded:], 9)), default=candidate)
+        others = [c.combination for c in ties if c.combination != current.combination]
+        result.append((current, tuple(_difference(form.instance, current.combination, other) for other in others)))
+    return result
+
+
+def _difference(instance: Instance, combination: int, other: int) -> str:
+    """Return in words in what another combination differs."""
+    own, its = instance.describe(combination), instance.describe(other)
+    words = []
+    for slot in own[0]:
+        if own[0][slot] != its[0][slot]:
+            table, row = its[0][slot]
+            words.append(f"{slot} {table.designations[row]}")
+    words += [f"{n} {its[1][n]:g}" for n in own[1] if own[1][n] != its[1][n]]
+    words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
+    return ", ".join(words)
+
+
 def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate], traded: int) -> list[list[Candidate]]:
     """Return, per design, those of all combinations that reach the same traded objectives with the same dimensions."""
     found: list[list[Candidate]] = [[] for _ in candidates]
@@ -125,8 +159,10 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     caps = np.full(phi.shape, np.inf)
     caps[:, :traded] = phi[:, :traded] + TIE
-    start = pool.take(np.zeros(len(candidates), dtype=np.int64))
-    boxes = replace(start, cell=np.zeros_like(start.cell), low=points, high=points, tag=np.arange(len(candidates)))
+    start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
+    cell = np.zeros_like(start.cell)
+    cell[:, :apart] = form.cell_of(np.array([c.combination for c in candidates]))[:, :apart]
+    boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
         single = form.cells.single(boxes.cell)
