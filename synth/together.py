@@ -30,12 +30,13 @@ from synth.seeker import Seeker
 from synth.settle import settle_ties, settle_variables
 
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
-EFFORT = 150_000  # boxes per question; what needs more is easier alone
+EFFORT, EFFORT_IN_CONFLICT = 10_000, 30_000  # boxes per question; what needs more is easier alone
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
-TIE_EFFORT = 500
+TIE_EFFORT = 200
 ROUNDS = 6
 MOST_KNOWN = 32  # combinations that are tried for every question
-ROUNDED_OFF = 2  # of them, per question
+MOST_SOLVED = 16_384  # continuous problems of a round
+ROUNDED_OFF = 10  # of them, per question
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 
 
@@ -276,9 +277,8 @@ class TogetherSearch:
         first = questions[0]
         self.together = Together([q.instance for q in questions])
         self.gap = float(first.settings["gap"])
-        goals = with_ties(first.instance.model, dict(first.chosen))
-        # Boxes carry what limits share: little is lost by it, and much where limits decide.
-        self.form = Formulation(self.together, goals, 1, conflict=True)
+        self.goals = with_ties(first.instance.model, dict(first.chosen))
+        self.form = Formulation(self.together, self.goals, 1)
         self.form.workers = workers
         self.known = BestOfEach(self.together, 0, self.form.n, len(self.form.goals))
         self.form.archive = self.known
@@ -301,14 +301,32 @@ class TogetherSearch:
         asked &= np.isfinite(self.known.best())
         if not asked.any():
             return nothing
-        purpose = Each(self.form, self.known, self._slack(0), asked)
-        outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, EFFORT * int(asked.sum()))
-        asked &= ~purpose.open_questions(outcome.open)
+        unproven = self._unproven(self.form, self.pool, asked, EFFORT)
+        if unproven.any():
+            unproven = self._unproven_in_conflict(unproven)
+        asked &= ~unproven
         solves = self.form.nlp_solves
         chosen = [c for c, q in zip(self.known, self.known.questions(), strict=True) if asked[q]]
         if not chosen:
             return nothing
         return self._fronts(chosen, reported, solves)
+
+    def _unproven(self, form: Formulation, pool: Boxes, asked: np.ndarray, effort: int) -> np.ndarray:
+        """Cover everything; return those of the questions asked that this leaves open."""
+        purpose = Each(form, self.known, self._slack(0), asked)
+        outcome = cover(form, pool, purpose, self.clock, self.rng, effort * int(asked.sum()))
+        return purpose.open_questions(outcome.open)
+
+    def _unproven_in_conflict(self, asked: np.ndarray) -> np.ndarray:
+        """Try again with boxes that carry what limits share, which helps where limits leave little."""
+        form = Formulation(self.together, self.goals, 1, conflict=True)
+        form.workers, form.archive, form.work = self.form.workers, self.known, self.form.work
+        form.solved_combinations = self.form.solved_combinations
+        form.propagation.taught_by(self.form.propagation.lessons())
+        left = self._unproven(form, form.root(), asked, EFFORT_IN_CONFLICT)
+        self.form.contracted += form.contracted
+        self.form.nlp_solves += form.nlp_solves
+        return left
 
     def _told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
@@ -336,53 +354,78 @@ class TogetherSearch:
     # -- first designs -------------------------------------------------------------------------
 
     def _first(self, purpose: Each) -> None:
-        """Look for a design of every question: what is good in one is tried in all."""
+        """Look for good designs of every question: beside the best of each, and with what is good in any other."""
         for effort in FIRST_EFFORTS:
             if not len(self.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
-        tried = set[int]()
-        for _ in range(ROUNDS):
-            self.clock.check()
-            own = self.known.combination % self.together.size
-            fresh = [int(c) for c in dict.fromkeys(own.tolist()) if c not in tried][:MOST_KNOWN]
-            if not fresh:
-                return
-            tried.update(fresh)
-            self._everywhere(purpose, fresh)
+        if len(self.known):
+            self._improve(purpose)
 
-    def _everywhere(self, purpose: Each, combinations: Sequence[int]) -> None:
-        """Solve the continuous problems of combinations in every question; round off the best of each."""
-        form, together = self.form, self.together
-        if not form.n:
-            every = (np.arange(len(together.each))[:, None] * together.size + np.array(combinations)).ravel()
-            Seeker(form, purpose, self.rng, False).offer(np.zeros((len(every), 0)), every)
-            return
-        own = self.known.combination % together.size
-        place = [int(np.flatnonzero(own == c)[0]) for c in combinations]
-        questions = np.repeat(np.flatnonzero(purpose.asked), len(combinations))
-        rows = np.tile(place, len(questions) // len(place))
-        every = questions * together.size + own[rows]
-        start, keep = self.known.variables[rows], form.not_refused(every)
-        every, start = every[keep], start[keep]
-        goals = len(form.goals)
-        weights = np.zeros((len(every), goals))
-        weights[:, 0] = 1.0
-        tasks = Tasks(weights, np.zeros_like(weights), np.full((len(every), goals), np.inf), form.goal_scales, 0.0)
-        found = form.solve_many(tasks, every, start)
-        form.learn(tasks, found, np.ones(len(every)))
-        good = np.flatnonzero((found.violation <= MISSED) & np.isfinite(found.phi[:, 0]))
-        order = good[np.lexsort((found.phi[good, 0], every[good] // together.size))]
-        own_question = every[order] // together.size
-        place_in_question = np.arange(len(order)) - np.searchsorted(own_question, own_question)
-        best = order[place_in_question < ROUNDED_OFF]
+    def _improve(self, purpose: Each) -> None:
+        """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
+        elsewhere, expanded = set[int](), set[int]()
+        for _ in range(ROUNDS):
+            own = purpose.known.combination % self.together.size
+            fresh = list(dict.fromkeys(int(c) for c in own if int(c) not in elsewhere))[:MOST_KNOWN]
+            elsewhere.update(fresh)
+            found = self._everywhere(purpose, fresh)
+            found += self._beside(purpose, expanded) if self.form.n else 0
+            if not found:
+                return
+
+    def _everywhere(self, purpose: Each, combinations: Sequence[int]) -> int:
+        """Try combinations in every question; return how many designs are of use."""
+        questions, size = np.flatnonzero(purpose.asked), self.together.size
+        own = purpose.known.combination % size
+        place = np.array([int(np.flatnonzero(own == c)[0]) for c in combinations], dtype=np.int64)
+        rows = np.tile(place, len(questions))
+        every = np.repeat(questions, len(place)) * size + own[rows]
+        return self._tried(purpose, every, purpose.known.variables[rows])
+
+    def _beside(self, purpose: Each, expanded: set[int]) -> int:
+        """Exchange one part at a time of the best design of each question; return how many designs are of use."""
+        parents = [c for c in purpose.known if c.combination not in expanded]
+        expanded.update(c.combination for c in parents)
+        if not parents:
+            return 0
+        made = [self.together.neighbours(c.combination) for c in parents]
+        rows = np.repeat(np.arange(len(made)), [len(x) for x in made])
+        every, start = np.concatenate(made), np.array([c.variables for c in parents])[rows]
+        if len(every) > MOST_SOLVED:
+            chosen = np.sort(self.rng.choice(len(every), MOST_SOLVED, replace=False))
+            every, start = every[chosen], start[chosen]
+        return self._tried(purpose, every, start)
+
+    def _tried(self, purpose: Each, combinations: np.ndarray, start: np.ndarray) -> int:
+        """Solve continuous problems and round off the best of each question; return how many designs are of use."""
+        form, size, k, known = self.form, self.together.size, purpose.columns[0], purpose.known
         seeker = Seeker(form, purpose, self.rng, False)
+        keep = form.not_refused(combinations)
+        combinations, start = combinations[keep], start[keep]
+        self.clock.check()
+        if not form.n or not len(combinations):
+            return seeker.offer(start, combinations)
+        weights = np.zeros((len(combinations), len(form.goals)))
+        weights[:, k] = 1.0
+        caps = known.plain[combinations // size]
+        tasks = Tasks(weights, np.zeros_like(weights), caps, form.goal_scales, 0.0)
+        found = form.solve_many(tasks, combinations, start)
+        form.learn(tasks, found, np.ones(len(combinations)))
+        better = found.phi[:, k] < purpose.needed()[combinations // size]
+        good = np.flatnonzero((found.violation <= MISSED) & better)
+        order = good[np.lexsort((found.phi[good, k], combinations[good] // size))]
+        question = combinations[order] // size
+        best = order[np.arange(len(order)) - np.searchsorted(question, question) < ROUNDED_OFF]
+        if not len(best):
+            return 0
         if form.gridded.any():
-            seeker.round_off(form.leaves(every[best]), found.variables[best])
+            new = seeker.round_off(form.leaves(combinations[best]), found.variables[best])
         else:
-            seeker.offer(found.variables[best], every[best])
-        exact = settle_variables(form, purpose.leading(self.known), 0, [0])
+            new = seeker.offer(found.variables[best], combinations[best])
+        exact = settle_variables(form, purpose.leading(known), k, range(k + 1))
         if exact:
             seeker.offer(np.array([c.variables for c in exact]), np.array([c.combination for c in exact]))
+        return new
 
     # -- the report ----------------------------------------------------------------------------
 
@@ -448,6 +491,7 @@ class TogetherSearch:
         asked[questions] = True
         known.add(*_rows(chosen))
         purpose = Each(form, known, self._slack(1), asked)
+        self._improve(purpose)
         cover(form, self.pool, purpose, self.clock, self.rng, TIE_EFFORT * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]
@@ -462,40 +506,10 @@ def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.n
     )
 
 
-def answer_together(
-    questions: Sequence[Question],
-    workers: int = 1,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
-    time_limit: float | None = None,
-    reported: bool = True,
-) -> list[ParetoFront | None]:
-    """Answer those of several questions that can be answered together; None stands for the others.
-
-    Parameters
-    ----------
-    questions : list of Question
-        Those with one objective that are alike are searched together.
-    workers, progress, time_limit : optional
-        As for ``synth.synthesize``.
-    reported : bool
-        Whether ties are settled and elasticities told.
-
-    Raises
-    ------
-    Stopped
-        When time is over.
-    """
-    result: list[ParetoFront | None] = [None] * len(questions)
+def groups_of(questions: Sequence[Question]) -> list[list[int]]:
+    """Return the positions of questions that can be answered together: two or more, with one objective, alike."""
     groups: dict[Any, list[int]] = {}
     for k, question in enumerate(questions):
         if len(question.chosen) == 1:
             groups.setdefault(alike(question), []).append(k)
-    deadline = math.inf if time_limit is None else time.monotonic() + time_limit
-    for members in groups.values():
-        if len(members) < 2 or len(members) * questions[members[0]].instance.combinations > LARGEST:
-            continue
-        left = None if math.isinf(deadline) else max(deadline - time.monotonic(), 1e-3)
-        search = TogetherSearch([questions[k] for k in members], workers, progress, left)
-        for k, front in zip(members, search.answers(reported), strict=True):
-            result[k] = front
-    return result
+    return [g for g in groups.values() if 1 < len(g) <= LARGEST // questions[g[0]].instance.combinations]

@@ -24,7 +24,8 @@ from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
-from synth.vary import Steps, Value, steps_of
+from synth.together import TogetherSearch, groups_of
+from synth.vary import Steps, steps_of
 
 FORMAT = 1
 RECORD = "study.json"
@@ -104,8 +105,12 @@ class _Run:
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit
         self.store = _Store(folder)
+        self.questions = [steps.question(values) for values in steps.values]
+        self.alone = [_fingerprint(question, [], weights=False) for question in self.questions]
         self.answered: list[Step] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
+        self.fingerprints: list[str] = []
+        self.ahead: dict[int, ParetoFront] = {}  # answers that were found together, by position
         self.kept = 0
         self.share_of_steps = 1.0
 
@@ -114,8 +119,9 @@ class _Run:
         stopped, found = "", list[Break]()
         self.share_of_steps = 0.5 if breaks else 1.0
         try:
-            for number, values in enumerate(self.steps.values, start=1):
-                self.answered.append(self._answer(number, values))
+            self._search_together()
+            for position in range(len(self.steps)):
+                self.answered.append(self._answer(position))
             if breaks:
                 self._find_breaks(found)
         except Stopped as stop:
@@ -136,17 +142,37 @@ class _Run:
 
     # -- steps ---------------------------------------------------------------------------------
 
-    def _answer(self, number: int, values: tuple[Value, ...]) -> Step:
-        question = self.steps.question(values)
-        before = self._neighbours(values)
-        own = _fingerprint(question, [s.fingerprint for s in before])
-        alone = _fingerprint(question, [], weights=False)
+    def _search_together(self) -> None:
+        """Answer steps that are alike at once, where any of them is not kept; what is left is searched step by step."""
+        groups = groups_of(self.questions)
+        marks = dict[int, str]()
+        for group in groups:
+            mark = hashlib.sha256(" ".join(self.alone[k] for k in group).encode()).hexdigest()
+            marks |= dict.fromkeys(group, mark)
+        for position, question in enumerate(self.questions):
+            ideas = [self.fingerprints[k] for k in self._neighbours(position)]
+            group_mark = [marks[position]] if position in marks else []
+            self.fingerprints.append(_fingerprint(question, [*ideas, *group_mark]))
+        for group in groups:
+            missing = [k for k in group if self.store.get(k + 1, self.fingerprints[k]) is None]
+            if missing:
+                shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
+                search = TogetherSearch([self.questions[k] for k in group], self.workers, shown, self._left())
+                found = dict(zip(group, search.answers(), strict=True))
+                self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
+
+    def _answer(self, position: int) -> Step:
+        number, values, question = position + 1, self.steps.values[position], self.questions[position]
+        own, alone = self.fingerprints[position], self.alone[position]
         front = self.store.get(number, own)
         if front is not None:
             self.kept += 1
         else:
-            known = self.same_but_weights.get(alone)
-            front = self._search(number, question, before) if known is None else _reranked(known, question)
+            front, known = self.ahead.pop(position, None), self.same_but_weights.get(alone)
+            if known is not None:
+                front = _reranked(known, question)
+            if front is None:
+                front = self._search(number, question, [self.answered[k] for k in self._neighbours(position)])
             text = front.files()["front.json"]
             self.store.put(number, own, text)
             # As it would be read again: a study that goes on is the same to the last digit.
@@ -165,15 +191,14 @@ class _Run:
             raise Stopped(front.interrupted)
         return front
 
-    def _neighbours(self, values: tuple[Value, ...]) -> list[Step]:
-        """Return the answered steps that differ in one place by one value: their designs are ideas for this one."""
-        found = []
-        for k, varied in enumerate(self.steps.varied):
-            place = varied.values.index(values[k])
-            if place:
-                wanted = (*values[:k], varied.values[place - 1], *values[k + 1 :])
-                found += [s for s in self.answered if s.values == wanted]
-        return found
+    def _neighbours(self, position: int) -> list[int]:
+        """Return the steps before one that differ in one place by one value: their designs are ideas for this one."""
+        found, stride = list[int](), 1
+        for varied in reversed(self.steps.varied):
+            if position // stride % len(varied.values):
+                found.append(position - stride)
+            stride *= len(varied.values)
+        return found[::-1]
 
     def _left(self) -> float | None:
         """Return the seconds that are left, None where there is no limit."""
