@@ -1,12 +1,13 @@
 """Break points: where, between two steps of a study, the best parts or counts change, or feasibility begins or ends.
 
-Where the best designs of two steps differ, the range between them is halved until it is narrow. Every value on the way
-is searched over all parts and proven; the designs known already are where each search begins, so that it is short.
+Where the best designs of two steps differ, their parts alone tell where the one becomes better than the other. The ends
+of that narrow range are then searched over all parts and proven; what a third design spoils is looked for again. Many
+intervals are looked into at a time, so that what they ask can be answered together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from typing import Any, Protocol
@@ -17,13 +18,18 @@ from synth.clock import Stopped
 from synth.errors import InputError
 from synth.pareto import rank
 from synth.results import Design, ParetoFront
+from synth.search import Question
 from synth.study import Break, Composition, Step, best_design
+from synth.together import TogetherSearch, different, groups_of
 from synth.vary import Steps, Value
 
 WIDTH = 1e-3  # of a value: a break is known to be within this
 GAP = 1e-5  # of the searches that compare parts
 SAME = 2 * GAP  # values that differ by less count as equal: parts that tie do not change at random
 MOST = 20  # breaks of one objective between two steps
+AT_ONCE = 16  # intervals that are looked into together; what is found of them is kept together
+PARTS = 6  # into which an interval is divided at a time
+GUESSES = 4  # where a break lies, before its interval is simply halved
 FINEST = 1e-6  # of the step: how narrow the range of a break at zero gets
 LONGEST = 60.0  # seconds of one search
 UNPROVEN = "the search on one side did not finish"
@@ -63,7 +69,7 @@ def find_breaks(
     answered : list of Step
         All steps, answered.
     found : list of Break
-        Filled as breaks are found, interval by interval, so that they stay where time is over.
+        Filled as breaks are found, some intervals at a time, so that they stay where time is over.
     kept : Kept
     left : callable
         Returns the seconds left; raises Stopped.
@@ -71,30 +77,21 @@ def find_breaks(
     shown : callable, optional
         Progress.
     """
-    pairs = list(_pairs(along, answered))
-    ends: dict[tuple[int, str], _Best] = {}
-    for number, (one, two) in enumerate(pairs):
-        if one.front is None or two.front is None:
-            continue
+    pairs = [(a, b) for a, b in _pairs(along, answered) if a.front is not None and b.front is not None]
+    for first in range(0, len(pairs), AT_ONCE):
+        some = pairs[first : first + AT_ONCE]
         left()
         if shown is not None:
-            shown({"stage": f"{steps.stated(one.values)} to {steps.stated(two.values)}", "done": number / len(pairs)})
-        key, mark = f"breaks {one.number} {two.number}", f"{one.fingerprint} {two.fingerprint}"
-        known = kept.value(key, mark)
-        if known is not None:
-            found += [_read(entry) for entry in known]
+            says = f"{steps.stated(some[0][0].values)} to {steps.stated(some[-1][1].values)}"
+            shown({"stage": says, "done": first / len(pairs)})
+        known = [kept.value(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}") for a, b in some]
+        if all(entries is not None for entries in known):
+            found += [_read(entry) for entries in known for entry in entries]
             continue
-        own: list[Break] = []
-        for objective, sense in _objectives(one.front, two.front).items():
-            for step in (one, two):
-                if (step.number, objective) not in ends:
-                    # Searched from its own design alone, so that it is the same whatever was searched before.
-                    search = _Search(steps, along, step, objective, sense, left, workers)
-                    ends[step.number, objective] = search.best(float(step.values[along]))  # type: ignore[arg-type]
-            search = _Search(steps, along, one, objective, sense, left, workers)
-            own += _Between(search, two, ends[one.number, objective], ends[two.number, objective]).breaks()
-        kept.keep(key, mark, [asdict(b) for b in own])
-        found += own
+        own = _Oracle(steps, along, left, workers).breaks(some)
+        for (a, b), breaks in zip(some, own, strict=True):
+            kept.keep(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}", [asdict(x) for x in breaks])
+            found += breaks
 
 
 def _pairs(along: int, answered: Sequence[Step]) -> list[tuple[Step, Step]]:
@@ -113,8 +110,8 @@ def _others(step: Step, along: int) -> tuple[Value, ...]:
     return tuple(v for k, v in enumerate(step.values) if k != along)
 
 
-def _objectives(*fronts: ParetoFront) -> dict[str, str]:
-    return {n: sense for front in fronts for n, sense in front.frame.objectives.items()}
+def _objectives(*fronts: ParetoFront | None) -> dict[str, str]:
+    return {n: sense for front in fronts if front is not None for n, sense in front.frame.objectives.items()}
 
 
 def _read(entry: Mapping[str, Any]) -> Break:
@@ -132,116 +129,220 @@ class _Best:
     proven: bool
 
 
-class _Search:
-    """Searches for the best design in one objective at any value of what is varied."""
+@dataclass(frozen=True)
+class _Wanted:
+    """The best design in one objective at some values: over all parts, or with those of one design alone."""
 
-    def __init__(
-        self, steps: Steps, along: int, step: Step, objective: str, sense: str, left: Left, workers: int
-    ) -> None:
-        self.steps, self.along, self.step = steps, along, step
-        self.objective, self.sense, self.sign = objective, sense, 1.0 if sense == "min" else -1.0
-        self.left, self.workers = left, workers
-        self.known = [d] if (d := best_design(step.front, objective)) is not None else []
-        self.found: dict[tuple[str, float], _Best] = {}
+    objective: str
+    values: tuple[Value, ...]
+    alone: str = ""  # what the one design is made of, in words
 
-    def best(self, value: float) -> _Best:
-        """Return the best at a value over everything."""
-        return self._searched("", value, {}, {})
 
-    def alone(self, design: Design, value: float) -> _Best:
-        """Return the best at a value with all parts, counts and choices of a design."""
-        made = self.composition(design)
-        slots = {slot: [word] for slot, word in made.parts.items()}
-        return self._searched(repr(made.named), value, slots, {**made.counts, **made.choices})
+class _Oracle:
+    """Answers what is wanted to know of best designs, for many intervals at a time."""
 
-    def composition(self, design: Design) -> Composition:
-        """Return what a design is made of."""
-        return Composition.of(design, self.objective)
+    def __init__(self, steps: Steps, along: int, left: Left, workers: int) -> None:
+        self.steps, self.along, self.left, self.workers = steps, along, left, workers
+        self.senses: dict[str, str] = {}
+        self.known: dict[_Wanted, _Best] = {}
+        self.made: dict[str, Design] = {}  # a design of each composition asked about alone
+        self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
+        self.moving = different([steps.question(values).instance for values in steps.values])
 
-    def beats(self, one: Design, other: Design) -> bool:
-        """Tell whether a design is better than another by more than counts as equal."""
-        a, b = (self.sign * d.values[self.objective] for d in (one, other))
-        return a < b - SAME * max(abs(a), abs(b))
+    def breaks(self, pairs: Sequence[tuple[Step, Step]]) -> list[list[Break]]:
+        """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
+        found: list[list[Break]] = [[] for _ in pairs]
+        for a, b in pairs:
+            self.senses |= _objectives(a.front, b.front)
+        under_way = []
+        for (a, b), own in zip(pairs, found, strict=True):
+            for objective in _objectives(a.front, b.front):
+                for step in (a, b):
+                    design = best_design(step.front, objective)
+                    if design is not None:
+                        self.ideas.setdefault(objective, {}).setdefault(_words(design), design)
+                under_way.append(_Between(self, objective, a, b).search(own))
+        wanted = [next(search, None) for search in under_way]
+        while any(w is not None for w in wanted):
+            self._answer(dict.fromkeys(w for some in wanted for w in some or ()))
+            wanted = [None if w is None else next(search, None) for search, w in zip(under_way, wanted, strict=True)]
+        order = list(self.senses)
+        return [sorted(own, key=lambda b: order.index(b.objective)) for own in found]
 
-    def _searched(self, what: str, value: float, slots: Mapping[str, list[str]], pins: Mapping[str, Any]) -> _Best:
-        key = (what, value)
-        if key not in self.found:
-            self.found[key] = self._search(value, slots, pins)
-        return self.found[key]
+    def _answer(self, wanted: Iterable[_Wanted]) -> None:
+        """Search what is not known yet; what is alike is searched together."""
+        new = [w for w in wanted if w not in self.known]
+        posed: dict[tuple[str, tuple[Value, ...]], Question] = {}
+        for w in new:
+            place = w.objective, w.values
+            try:
+                posed[place] = posed.get(place) or self._question(w)
+            except InputError:
+                self.known[w] = _Best(None, True)  # refused: the family says that there is no such design
+        places = list(posed)
+        for group in groups_of(list(posed.values()), least=1):
+            position = {places[k]: number for number, k in enumerate(group)}
+            own = [w for w in new if (w.objective, w.values) in position]
+            ideas = list(self.ideas.get(own[0].objective, {}).values())
+            questions = [posed[places[k]] for k in group]
+            search = TogetherSearch(questions, self.workers, None, self.left(), ideas, self.moving)
+            self._together(search, own, [position[w.objective, w.values] for w in own])
+        for w in new:
+            if w not in self.known:
+                self._take(w, self._alone(w))
 
-    def _search(self, value: float, slots: Mapping[str, list[str]], pins: Mapping[str, Any]) -> _Best:
-        values = [value if k == self.along else v for k, v in enumerate(self.step.values)]
+    def _together(self, search: TogetherSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
+        """Take what can be answered together."""
+        best = [(w, k) for w, k in zip(wanted, positions, strict=True) if not w.alone]
+        if best:
+            fronts = search.answers([k for _, k in best], reported=False)
+            for w, k in best:
+                front = fronts[k]
+                if front is not None:
+                    self._take(w, front)
+        alone = [(w, k) for w, k in zip(wanted, positions, strict=True) if w.alone]
+        for (w, _), (design, proven) in zip(
+            alone, search.best_with([(k, self.made[w.alone]) for w, k in alone]), strict=True
+        ):
+            if proven:
+                self.known[w] = _Best(design, True)
+
+    def _question(self, w: _Wanted, alone: bool = False) -> Question:
+        slots, pins = dict[str, list[str]](), dict[str, Any]()
+        if alone and w.alone:
+            made = Composition.of(self.made[w.alone], w.objective)
+            slots, pins = {slot: [word] for slot, word in made.parts.items()}, {**made.counts, **made.choices}
+        return self.steps.one_best(w.values, {w.objective: self.senses[w.objective]}, GAP, slots, pins)
+
+    def _alone(self, w: _Wanted) -> ParetoFront | None:
+        """Search what cannot be answered together with other things; None where the family refuses it."""
         left = self.left()
-        try:
-            question = self.steps.one_best(values, {self.objective: self.sense}, GAP, slots, pins)
-        except InputError:
-            return _Best(None, True)  # refused: the family says that there is no such design
         seconds = LONGEST if left is None else min(LONGEST, left)
-        front = question.answer(self.workers, None, seconds, self.known, explained=False)
+        ideas = list(self.ideas.get(w.objective, {}).values())
+        try:
+            question = self._question(w, alone=True)
+        except InputError:
+            return None
+        front = question.answer(self.workers, None, seconds, ideas, explained=False)
         if front.interrupted == INTERRUPTED:
             raise Stopped(front.interrupted)
         if front.interrupted:
             self.left()
-        design = best_design(front, self.objective)
-        if design is not None and not pins and _named(design) not in map(_named, self.known):
-            self.known.append(design)
-        return _Best(design, front.certificate.kind == "global")
+        return front
+
+    def _take(self, w: _Wanted, front: ParetoFront | None) -> None:
+        design = best_design(front, w.objective)
+        self.known[w] = _Best(design, front is None or front.certificate.kind == "global")
+        if design is not None and not w.alone:
+            self.ideas.setdefault(w.objective, {}).setdefault(_words(design), design)
+
+
+Asking = Generator[list[_Wanted], None, Any]  # a search that yields what it wants to know
 
 
 class _Between:
     """The breaks of one objective between two steps."""
 
-    def __init__(self, search: _Search, two: Step, first: _Best, last: _Best) -> None:
-        self.search = search
-        self.low, self.high = (float(s.values[search.along]) for s in (search.step, two))  # type: ignore[arg-type]
-        self.ends = {self.low: first, self.high: last}
-        search.known += [b.design for b in self.ends.values() if b.design is not None]
+    def __init__(self, oracle: _Oracle, objective: str, one: Step, two: Step) -> None:
+        self.oracle, self.objective, self.one, self.two = oracle, objective, one, two
+        self.sign = 1.0 if oracle.senses[objective] == "min" else -1.0
+        self.low, self.high = (float(s.values[oracle.along]) for s in (one, two))  # type: ignore[arg-type]
 
-    def breaks(self) -> list[Break]:
-        """Return the breaks from the lower to the upper step."""
-        search, found = self.search, list[Break]()
-        place, holder = self.low, self._best(self.low).design
-        while not self._holds(holder, self.high):
-            if len(found) == MOST:
+    def search(self, found: list[Break]) -> Generator[list[_Wanted], None, None]:
+        """Find the breaks from the lower to the upper step."""
+        yield [self._wanted(self.low), self._wanted(self.high)]
+        place, holder, count = self.low, self._best(self.low).design, 0
+        while not (yield from self._holds(holder, self.high)):
+            if count == MOST:
                 found[-1] = replace(found[-1], remark=f"more changes follow up to {self.high:g}")
-                break
-            low, high = self._halved(place, holder)
-            after = self._best(high).design
-            before = None if holder is None else search.alone(holder, low).design
+                return
+            low, high = yield from self._break(holder, place)
+            before, after = yield from self._sides(holder, low, high)
             proven = self._best(low).proven and self._best(high).proven
-            old, new = (None if d is None else search.composition(d) for d in (before, after))
-            others = _others(search.step, search.along)
-            found.append(Break(search.objective, others, low, high, old, new, proven, "" if proven else UNPROVEN))
-            place, holder = high, after
-        return found
+            old, new = (None if d is None else Composition.of(d, self.objective) for d in (before, after))
+            others = _others(self.one, self.oracle.along)
+            found.append(Break(self.objective, others, low, high, old, new, proven, "" if proven else UNPROVEN))
+            place, holder, count = high, after, count + 1
 
-    def _best(self, value: float) -> _Best:
-        return self.ends[value] if value in self.ends else self.search.best(value)
+    def _break(self, holder: Design | None, low: float) -> Asking:
+        """Return a narrow range at whose lower end a holder still holds, and at whose upper end it does not.
 
-    def _halved(self, low: float, holder: Design | None) -> tuple[float, float]:
-        """Return a narrow range at whose lower end a holder still holds, and at whose upper end it does not."""
-        high = self.high
-        while high - low > max(WIDTH * max(abs(low), abs(high)), FINEST * (self.high - self.low)):
-            middle = 0.5 * (low + high)
-            if self._holds(holder, middle):
-                low = middle
+        Where it lies is first told by what holder and rival can do alone; only its ends are searched over everything.
+        """
+        high, rival, guesses = self.high, self._best(self.high).design, 0
+        while high - low > self._narrow(low, high):
+            if guesses < GUESSES:
+                first, last = yield from self._crossing(holder, rival, low, high)
+                guesses += 1
             else:
-                high = middle
+                first = last = 0.5 * (low + high)
+            yield [self._wanted(first), self._wanted(last)]
+            if first > low and not (yield from self._holds(holder, first)):
+                high, rival = first, self._best(first).design
+            elif last < high and (yield from self._holds(holder, last)):
+                low = last
+            else:
+                low, high = first, last
         return low, high
 
-    def _holds(self, holder: Design | None, value: float) -> bool:
+    def _narrow(self, low: float, high: float) -> float:
+        return max(WIDTH * max(abs(low), abs(high)), FINEST * (self.high - self.low))
+
+    def _crossing(self, holder: Design | None, rival: Design | None, low: float, high: float) -> Asking:
+        """Return a narrow range in which a rival becomes better than the holder, each alone."""
+        while high - low > self._narrow(low, high):
+            inner = [low + (high - low) * k / PARTS for k in range(1, PARTS)]
+            yield [self._wanted(x, d) for x in inner for d in (holder, rival) if d is not None]
+            beaten = [self._beats(self._own(rival, x), self._own(holder, x)) for x in inner]
+            k = beaten.index(True) if True in beaten else len(inner)
+            low, high = [low, *inner][k], [*inner, high][k]
+        return low, high
+
+    def _sides(self, holder: Design | None, low: float, high: float) -> Asking:
+        """Return the designs on both sides of a break."""
+        before = self._best(low).design
+        if holder is not None and (before is None or _words(before) != _words(holder)):
+            yield [self._wanted(low, holder)]
+            before = self._own(holder, low)
+        return (before if holder is not None else None), self._best(high).design
+
+    def _wanted(self, value: float, alone: Design | None = None) -> _Wanted:
+        along, words = self.oracle.along, ""
+        if alone is not None:
+            words = _words(alone)
+            self.oracle.made.setdefault(words, alone)
+        values = tuple(value if k == along else v for k, v in enumerate(self.one.values))
+        return _Wanted(self.objective, values, words)
+
+    def _best(self, value: float) -> _Best:
+        return self.oracle.known[self._wanted(value)]
+
+    def _own(self, design: Design | None, value: float) -> Design | None:
+        return None if design is None else self.oracle.known[self._wanted(value, design)].design
+
+    def _beats(self, one: Design | None, other: Design | None) -> bool:
+        """Tell whether a design is better than another by more than counts as equal; none is worse than any."""
+        if one is None or other is None:
+            return one is not other and other is None
+        a, b = (self.sign * d.values[self.objective] for d in (one, other))
+        return a < b - SAME * max(abs(a), abs(b))
+
+    def _holds(self, holder: Design | None, value: float) -> Asking:
         """Tell whether a design's parts are (still) the best at a value, or as good as the best."""
+        yield [self._wanted(value)]
         best = self._best(value).design
         if holder is None or best is None:
             return holder is best
-        if _named(best) == _named(holder):
+        if _words(best) == _words(holder):
             return True
-        own = self.search.alone(holder, value).design
-        return own is not None and not self.search.beats(best, own)
+        yield [self._wanted(value, holder)]
+        own = self._own(holder, value)
+        return own is not None and not self._beats(best, own)
 
 
-def _named(design: Design) -> dict[str, str]:
-    return Composition.of(design, next(iter(design.values))).named
+def _words(design: Design) -> str:
+    """Return in words what a design is made of."""
+    return repr(Composition.of(design, next(iter(design.values))).named)
 
 
 # ---- weights --------------------------------------------------------------------------------------------------------

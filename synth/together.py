@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,8 @@ from synth.feasibility import Status
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
 from synth.instance import Instance
 from synth.pareto import rank
-from synth.results import Certificate, ParetoFront
+from synth.recall import combination_like
+from synth.results import Certificate, Design, ParetoFront
 from synth.search import Question
 from synth.seeker import Seeker
 from synth.settle import settle_ties, settle_variables
@@ -47,14 +48,16 @@ class Together(Instance):
     ----------
     each : list of Instance
         That are alike, as :func:`alike` tells.
+    moving : collection of str, optional
+        Requirements that may differ although they do not here, so that code is compiled once for several searches.
     """
 
-    def __init__(self, each: Sequence[Instance]) -> None:
+    def __init__(self, each: Sequence[Instance], moving: Collection[str] = ()) -> None:
         self.__dict__.update(each[0].__dict__)
         self.each = list(each)
         self.size = each[0].combinations
-        names = [n for n, v in self.requirements.items() if any(i.requirements[n] != v for i in each)]
-        self.moving = {n: np.array([i.requirements[n] for i in each]) for n in names}
+        names = {*moving, *different(each)}
+        self.moving = {n: np.array([i.requirements[n] for i in each]) for n in self.requirements if n in names}
         self.apart = 1
         self.radix = [len(each), *each[0].radix]
         self.combinations = len(each) * self.size
@@ -102,6 +105,11 @@ class Together(Instance):
 
     def _moves(self, entry: Any) -> bool:
         return entry.kind == "requirement" and entry.name in self.moving
+
+
+def different(each: Sequence[Instance]) -> list[str]:
+    """Return the requirements that are not the same in all of some questions."""
+    return [n for n, v in each[0].requirements.items() if any(i.requirements[n] != v for i in each)]
 
 
 def alike(question: Question) -> tuple[Any, ...]:
@@ -263,6 +271,10 @@ class TogetherSearch:
     progress : callable, optional
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
+    ideas : list of Design
+        Designs of similar questions, where to look first. They prove nothing.
+    moving : collection of str, optional
+        As for :class:`Together`.
     """
 
     def __init__(
@@ -271,11 +283,13 @@ class TogetherSearch:
         workers: int = 1,
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
+        ideas: Sequence[Design] = (),
+        moving: Collection[str] = (),
     ) -> None:
         self.started = time.monotonic()
-        self.questions, self.progress = list(questions), progress
+        self.questions, self.progress, self.ideas = list(questions), progress, ideas
         first = questions[0]
-        self.together = Together([q.instance for q in questions])
+        self.together = Together([q.instance for q in questions], moving)
         self.gap = float(first.settings["gap"])
         self.goals = with_ties(first.instance.model, dict(first.chosen))
         self.form = Formulation(self.together, self.goals, 1)
@@ -286,14 +300,21 @@ class TogetherSearch:
         self.rng = np.random.default_rng(first.settings["seed"])
         self.pool = self.form.nothing()
 
-    def answers(self, reported: bool = True) -> list[ParetoFront | None]:
+    def answers(self, wanted: Sequence[int] | None = None, reported: bool = True) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven, or has no design: it is better asked alone.
 
-        ``reported``: with ties settled, equal designs named, and elasticities.
+        Parameters
+        ----------
+        wanted : list of int, optional
+            Positions of the questions to answer; all unless given.
+        reported : bool
+            With ties settled, equal designs named, and elasticities.
         """
         nothing: list[ParetoFront | None] = [None] * len(self.questions)
         self.pool = self.form.root()
         asked = self._told_apart()
+        if wanted is not None:
+            asked &= np.isin(np.arange(len(asked)), wanted)
         if not len(self.pool) or not asked.any():
             return nothing
         purpose = Each(self.form, self.known, self._slack(0), asked)
@@ -310,6 +331,45 @@ class TogetherSearch:
         if not chosen:
             return nothing
         return self._fronts(chosen, reported, solves)
+
+    def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs with given parts, counts and choices, and whether each is proven.
+
+        Parameters
+        ----------
+        wanted : list of (int, Design)
+            The position of a question, and a design that has the parts.
+        """
+        found: list[tuple[Design | None, bool]] = [(None, False)] * len(wanted)
+        waiting = list(range(len(wanted)))
+        while waiting:
+            # A question has one best design at a time.
+            now = {wanted[k][0]: k for k in reversed(waiting)}
+            waiting = [k for k in waiting if now[wanted[k][0]] != k]
+            for k, answer in self._best_with([wanted[k] for k in now.values()]).items():
+                found[now[k]] = answer
+        return found
+
+    def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
+        form, together = self.form, self.together
+        known = BestOfEach(together, 0, form.n, len(form.goals))
+        form.archive = known
+        offered = [(q, combination_like(together.each[q], design), design) for q, design in wanted]
+        result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in offered if c is None}
+        rows = [(q, q * together.size + c, design) for q, c, design in offered if c is not None]
+        asked = np.zeros(len(self.questions), dtype=bool)
+        asked[[q for q, _, _ in rows]] = True
+        purpose = Each(form, known, self._slack(0), asked)
+        combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
+        self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
+        outcome = cover(form, form.leaves(combinations), purpose, self.clock, self.rng, EFFORT * len(rows))
+        left = purpose.open_questions(outcome.open)
+        fronts = self._fronts(list(known), False, form.nlp_solves) if len(known) else [None] * len(self.questions)
+        for q, _, _ in rows:
+            front = fronts[q]
+            result[q] = (None if front is None else front.designs[0]), not left[q]
+        form.archive = self.known
+        return result
 
     def _unproven(self, form: Formulation, pool: Boxes, asked: np.ndarray, effort: int) -> np.ndarray:
         """Cover everything; return those of the questions asked that this leaves open."""
@@ -355,11 +415,30 @@ class TogetherSearch:
 
     def _first(self, purpose: Each) -> None:
         """Look for good designs of every question: beside the best of each, and with what is good in any other."""
+        self._recalled(purpose)
         for effort in FIRST_EFFORTS:
             if not len(self.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
         if len(self.known):
             self._improve(purpose)
+
+    def _recalled(self, purpose: Each) -> None:
+        """Try the designs of similar questions in every question."""
+        first = self.together.each[0]
+        rows = [(c, d) for d in self.ideas if (c := combination_like(first, d)) is not None]
+        points = self._points([d for _, d in rows])
+        questions = np.repeat(np.flatnonzero(purpose.asked), len(rows))
+        own = np.tile(np.arange(len(rows)), len(questions) // max(len(rows), 1))
+        combinations = np.array([c for c, _ in rows], dtype=np.int64)
+        if len(rows):
+            self._tried(purpose, questions * self.together.size + combinations[own], points[own])
+
+    def _points(self, designs: Sequence[Design]) -> np.ndarray:
+        """Return the variables of designs, moved into their ranges."""
+        names = [v.name for v in self.form.model.variables]
+        points = np.array([[d.values[n] for n in names] for d in designs]).reshape(len(designs), self.form.n)
+        inside: np.ndarray = np.clip(points, self.form.lower, self.form.upper)
+        return inside
 
     def _improve(self, purpose: Each) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
@@ -506,10 +585,10 @@ def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.n
     )
 
 
-def groups_of(questions: Sequence[Question]) -> list[list[int]]:
-    """Return the positions of questions that can be answered together: two or more, with one objective, alike."""
+def groups_of(questions: Sequence[Question], least: int = 2) -> list[list[int]]:
+    """Return the positions of questions that can be answered together: so many or more, with one objective, alike."""
     groups: dict[Any, list[int]] = {}
     for k, question in enumerate(questions):
         if len(question.chosen) == 1:
             groups.setdefault(alike(question), []).append(k)
-    return [g for g in groups.values() if 1 < len(g) <= LARGEST // questions[g[0]].instance.combinations]
+    return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations]

@@ -811,6 +811,7 @@ def _in_unit(si: float, unit: Unit) -> Decimal:
     return _WIDE.divide(Decimal(exact.numerator), Decimal(exact.denominator))
 
 
+@lru_cache(maxsize=4096)
 def _shortest(si: float, unit: Unit) -> str:
     if number_to_si("0", unit) == si:
         return "0"
