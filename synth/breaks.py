@@ -147,7 +147,7 @@ class _Oracle:
         self.known: dict[_Wanted, _Best] = {}
         self.made: dict[str, Design] = {}  # a design of each composition asked about alone
         self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
-        self.moving = different([steps.question(values).instance for values in steps.values])
+        self.moving = different([q.instance for q in steps.questions])
 
     def breaks(self, pairs: Sequence[tuple[Step, Step]]) -> list[list[Break]]:
         """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""

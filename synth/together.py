@@ -319,10 +319,10 @@ class TogetherSearch:
             return nothing
         purpose = Each(self.form, self.known, self._slack(0), asked)
         self._first(purpose)
-        asked &= np.isfinite(self.known.best())
-        if not asked.any():
+        if not len(self.known):
             return nothing
-        unproven = self._unproven(self.form, self.pool, asked, EFFORT)
+        found = np.isfinite(self.known.best())
+        unproven = self._unproven(self.form, self.pool, asked & found, EFFORT) | (asked & ~found)
         if unproven.any():
             unproven = self._unproven_in_conflict(unproven)
         asked &= ~unproven
@@ -330,7 +330,9 @@ class TogetherSearch:
         chosen = [c for c, q in zip(self.known, self.known.questions(), strict=True) if asked[q]]
         if not chosen:
             return nothing
-        return self._fronts(chosen, reported, solves)
+        if not reported:
+            return self._fronts([(c, ()) for c in chosen], False, solves)
+        return self._fronts(settle_ties(self.form, self.pool, self._second(chosen), 1), True, solves)
 
     def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
         """Return the best designs with given parts, counts and choices, and whether each is proven.
@@ -364,7 +366,7 @@ class TogetherSearch:
         self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
         outcome = cover(form, form.leaves(combinations), purpose, self.clock, self.rng, EFFORT * len(rows))
         left = purpose.open_questions(outcome.open)
-        fronts = self._fronts(list(known), False, form.nlp_solves) if len(known) else [None] * len(self.questions)
+        fronts = self._fronts([(c, ()) for c in known], False, form.nlp_solves)
         for q, _, _ in rows:
             front = fronts[q]
             result[q] = (None if front is None else front.designs[0]), not left[q]
@@ -417,9 +419,9 @@ class TogetherSearch:
         """Look for good designs of every question: beside the best of each, and with what is good in any other."""
         self._recalled(purpose)
         for effort in FIRST_EFFORTS:
-            if not len(self.known):
+            if not len(purpose.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
-        if len(self.known):
+        if len(purpose.known):
             self._improve(purpose)
 
     def _recalled(self, purpose: Each) -> None:
@@ -508,35 +510,34 @@ class TogetherSearch:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _fronts(self, chosen: Sequence[Candidate], reported: bool, solves: int) -> list[ParetoFront | None]:
+    def _fronts(
+        self, found: Sequence[tuple[Candidate, tuple[str, ...]]], priced: bool, solves: int
+    ) -> list[ParetoFront | None]:
+        """Return the front of each question from the best designs, each with what ties with it."""
         form, together = self.form, self.together
-        pairs: list[tuple[Candidate, tuple[str, ...]]] = [(c, ()) for c in chosen]
-        if reported:
-            pairs = settle_ties(form, self.pool, self._second(chosen), 1)
-        settled = [c for c, _ in pairs]
-        costs = elasticities(form, settled if reported else [], 1) or [{}] * len(settled)
-        combinations = np.array([c.combination for c in settled], dtype=np.int64)
-        points = np.array([c.variables for c in settled]).reshape(len(settled), form.n)
-        result = form.evaluate(points, combinations)
-        solved = np.bincount(
-            together.question(np.array(sorted(form.solved_combinations), dtype=np.int64)), minlength=len(together.each)
-        )
         fronts: list[ParetoFront | None] = [None] * len(together.each)
-        for row, ((candidate, ties), cost) in enumerate(zip(pairs, costs, strict=True)):
-            number = int(together.question(combinations[row : row + 1])[0])
+        if not found:
+            return fronts
+        designs = [c for c, _ in found]
+        costs = elasticities(form, designs if priced else [], 1) or [{}] * len(designs)
+        combinations, points, _ = rows_of(designs)
+        result = form.evaluate(points.reshape(len(designs), form.n), combinations)
+        every = np.array(sorted(form.solved_combinations), dtype=np.int64)
+        solved = np.bincount(together.question(every), minlength=len(together.each))
+        for row, (number, (candidate, ties)) in enumerate(zip(together.question(combinations), found, strict=True)):
             question = self.questions[number]
             frame = make_frame(question.instance, question.chosen)
             values = np.array([[result.values[name][row] for name in question.chosen]])
             ranking = rank(question.chosen, values, list(question.weights.values()))
             design = found_design(
                 form, frame, candidate, result, row, status=Status.OPTIMAL, gap=self.gap, rank=1,
-                score=float(ranking.scores[0]), note=ranking.notes[0], alternatives=ties, elasticity=cost,
+                score=float(ranking.scores[0]), note=ranking.notes[0], alternatives=ties, elasticity=costs[row],
             )  # fmt: skip
-            total = question.instance.combinations
+            total, own = question.instance.combinations, int(solved[number])
             statistics = {
                 **offered(question.instance),
-                "excluded_by_bound": int(total - solved[number]),
-                "solved": int(solved[number]),
+                "excluded_by_bound": total - own,
+                "solved": own,
                 "searched_together": len(self.questions),
                 "boxes": form.contracted,
                 "nlp_solves": form.nlp_solves,
@@ -549,7 +550,7 @@ class TogetherSearch:
                 status=Status.OPTIMAL,
                 complete=True,
                 statistics=statistics,
-                certificate=Certificate("global", self.gap, total, int(total - solved[number]), int(solved[number]), 0),
+                certificate=Certificate("global", self.gap, total, total - own, own, 0),
                 explanation=None,
                 settings=question.settings,
                 interrupted="",
@@ -568,7 +569,7 @@ class TogetherSearch:
         known = BestOfEach(self.together, 1, form.n, len(form.goals), plain)
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
-        known.add(*_rows(chosen))
+        known.add(*rows_of(chosen))
         purpose = Each(form, known, self._slack(1), asked)
         self._improve(purpose)
         cover(form, self.pool, purpose, self.clock, self.rng, TIE_EFFORT * len(chosen))
@@ -576,7 +577,7 @@ class TogetherSearch:
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]
 
 
-def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def rows_of(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return combinations, variables and phi of some designs as arrays."""
     return (
         np.array([c.combination for c in candidates], dtype=np.int64),

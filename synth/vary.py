@@ -353,15 +353,11 @@ class Steps:
         self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
-        self.combinations = 0  # of the largest step
-        self._check()
+        self.questions = self._posed()
+        self.combinations = max(q.instance.combinations for q in self.questions)  # of the largest step
 
     def __len__(self) -> int:
         return len(self.values)
-
-    def question(self, values: Sequence[Value]) -> Question:
-        """Return the question at some values."""
-        return replace(self._at(values).pose(), alike=len(self))
 
     def one_best(
         self,
@@ -411,16 +407,16 @@ class Steps:
                 asked = asked.at(varied, value)
         return asked
 
-    def _check(self) -> None:
-        """Pose the question of every step; what is wrong with all of them is no matter of the values."""
-        faults: dict[int, InputError] = {}
+    def _posed(self) -> list[Question]:
+        """Return the question of every step; what is wrong with all of them is no matter of the values."""
+        questions, faults = list[Question](), dict[int, InputError]()
         for k, values in enumerate(self.values):
             try:
-                self.combinations = max(self.question(values).instance.combinations, self.combinations)
+                questions.append(replace(self._at(values).pose(), alike=len(self)))
             except InputError as error:
                 faults[k] = error
         if not faults:
-            return
+            return questions
         first, fault = next(iter(faults.items()))
         same = len({(e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
         if same and len(faults) == len(self.values) > 1:

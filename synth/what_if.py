@@ -18,6 +18,7 @@ from synth.clock import Stopped
 from synth.errors import InputError
 from synth.files import write_atomically
 from synth.fingerprint import code_digest
+from synth.front_record import front_record, record_text
 from synth.loading import front_of_record, load_front
 from synth.pareto import rank
 from synth.problem import DesignProblem
@@ -105,8 +106,10 @@ class _Run:
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit
         self.store = _Store(folder)
-        self.questions = [steps.question(values) for values in steps.values]
-        self.alone = [_fingerprint(question, [], weights=False) for question in self.questions]
+        self.questions = steps.questions
+        self.alone = [_fingerprint(question) for question in self.questions]
+        weighted = any(x.kind == "weight" for x in steps.varied)
+        self.unweighted = [_fingerprint(q, weights=False) for q in self.questions] if weighted else self.alone
         self.answered: list[Step] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
         self.fingerprints: list[str] = []
@@ -147,12 +150,11 @@ class _Run:
         groups = groups_of(self.questions)
         marks = dict[int, str]()
         for group in groups:
-            mark = hashlib.sha256(" ".join(self.alone[k] for k in group).encode()).hexdigest()
-            marks |= dict.fromkeys(group, mark)
-        for position, question in enumerate(self.questions):
+            marks |= dict.fromkeys(group, _joined([self.alone[k] for k in group]))
+        for position, alone in enumerate(self.alone):
             ideas = [self.fingerprints[k] for k in self._neighbours(position)]
             group_mark = [marks[position]] if position in marks else []
-            self.fingerprints.append(_fingerprint(question, [*ideas, *group_mark]))
+            self.fingerprints.append(_joined([alone, *ideas, *group_mark]))
         for group in groups:
             missing = [k for k in group if self.store.get(k + 1, self.fingerprints[k]) is None]
             if missing:
@@ -163,22 +165,22 @@ class _Run:
 
     def _answer(self, position: int) -> Step:
         number, values, question = position + 1, self.steps.values[position], self.questions[position]
-        own, alone = self.fingerprints[position], self.alone[position]
+        own, unweighted = self.fingerprints[position], self.unweighted[position]
         front = self.store.get(number, own)
         if front is not None:
             self.kept += 1
         else:
-            front, known = self.ahead.pop(position, None), self.same_but_weights.get(alone)
+            front, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
             if known is not None:
                 front = _reranked(known, question)
             if front is None:
                 front = self._search(number, question, [self.answered[k] for k in self._neighbours(position)])
-            text = front.files()["front.json"]
+            text = record_text(front_record(front))
             self.store.put(number, own, text)
             # As it would be read again: a study that goes on is the same to the last digit.
             front = front_of_record(json.loads(text), Path(RECORD))
         front = replace(front, question=question.instance, record=None, folder=None)
-        self.same_but_weights.setdefault(alone, front)
+        self.same_but_weights.setdefault(unweighted, front)
         return Step(number, values, front, own)
 
     def _search(self, number: int, question: Question, before: Sequence[Step]) -> ParetoFront:
@@ -252,8 +254,13 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     return replace(front, designs=designs, settings=dict(question.settings))
 
 
-def _fingerprint(question: Question, before: Sequence[str], weights: bool = True) -> str:
-    """Return the hash of all that decides an answer: question, formulas, tables, code, and where ideas come from."""
+def _joined(fingerprints: Sequence[str]) -> str:
+    """Return one hash of several: of a question, and of those that its ideas come from."""
+    return hashlib.sha256(" ".join(fingerprints).encode()).hexdigest()
+
+
+def _fingerprint(question: Question, weights: bool = True) -> str:
+    """Return the hash of all that decides an answer but ideas: question, formulas, tables, code."""
     instance, selection = question.instance, question.instance.selection
     program = instance.model.program
     settings = {k: v for k, v in question.settings.items() if weights or k != "weights"}
@@ -270,7 +277,6 @@ def _fingerprint(question: Question, before: Sequence[str], weights: bool = True
         "settings": {k: repr(v) for k, v in settings.items()},
         "formulas": hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest(),
         "code": code_digest(),
-        "before": list(before),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
