@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ DIRECTIONS = 5
 BATCH = 2048
 MOST_TIES = 50
 MOST_MOVES = 8
+TRIED_AT_ONCE = 8192  # points, that arrays stay in the cache
+EVALUATED_AT_ONCE = 65_536
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
@@ -39,43 +41,105 @@ def settle_discrete(
     """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
 
     None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid or among
-    parts, the other objectives decide that way. Parts stay where ``parts`` is False.
+    parts, the other objectives decide that way. Parts stay where ``parts`` is False. All designs take their steps at
+    the same time; each goes where it would go alone.
     """
-    return [_settle_discrete(form, candidate, traded, list(order), parts) for candidate in candidates]
-
-
-def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order: list[int], parts: bool) -> Candidate:
-    movable = np.flatnonzero(form.gridded & (form.lower < form.upper))
-    for _ in range(MOST_MOVES):
-        before = candidate
-        for k in movable:
-            grid = form.grids[k]
-            grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
-            trials = np.tile(candidate.variables, (len(grid), 1))
-            trials[:, k] = grid
-            candidate = _better(form, candidate, trials, np.full(len(grid), candidate.combination), traded, order)
-        others = form.instance.neighbours(candidate.combination) if parts else np.empty(0, dtype=np.int64)
-        trials = np.tile(candidate.variables, (len(others), 1))
-        candidate = _better(form, candidate, trials, others, traded, order)
-        if candidate is before:
+    if not candidates:
+        return []
+    combinations = np.array([c.combination for c in candidates], dtype=np.int64)
+    variables = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    phi = np.array([c.phi for c in candidates])
+    steps: list[int | None] = [int(k) for k in np.flatnonzero(form.gridded & (form.lower < form.upper))]
+    steps += [None] if parts else []
+    moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
+    for step in steps * MOST_MOVES:
+        # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
+        own = np.flatnonzero(idle < len(steps))
+        if not len(own):
             break
-    return candidate
+        trials = _trials(form, step, combinations[own], variables[own], phi[own, :traded])
+        found = _better(form, trials, phi[own], traded, list(order))
+        better = own[found.whose]
+        idle[own] += 1
+        idle[better], moved[better] = 0, True
+        combinations[better], variables[better] = found.combinations, found.variables
+        phi[better] = found.phi
+    return [
+        Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else own for k, own in enumerate(candidates)
+    ]
 
 
-def _better(
-    form: Formulation, own: Candidate, trials: np.ndarray, combinations: np.ndarray, traded: int, order: list[int]
-) -> Candidate:
-    """Return the best trial by the objectives in their order where it is better than a design, else the design."""
-    rows, phi = form.feasible_rows(trials, combinations)
-    left = rows[np.all(phi[rows, :traded] <= own.phi[:traded] + TIE, axis=1)]
+@dataclass(frozen=True)
+class _Trials:
+    """Points to try in place of designs: whose each is (in rising order), and its phi where that is known."""
+
+    whose: np.ndarray
+    combinations: np.ndarray
+    variables: np.ndarray
+    phi: np.ndarray
+
+    def take(self, rows: np.ndarray) -> _Trials:
+        """Return some of them, by mask or positions."""
+        return _Trials(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
+
+
+def _trials(
+    form: Formulation, step: int | None, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> _Trials:
+    """Return what is worth a try: designs with other values of one variable, or (None) with one other part.
+
+    ``phi``: of the objectives that must not become larger.
+    """
+    grid = np.empty(0) if step is None else form.grids[step]
+    if step is not None:
+        grid = grid[(grid >= form.lower[step]) & (grid <= form.upper[step])]
+    width = len(form.instance.neighbours(combinations[0])) if step is None else len(grid)
+    at_once = max(TRIED_AT_ONCE // max(width, 1), 1)
+    whose, numbers, points = [], [], []
+    for first in range(0, len(combinations), at_once):
+        part = slice(first, first + at_once)
+        columns, others = list(variables[part].T[:, :, None]), combinations[part, None]
+        if step is None:
+            others = form.instance.neighbours(combinations[part])
+        else:
+            columns[step] = grid[None, :]
+        rows, places = np.nonzero(form.promising(columns, others, phi[part]))
+        moved = variables[part][rows]
+        if step is not None:
+            moved[:, step] = grid[places]
+        whose.append(first + rows)
+        numbers.append(others[rows, places if step is None else 0])
+        points.append(moved)
+    return _Trials(
+        np.concatenate(whose), np.concatenate(numbers), np.concatenate(points), np.empty((sum(map(len, whose)), 0))
+    )
+
+
+def _better(form: Formulation, trials: _Trials, own: np.ndarray, traded: int, order: list[int]) -> _Trials:
+    """Return, per design with phi ``own``, the best trial by the objectives in their order, where that is better."""
+    left = _feasible(form, trials)
+    left = left.take(np.all(left.phi[:, :traded] <= own[left.whose, :traded] + TIE, axis=1))
     for j in order:
-        left = left[phi[left, j] <= np.min(phi[left, j], initial=np.inf) + TIE]
-    for row in left[:1]:
-        gain = own.phi[order] - phi[row, order]
-        decisive = np.flatnonzero(np.abs(gain) > TIE)
-        if len(decisive) and gain[decisive[0]] > 0:
-            return Candidate(int(combinations[row]), trials[row], phi[row])
-    return own
+        least = np.full(len(own), np.inf)
+        np.minimum.at(least, left.whose, left.phi[:, j])
+        left = left.take(left.phi[:, j] <= least[left.whose] + TIE)
+    _, first = np.unique(left.whose, return_index=True)
+    left = left.take(first)
+    gain = (own[left.whose] - left.phi)[:, order]
+    decisive = np.argmax(np.abs(gain) > TIE, axis=1)
+    return left.take(gain[np.arange(len(gain)), decisive] > TIE)
+
+
+def _feasible(form: Formulation, trials: _Trials) -> _Trials:
+    """Return the feasible ones of some trials, with phi."""
+    found = [
+        _Trials(*(x[:0] for x in (trials.whose, trials.combinations, trials.variables)), np.empty((0, len(form.goals))))
+    ]
+    for first in range(0, len(trials.whose), EVALUATED_AT_ONCE):
+        part = trials.take(np.arange(first, min(first + EVALUATED_AT_ONCE, len(trials.whose))))
+        rows, phi = form.feasible_rows(part.variables, part.combinations)
+        found.append(replace(part, phi=phi).take(rows))
+    return _Trials(*(np.concatenate([getattr(f, x.name) for f in found]) for x in fields(_Trials)))
 
 
 def settle_variables(

@@ -89,10 +89,10 @@ class Together(Instance):
         entry = self.model.data_inputs[position]
         return self.moving[entry.name] if self._moves(entry) else super().column(position)
 
-    def neighbours(self, combination: int) -> np.ndarray:
+    def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
         """Return the combinations of the same question that differ in one part, count or choice."""
-        question, own = divmod(combination, self.size)
-        return question * self.size + self.each[question].neighbours(own)
+        question, own = np.divmod(np.asarray(combination, dtype=np.int64), self.size)
+        return question[..., None] * self.size + self.each[0].neighbours(own)
 
     def describe(self, combination: int) -> tuple[Any, dict[str, float], dict[str, str]]:
         """Return parts, counts and choices of one combination."""
