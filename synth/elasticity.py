@@ -73,26 +73,23 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     start = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
     positions = requirement_positions(form)
-    moved = [_followers_of(form, c) for c in combinations]
-    speaking = {name: _speaking_of(form, position) for name, position in positions.items()}
+    speaking = np.array([_speaking_of(form, position) for position in positions.values()], dtype=bool)
     tight = _tight(form, start, combinations)
+    # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
+    _, follows = _shares(form, combinations)
+    spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
         found = optima(form, combinations, start, phi, chosen, k)
-        for i in np.flatnonzero(found.converged):
-            own = {
-                name: float(found.limits[i, j])
-                for j, name in enumerate(names)
-                if logs[j] and abs(found.limits[i, j]) > NOISE
-            }
-            for q, name in enumerate(positions):
-                # Where a tight limit speaks of it, the least change breaks what no variable can restore.
-                spoken = np.any([speaking[other] for other in moved[i][name]], axis=0)
-                if abs(found.requirements[i, q]) > NOISE and not np.any(tight[i] & spoken):
-                    own[name] = float(found.requirements[i, q])
-            results[i][form.names[k]] = own
+        counts = np.concatenate(
+            [logs & (np.abs(found.limits) > NOISE), (np.abs(found.requirements) > NOISE) & ~spoken], axis=1
+        )
+        numbers = np.concatenate([found.limits, found.requirements], axis=1).tolist()
+        labels = [*names, *positions]
+        for i in np.flatnonzero(found.converged).tolist():
+            results[i][form.names[k]] = {labels[j]: numbers[i][j] for j in np.flatnonzero(counts[i]).tolist()}
     return results
 
 
@@ -123,16 +120,18 @@ def optima(
     positions = requirement_positions(form)
     slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
     requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
-    for i in np.flatnonzero(answer.converged):
-        point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
+    solved = np.flatnonzero(answer.converged)
+    if len(solved):
+        points = answer.variables[solved]
+        known = np.stack([np.broadcast_to(np.asarray(x, dtype=float), (len(start),))[solved] for x in data], axis=1)
         own, at_ends = slopes(
-            form, answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
+            form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
         )
-        ends[i] = at_ends * answer.variables[i]
-        moved = _followers_of(form, combinations[i])
-        for q, (name, position) in enumerate(positions.items()):
-            slope = sum(share * float(own[positions[other]]) for other, share in moved[name].items())
-            requirements[i, q] = slope * point[position]
+        ends[solved] = at_ends * points
+        places = list(positions.values())
+        share, _ = _shares(form, combinations[solved])
+        slope = _sum_of_shares(share, own[:, places])
+        requirements[solved] = slope * known[:, places]
     return Optima(
         answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
     )  # fmt: skip
@@ -160,9 +159,41 @@ def immovable(form: Formulation) -> np.ndarray:
     return np.array([not any(moving[k] for k in (c.value, c.limit) if k is not None) for c in form.cuts], dtype=bool)
 
 
-def _followers_of(form: Formulation, combination: int) -> dict[str, dict[str, float]]:
-    """Return what moves with each requirement in the question that a combination belongs to; worked out once."""
-    instance = form.instance.of(int(combination))
+def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
+    questions: dict[int, int] = {}
+    kinds, numbers = [], []
+    for combination in combinations.tolist():
+        instance = form.instance.of(combination)
+        if id(instance) not in questions:
+            questions[id(instance)] = len(kinds)
+            kinds.append(_followers_of(form, instance))
+        numbers.append(questions[id(instance)])
+    place = {name: q for q, name in enumerate(requirement_positions(form))}
+    share = np.zeros((len(kinds), len(place), len(place)))
+    follows = np.zeros(share.shape, dtype=bool)
+    for own, moved in enumerate(kinds):
+        for name, others in moved.items():
+            for other, by in others.items():
+                share[own, place[name], place[other]] = by
+                follows[own, place[name], place[other]] = True
+    return share[numbers], follows[numbers]
+
+
+def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Return the slope to each requirement and what moves with it, from those to each alone (designs, requirements)."""
+    own = np.arange(slopes.shape[1])
+    total: np.ndarray = 0.0 + share[:, own, own] * slopes
+    # One after another, in the order in which they are declared: sums of numbers depend on it.
+    for other in own[np.any(share, axis=(0, 1))]:
+        more = share[:, :, other] * slopes[:, [other]]
+        more[:, other] = 0.0
+        total += more
+    return total
+
+
+def _followers_of(form: Formulation, instance: Instance) -> dict[str, dict[str, float]]:
+    """Return what moves with each requirement of a question; worked out once."""
     known = form.followers.get(id(instance))
     if known is None:
         known = form.followers[id(instance)] = followers(instance)
@@ -222,15 +253,17 @@ def _gradient(form: Formulation) -> Any:
     function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
 
     def evaluate(
-        own: Formulation, point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray,
+        own: Formulation, points: np.ndarray, known: np.ndarray, size: np.ndarray, cuts: np.ndarray,
         goals: np.ndarray, k: int,
     ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-        clean = [1.0 if np.isnan(v) else v for v in known]
+        clean = np.where(np.isnan(known), 1.0, known)
         units = np.where(rows.log_goals, 1.0, own.goal_scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units
-        weights[k] += 1.0 / units[k]
-        found = function(point, clean, own.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
-        slopes, ends = (np.nan_to_num(np.asarray(part).ravel()) for part in found)
+        weights[:, k] += 1.0 / units[k]
+        limits = np.tile(own.bounds, (len(points), 1))
+        # One call for all designs, a column each.
+        found = function(points.T, clean.T, limits.T, size.T, np.where(cuts == 0, 0.0, cuts).T, weights.T)
+        slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in found)
         return slopes, ends
 
     return evaluate
