@@ -111,7 +111,7 @@ def optima(
     answer = form.solve_many(tasks, combinations, start, skipped=immovable(form))
     data = form.instance.data(combinations)
     sizes, _ = sides(form, start, data)
-    _, bounds = sides(form, answer.variables, data)
+    bounds = _bounds(form, answer.variables, data)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
     with np.errstate(all="ignore"):
@@ -279,6 +279,18 @@ def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tupl
         size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
         sizes[:, j], bounds[:, j] = np.where(np.isfinite(size), size, 1.0), limit
     return sizes, bounds
+
+
+def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+    """Return the limits themselves (designs, limits)."""
+    moving = [cut.limit for cut in form.cuts if cut.limit is not None]
+    limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))
+    with np.errstate(all="ignore"):
+        found = iter(limits([*variables.T, *data]))
+    bounds = np.empty((len(variables), len(form.cuts)))
+    for j, cut in enumerate(form.cuts):
+        bounds[:, j] = cut.bound if cut.limit is None else next(found)
+    return bounds
 
 
 def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:

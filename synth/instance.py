@@ -629,7 +629,10 @@ class Instance:
 
     def describe(self, combination: int) -> tuple[dict[str, tuple[Table, int]], dict[str, float], dict[str, str]]:
         """Return parts (table and row), counts and choices of one combination."""
-        digits = [int(x[0]) for x in self.digits(np.array([combination]))]
+        digits, left = list[int](), int(combination)
+        for size in reversed(self.radix):
+            left, digit = divmod(left, size)
+            digits.insert(0, digit)
         slots = self.selection.slots
         parts = {s.slot: (s.table, int(s.rows[digits[k]])) for k, s in enumerate(slots)}
         rest = digits[len(slots) :]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,68 +57,87 @@ def settle_discrete(
         own = np.flatnonzero(idle < len(steps))
         if not len(own):
             break
-        trials = _trials(form, step, combinations[own], variables[own], phi[own, :traded])
-        found = _better(form, trials, phi[own], traded, list(order))
+        known = combinations[own], variables[own], phi[own, :traded]
+        trials = _other_parts(form, *known) if step is None else _other_values(form, step, *known)
+        found = _better(phi[own], _feasible(form, *trials), traded, list(order))
         better = own[found.whose]
         idle[own] += 1
         idle[better], moved[better] = 0, True
-        combinations[better], variables[better] = found.combinations, found.variables
-        phi[better] = found.phi
+        combinations[better], variables[better], phi[better] = found.combinations, found.variables, found.phi
     return [
         Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else own for k, own in enumerate(candidates)
     ]
 
 
 @dataclass(frozen=True)
-class _Trials:
-    """Points to try in place of designs: whose each is (in rising order), and its phi where that is known."""
+class _Found:
+    """Feasible points to put in place of designs, and whose each is."""
 
     whose: np.ndarray
     combinations: np.ndarray
     variables: np.ndarray
     phi: np.ndarray
 
-    def take(self, rows: np.ndarray) -> _Trials:
+    def take(self, rows: np.ndarray) -> _Found:
         """Return some of them, by mask or positions."""
-        return _Trials(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
+        return _Found(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
 
 
-def _trials(
-    form: Formulation, step: int | None, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
-) -> _Trials:
-    """Return what is worth a try: designs with other values of one variable, or (None) with one other part.
-
-    ``phi``: of the objectives that must not become larger.
-    """
-    grid = np.empty(0) if step is None else form.grids[step]
-    if step is not None:
-        grid = grid[(grid >= form.lower[step]) & (grid <= form.upper[step])]
-    width = len(form.instance.neighbours(combinations[0])) if step is None else len(grid)
-    at_once = max(TRIED_AT_ONCE // max(width, 1), 1)
-    whose, numbers, points = [], [], []
-    for first in range(0, len(combinations), at_once):
-        part = slice(first, first + at_once)
-        columns, others = list(variables[part].T[:, :, None]), combinations[part, None]
-        if step is None:
-            others = form.instance.neighbours(combinations[part])
-        else:
-            columns[step] = grid[None, :]
-        rows, places = np.nonzero(form.promising(columns, others, phi[part]))
-        moved = variables[part][rows]
-        if step is not None:
-            moved[:, step] = grid[places]
-        whose.append(first + rows)
-        numbers.append(others[rows, places if step is None else 0])
-        points.append(moved)
-    return _Trials(
-        np.concatenate(whose), np.concatenate(numbers), np.concatenate(points), np.empty((sum(map(len, whose)), 0))
-    )
+def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
+    """Return the feasible ones of some points."""
+    rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
+    for first in range(0, len(whose), EVALUATED_AT_ONCE):
+        part = slice(first, first + EVALUATED_AT_ONCE)
+        own, values = form.feasible_rows(variables[part], combinations[part])
+        rows.append(first + own)
+        phi.append(values[own])
+    kept = np.concatenate(rows)
+    return _Found(whose[kept], combinations[kept], variables[kept], np.concatenate(phi))
 
 
-def _better(form: Formulation, trials: _Trials, own: np.ndarray, traded: int, order: list[int]) -> _Trials:
-    """Return, per design with phi ``own``, the best trial by the objectives in their order, where that is better."""
-    left = _feasible(form, trials)
-    left = left.take(np.all(left.phi[:, :traded] <= own[left.whose, :traded] + TIE, axis=1))
+def _other_values(
+    form: Formulation, k: int, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with makeable values of one variable that promise to be as good: whose, combination, variables."""
+    grid = form.grids[k]
+    grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
+    own = [np.empty(0, dtype=np.int64)]
+    places = [np.empty(0, dtype=np.int64)]
+    for part in _slices(len(combinations), len(grid)):
+        columns = list(variables[part].T[:, :, None])
+        columns[k] = grid[None, :]
+        rows, there = np.nonzero(form.promising(columns, combinations[part, None], phi[part]))
+        own.append(part.start + rows)
+        places.append(there)
+    whose = np.concatenate(own)
+    points = variables[whose]
+    points[:, k] = grid[np.concatenate(places)]
+    return whose, combinations[whose], points
+
+
+def _other_parts(
+    form: Formulation, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with one other part that promise to be as good: whose, combination, variables."""
+    own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for part in _slices(len(combinations), len(form.instance.neighbours(combinations[0]))):
+        others = form.instance.neighbours(combinations[part])
+        keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
+        own.append(part.start + np.nonzero(keep)[0])
+        numbers.append(others[keep])
+    whose = np.concatenate(own)
+    return whose, np.concatenate(numbers), variables[whose]
+
+
+def _slices(count: int, each: int) -> list[slice]:
+    """Return which of so many designs are tried at once, with so many points each."""
+    at_once = max(TRIED_AT_ONCE // max(each, 1), 1)
+    return [slice(first, first + at_once) for first in range(0, count, at_once)]
+
+
+def _better(own: np.ndarray, found: _Found, traded: int, order: list[int]) -> _Found:
+    """Return, per design with phi ``own``, the best point by the objectives in their order, where that is better."""
+    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + TIE, axis=1))
     for j in order:
         least = np.full(len(own), np.inf)
         np.minimum.at(least, left.whose, left.phi[:, j])
@@ -128,18 +147,6 @@ def _better(form: Formulation, trials: _Trials, own: np.ndarray, traded: int, or
     gain = (own[left.whose] - left.phi)[:, order]
     decisive = np.argmax(np.abs(gain) > TIE, axis=1)
     return left.take(gain[np.arange(len(gain)), decisive] > TIE)
-
-
-def _feasible(form: Formulation, trials: _Trials) -> _Trials:
-    """Return the feasible ones of some trials, with phi."""
-    found = [
-        _Trials(*(x[:0] for x in (trials.whose, trials.combinations, trials.variables)), np.empty((0, len(form.goals))))
-    ]
-    for first in range(0, len(trials.whose), EVALUATED_AT_ONCE):
-        part = trials.take(np.arange(first, min(first + EVALUATED_AT_ONCE, len(trials.whose))))
-        rows, phi = form.feasible_rows(part.variables, part.combinations)
-        found.append(replace(part, phi=phi).take(rows))
-    return _Trials(*(np.concatenate([getattr(f, x.name) for f in found]) for x in fields(_Trials)))
 
 
 def settle_variables(
@@ -227,18 +234,19 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     cell = np.zeros_like(start.cell)
     cell[:, :apart] = form.cell_of(np.array([c.combination for c in candidates]))[:, :apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
+    tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
         single = form.cells.single(boxes.cell)
         numbers = [form.cells.members(cell, MOST_TIES) for cell in boxes.cell[single]]
-        tags = np.repeat(boxes.tag[single], [len(n) for n in numbers])
-        combinations = np.concatenate(numbers) if numbers else np.empty(0, dtype=np.int64)
-        rows, values = form.feasible_rows(points[tags], combinations)
-        for k in rows:
-            same = np.all(np.abs(values[k, :traded] - phi[tags[k], :traded]) <= TIE)
-            if same and len(found[tags[k]]) < MOST_TIES:
-                found[tags[k]].append(Candidate(int(combinations[k]), points[tags[k]], values[k]))
+        tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
+        combinations += numbers
         boxes, _ = form.split(boxes.take(~single))
+    whose = np.concatenate(tags)
+    same = _feasible(form, whose, np.concatenate(combinations), points[whose])
+    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= TIE, axis=1)):
+        if len(found[same.whose[k]]) < MOST_TIES:
+            found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
     return found
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.analysis import found_design, make_frame, offered, with_ties
+from synth.analysis import found_designs, make_frame, offered, with_ties
 from synth.batch_nlp import MISSED, Tasks
 from synth.clock import Clock
 from synth.cover import cover
@@ -399,17 +399,21 @@ class TogetherSearch:
         solved = np.bincount(
             together.question(np.array(sorted(form.solved_combinations), dtype=np.int64)), minlength=len(together.each)
         )
-        fronts: list[ParetoFront | None] = [None] * len(together.each)
-        for row, ((candidate, ties), cost) in enumerate(zip(pairs, costs, strict=True)):
-            number = int(together.question(combinations[row : row + 1])[0])
+        numbers = together.question(combinations).tolist()
+        frames, more = [], []
+        for row, (number, (_, ties), cost) in enumerate(zip(numbers, pairs, costs, strict=True)):
             question = self.questions[number]
-            frame = make_frame(question.instance, question.chosen)
+            frames.append(make_frame(question.instance, question.chosen))
             values = np.array([[result.values[name][row] for name in question.chosen]])
             ranking = rank(question.chosen, values, list(question.weights.values()))
-            design = found_design(
-                form, frame, candidate, result, row, status=Status.OPTIMAL, gap=self.gap, rank=1,
-                score=float(ranking.scores[0]), note=ranking.notes[0], alternatives=ties, elasticity=cost,
-            )  # fmt: skip
+            more.append({
+                "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
+                "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
+            })  # fmt: skip
+        designs = found_designs(form, frames, settled, result, more)
+        fronts: list[ParetoFront | None] = [None] * len(together.each)
+        for number, frame, design in zip(numbers, frames, designs, strict=True):
+            question = self.questions[number]
             total = question.instance.combinations
             statistics = {
                 **offered(question.instance),
