@@ -143,8 +143,8 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
     """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
     model, own = instance.model, np.asarray(rows, dtype=np.int64)
     count = len(own)
-    sides = {x.name: tuple(side[own] for side in result.limits[x.name]) for x in model.limits}
-    senses = {x.name: x.sense for x in (*model.limits, *instance.extra)}
+    sides = {n: (value[own], bound[own]) for n, (value, bound) in result.limits.items()}
+    senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in instance.extra}
     residuals = {x.name: result.residuals[x.name][own] for x in model.limits}
     void = {x.name: result.void[x.name][own] for x in model.limits}
     broken = [(x.name, ~result.holds[x.name][own]) for x in model.limits]
@@ -154,9 +154,9 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
             sides[name] = value, np.full(count, extra.limit)
             residuals[name] = residual(value, extra.limit, extra.sense, 1e-9)
             broken.append((name, ~np.isnan(residuals[name]) & ~holds(residuals[name], guard=False)))
-        used = {
-            name: np.where(np.isnan(residuals[name]), None, utilisation(*both, senses[name]).astype(object))
-            for name, both in sides.items()
+        used: dict[str, np.ndarray] = {
+            name: np.where(np.isnan(residuals[name]), None, utilisation(value, bound, senses[name]).astype(object))
+            for name, (value, bound) in sides.items()
         }
     lacking = {
         name: ", ".join(model.data_inputs[k].label for k in model.void_inputs[name])
@@ -167,7 +167,7 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
     advice = [
         (_message(a.code, a.message, a.source), result.advice[k][own]) for k, a in enumerate(model.declaration.advices)
     ]
-    pairs = {name: list(zip(*(side.tolist() for side in both), strict=True)) for name, both in sides.items()}
+    pairs = {n: list(zip(value.tolist(), bound.tolist(), strict=True)) for n, (value, bound) in sides.items()}
     fields = {
         "values": _row_by_row({name: v[own].tolist() for name, v in result.values.items()}, count),
         "limits": _row_by_row(pairs, count),

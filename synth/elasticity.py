@@ -162,7 +162,7 @@ def immovable(form: Formulation) -> np.ndarray:
 def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
     questions: dict[int, int] = {}
-    kinds, numbers = [], []
+    kinds, numbers = list[dict[str, dict[str, float]]](), list[int]()
     for combination in combinations.tolist():
         instance = form.instance.of(combination)
         if id(instance) not in questions:

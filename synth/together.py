@@ -92,7 +92,8 @@ class Together(Instance):
     def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
         """Return the combinations of the same question that differ in one part, count or choice."""
         question, own = np.divmod(np.asarray(combination, dtype=np.int64), self.size)
-        return question[..., None] * self.size + self.each[0].neighbours(own)
+        beside: np.ndarray = question[..., None] * self.size + self.each[0].neighbours(own)
+        return beside
 
     def describe(self, combination: int) -> tuple[Any, dict[str, float], dict[str, str]]:
         """Return parts, counts and choices of one combination."""
@@ -400,12 +401,14 @@ class TogetherSearch:
             together.question(np.array(sorted(form.solved_combinations), dtype=np.int64)), minlength=len(together.each)
         )
         numbers = together.question(combinations).tolist()
+        # A design that stands alone ranks as any other that does.
+        first = self.questions[numbers[0]]
+        values = np.array([[result.values[name][0] for name in first.chosen]])
+        ranking = rank(first.chosen, values, list(first.weights.values()))
         frames, more = [], []
-        for row, (number, (_, ties), cost) in enumerate(zip(numbers, pairs, costs, strict=True)):
+        for number, (_, ties), cost in zip(numbers, pairs, costs, strict=True):
             question = self.questions[number]
             frames.append(make_frame(question.instance, question.chosen))
-            values = np.array([[result.values[name][row] for name in question.chosen]])
-            ranking = rank(question.chosen, values, list(question.weights.values()))
             more.append({
                 "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
                 "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
