@@ -154,8 +154,8 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
             sides[name] = value, np.full(count, extra.limit)
             residuals[name] = residual(value, extra.limit, extra.sense, 1e-9)
             broken.append((name, ~np.isnan(residuals[name]) & ~holds(residuals[name], guard=False)))
-        used: dict[str, np.ndarray] = {
-            name: np.where(np.isnan(residuals[name]), None, utilisation(value, bound, senses[name]).astype(object))
+        used = {
+            name: _where_known(utilisation(value, bound, senses[name]), residuals[name])
             for name, (value, bound) in sides.items()
         }
     lacking = {
@@ -172,13 +172,18 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
         "values": _row_by_row({name: v[own].tolist() for name, v in result.values.items()}, count),
         "limits": _row_by_row(pairs, count),
         "residuals": _row_by_row({name: r.tolist() for name, r in residuals.items()}, count),
-        "utilisation": _row_by_row({name: u.tolist() for name, u in used.items()}, count),
+        "utilisation": _row_by_row(used, count),
         "advice": _which(advice, count),
         "violated": _which(broken, count),
         "not_checked": _which(unchecked, count),
         "off_grid": off_grid(model.variables, points),
     }
     return [dict(zip(fields, each, strict=True)) for each in zip(*fields.values(), strict=True)]
+
+
+def _where_known(used: np.ndarray, residuals: np.ndarray) -> list[float | None]:
+    """Return how much of a limit designs use; None where it does not exist."""
+    return [None if gone else u for u, gone in zip(used.tolist(), np.isnan(residuals).tolist(), strict=True)]
 
 
 def _row_by_row(columns: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
