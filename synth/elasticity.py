@@ -13,7 +13,7 @@ from synth.batch_nlp import Tasks
 from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
 from synth.instance import Instance, numeric
-from synth.model import Model
+from synth.model import Evaluation, Model
 from synth.special import expanded
 
 NOISE = 1e-6
@@ -74,7 +74,8 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     phi = np.array([c.phi for c in candidates])
     positions = requirement_positions(form)
     speaking = np.array([_speaking_of(form, position) for position in positions.values()], dtype=bool)
-    tight = _tight(form, start, combinations)
+    result = form.evaluate(start, combinations)
+    tight, sizes = _tight(form, result), _sizes(form, result)
     # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
     _, follows = _shares(form, combinations)
     spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
@@ -82,7 +83,7 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
-        found = optima(form, combinations, start, phi, chosen, k)
+        found = optima(form, combinations, start, phi, chosen, k, sizes)
         counts = np.concatenate(
             [logs & (np.abs(found.limits) > NOISE), (np.abs(found.requirements) > NOISE) & ~spoken], axis=1
         )
@@ -94,8 +95,9 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
 
 
 def optima(
-    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int
-) -> Optima:
+    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int,
+    sizes: np.ndarray | None = None,
+) -> Optima:  # fmt: skip
     """Make designs as good as their parts allow in one objective, and return what moves it there.
 
     Parameters
@@ -105,12 +107,14 @@ def optima(
     phi : array (designs, objectives)
         The chosen objectives but the one numbered ``k`` are held at these.
     chosen, k : int
+    sizes : array (designs, limits), optional
+        Those of ``sides`` at the start, where they are known.
     """
     tasks = held(form, phi, chosen, k)
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
     answer = form.solve_many(tasks, combinations, start, skipped=immovable(form))
     data = form.instance.data(combinations)
-    sizes, _ = sides(form, start, data)
+    sizes = _sizes(form, form.model.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
@@ -271,14 +275,22 @@ def _gradient(form: Formulation) -> Any:
 
 def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
     """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
-    result = form.model.evaluate(variables, data)
-    bounds, sizes = np.empty((len(variables), len(form.cuts))), np.empty((len(variables), len(form.cuts)))
-    found = [(*result.limits[x.name], x.scale) for x in form.model.limits]
-    found += [(result.values[x.quantity], np.array(x.limit), 1e-9) for x in form.instance.extra]
-    for j, (value, limit, scale) in enumerate(found):
+    return _sizes(form, form.model.evaluate(variables, data)), _bounds(form, variables, data)
+
+
+def _limits(form: Formulation, result: Evaluation) -> list[tuple[Any, Any, str, float]]:
+    """Return both sides of every limit, its sense and the smallest size that counts."""
+    found = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
+    return [*found, *((result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra)]
+
+
+def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
+    """Return the size of every limit as its row measures it (designs, limits)."""
+    sizes = np.empty((len(result.feasible), len(form.cuts)))
+    for j, (value, limit, _, scale) in enumerate(_limits(form, result)):
         size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
-        sizes[:, j], bounds[:, j] = np.where(np.isfinite(size), size, 1.0), limit
-    return sizes, bounds
+        sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
+    return sizes
 
 
 def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np.ndarray:
@@ -293,14 +305,11 @@ def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np
     return bounds
 
 
-def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
+def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return which limits that no variable can move are active (designs, limits)."""
-    result = form.evaluate(variables, combinations)
-    tight = np.zeros((len(variables), len(form.cuts)), dtype=bool)
-    found = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
-    found += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra]
     fixed = immovable(form)
-    for j, (value, limit, sense, scale) in enumerate(found):
+    tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
+    for j, (value, limit, sense, scale) in enumerate(_limits(form, result)):
         if fixed[j]:
             tight[:, j] = np.abs(residual(value, limit, sense, scale)) < TIGHT
     return tight

@@ -515,8 +515,11 @@ class Formulation:
             for k, sign in enumerate(self._goal_signs[: caps.shape[1]]):
                 keep &= sign * sides[2 * limits + k] <= most[:, k, None]
             for j, cut in enumerate(self.cuts):
-                r = residual(sides[j], sides[limits + j], cut.sense, cut.scale)
-                kept = holds(r, guard=False, tolerance=2 * TOLERANCE)
+                value, limit = sides[j], sides[limits + j]
+                # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
+                room = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
+                kept = np.True_ if cut.sense == "at_least" else value <= limit + room
+                kept = kept if cut.sense == "at_most" else kept & (value >= limit - room)
                 for k in self.model.void_inputs[self.model.limits[j].name] if j < len(self.model.limits) else ():
                     kept = kept | np.isnan(np.asarray(data[k], dtype=float))
                 keep &= kept

@@ -18,7 +18,7 @@ DIRECTIONS = 5
 BATCH = 2048
 MOST_TIES = 50
 MOST_MOVES = 8
-TRIED_AT_ONCE = 8192  # points, that arrays stay in the cache
+TRIED_AT_ONCE = 16_384  # points, that arrays stay in the cache
 EVALUATED_AT_ONCE = 65_536
 
 
@@ -238,7 +238,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
         single = form.cells.single(boxes.cell)
-        numbers = [form.cells.members(cell, MOST_TIES) for cell in boxes.cell[single]]
+        numbers = _members(form, boxes.cell[single])
         tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
         combinations += numbers
         boxes, _ = form.split(boxes.take(~single))
@@ -248,6 +248,13 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         if len(found[same.whose[k]]) < MOST_TIES:
             found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
     return found
+
+
+def _members(form: Formulation, cells: np.ndarray) -> list[np.ndarray]:
+    """Return the combinations of each of some cells that cannot be split, most of which have one."""
+    if np.all(form.cells.size(cells) == 1):
+        return list(form.cells.combination(cells)[:, None])
+    return [form.cells.members(cell, MOST_TIES) for cell in cells]
 
 
 def solve_everywhere(
