@@ -482,7 +482,7 @@ _MINUS = "−‐‑‒–—﹣－"
 _LARGEST_EXPONENT = 1000
 _MOST_DIGITS = 40
 _SURELY_NORMAL = 1e-200  # below, numbers lose digits
-_FAR = 1e-9  # relative, much more than floats round
+_FAR = 1e-14  # relative, more than floats round
 _WIDE = Context(prec=60)
 
 
@@ -814,7 +814,7 @@ def _in_unit(si: float, unit: Unit) -> Decimal:
 
 
 def _shortest(si: float, unit: Unit) -> str:
-    if number_to_si("0", unit) == si:
+    if si == (number_to_si("0", unit) if unit.offset else 0.0):
         return "0"
     value = _in_unit(si, unit)
     text = ""
