@@ -126,8 +126,10 @@ def optima(
     requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
     solved = np.flatnonzero(answer.converged)
     if len(solved):
+        known = np.empty((len(solved), len(data)))
+        for j, x in enumerate(data):
+            known[:, j] = x[solved] if np.ndim(x) else x
         points = answer.variables[solved]
-        known = np.stack([np.broadcast_to(np.asarray(x, dtype=float), (len(start),))[solved] for x in data], axis=1)
         own, at_ends = slopes(
             form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
         )
