@@ -87,41 +87,119 @@ def make_design(
     **more
         Fields of Design that the search knows (gap, elasticity, ...).
     """
-    model = instance.model
-    values = {name: float(v[row]) for name, v in result.values.items()}
-    limits, residuals, used, broken, unchecked = _limits(instance, result, row, values)
-    advice = [
-        _message(a.code, a.message, a.source)
-        for k, a in enumerate(model.declaration.advices)
-        if bool(result.advice[k][row])
-    ]
-    status = more.pop("status", Status.INFEASIBLE if broken else Status.FEASIBLE)
-    return Design(
-        frame=frame,
-        values=values,
-        parts=dict(parts),
-        choices=dict(choices),
-        objectives={name: values[name] for name in frame.objectives},
-        limits=limits,
-        residuals=residuals,
-        utilisation=used,
-        status=status,
-        advice=(*advice, *more.pop("remarks", ())),
-        violated=tuple(broken),
-        not_checked=tuple(unchecked),
-        off_grid=off_grid(model.variables, variables),
-        **more,
-    )
+    told = _told(instance, result, variables[None, :], [row])[0]
+    return _design(frame, told, parts, choices, more)
 
 
-def found_design(
-    form: Formulation, frame: Frame, candidate: Candidate, result: Evaluation, row: int, **more: Any
+def found_designs(
+    form: Formulation,
+    frames: Sequence[Frame],
+    candidates: Sequence[Candidate],
+    result: Evaluation,
+    more: Sequence[Mapping[str, Any]],
+) -> list[Design]:
+    """Return the designs that a search has found, with what it knows of them.
+
+    Parameters
+    ----------
+    frames : list of Frame
+        One per candidate.
+    candidates : list of Candidate
+    result : Evaluation
+        Of the candidates.
+    more : list of mapping
+        Fields of Design, as for make_design.
+    """
+    points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    # Questions that are searched together have their model and limits in common.
+    told = _told(form.instance, result, points, range(len(candidates)))
+    known: dict[tuple[str, int], PartRow] = {}
+    designs = []
+    for frame, candidate, own, details in zip(frames, candidates, told, more, strict=True):
+        parts, _, choices = form.instance.describe(candidate.combination)
+        for slot, (table, number) in parts.items():
+            if (slot, number) not in known:
+                known[slot, number] = part_row(table, number)
+        rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
+        designs.append(_design(frame, own, rows, choices, details))
+    return designs
+
+
+def _design(
+    frame: Frame,
+    told: Mapping[str, Any],
+    parts: Mapping[str, PartRow],
+    choices: Mapping[str, str],
+    more: Mapping[str, Any],
 ) -> Design:
-    """Return a design that a search has found, from row ``row`` of what has been evaluated; ``more`` as make_design."""
-    parts, _, choices = form.instance.describe(candidate.combination)
-    rows = {slot: part_row(table, number) for slot, (table, number) in parts.items()}
-    instance = form.instance.of(candidate.combination)
-    return make_design(instance, frame, candidate.variables, result, row, rows, choices, **more)
+    """Return a design of what its evaluation tells and what the search knows."""
+    known = {"status": Status.INFEASIBLE if told["violated"] else Status.FEASIBLE, **told, **more}
+    known["advice"] = (*told["advice"], *known.pop("remarks", ()))
+    objectives = {name: told["values"][name] for name in frame.objectives}
+    return Design(frame=frame, parts=dict(parts), choices=dict(choices), objectives=objectives, **known)
+
+
+def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
+    """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
+    model, own = instance.model, np.asarray(rows, dtype=np.int64)
+    count = len(own)
+    sides = {n: (value[own], bound[own]) for n, (value, bound) in result.limits.items()}
+    senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in instance.extra}
+    residuals = {x.name: result.residuals[x.name][own] for x in model.limits}
+    void = {x.name: result.void[x.name][own] for x in model.limits}
+    broken = [(x.name, ~result.holds[x.name][own]) for x in model.limits]
+    with np.errstate(all="ignore"):
+        for extra in instance.extra:
+            name, value = extra.name, result.values[extra.quantity][own]
+            sides[name] = value, np.full(count, extra.limit)
+            residuals[name] = residual(value, extra.limit, extra.sense, 1e-9)
+            broken.append((name, ~np.isnan(residuals[name]) & ~holds(residuals[name], guard=False)))
+        used = {
+            name: _where_known(utilisation(value, bound, senses[name]), residuals[name])
+            for name, (value, bound) in sides.items()
+        }
+    lacking = {
+        name: ", ".join(model.data_inputs[k].label for k in model.void_inputs[name])
+        for name, gone in void.items()
+        if gone.any()
+    }
+    unchecked = [(f"not checked: {name}, no {columns}", void[name]) for name, columns in lacking.items()]
+    advice = [
+        (_message(a.code, a.message, a.source), result.advice[k][own]) for k, a in enumerate(model.declaration.advices)
+    ]
+    pairs = {n: list(zip(value.tolist(), bound.tolist(), strict=True)) for n, (value, bound) in sides.items()}
+    fields = {
+        "values": _row_by_row({name: v[own].tolist() for name, v in result.values.items()}, count),
+        "limits": _row_by_row(pairs, count),
+        "residuals": _row_by_row({name: r.tolist() for name, r in residuals.items()}, count),
+        "utilisation": _row_by_row(used, count),
+        "advice": _which(advice, count),
+        "violated": _which(broken, count),
+        "not_checked": _which(unchecked, count),
+        "off_grid": off_grid(model.variables, points),
+    }
+    return [dict(zip(fields, each, strict=True)) for each in zip(*fields.values(), strict=True)]
+
+
+def _where_known(used: np.ndarray, residuals: np.ndarray) -> list[float | None]:
+    """Return how much of a limit designs use; None where it does not exist."""
+    return [None if gone else u for u, gone in zip(used.tolist(), np.isnan(residuals).tolist(), strict=True)]
+
+
+def _row_by_row(columns: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
+    """Return a mapping per row for columns by name."""
+    if not columns:
+        return [{} for _ in range(count)]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def _which(masks: Sequence[tuple[str, np.ndarray]], count: int) -> list[tuple[str, ...]]:
+    """Return, per row, the names whose mask holds there."""
+    result: list[tuple[str, ...]] = [()] * count
+    for name, mask in masks:
+        for k in np.flatnonzero(mask).tolist():
+            result[k] = (*result[k], name)
+    return result
 
 
 def offered(instance: Instance) -> dict[str, Any]:
@@ -142,41 +220,15 @@ def _message(code: str, message: str, source: str) -> str:
     return f"{code}: {message}" + (f" [{source}]" if source else "")
 
 
-def _limits(
-    instance: Instance, result: Evaluation, row: int, values: Mapping[str, float]
-) -> tuple[dict[str, tuple[float, float]], dict[str, float], dict[str, float | None], list[str], list[str]]:
-    model = instance.model
-    limits, residuals, used = dict[str, tuple[float, float]](), dict[str, float](), dict[str, float | None]()
-    broken, unchecked = list[str](), list[str]()
-    for limit in model.limits:
-        value, bound = (float(side[row]) for side in result.limits[limit.name])
-        r = float(result.residuals[limit.name][row])
-        exists = not bool(result.void[limit.name][row]) and not np.isnan(r)
-        limits[limit.name], residuals[limit.name] = (value, bound), r
-        used[limit.name] = float(utilisation(value, bound, limit.sense)) if exists else None
-        if not bool(result.holds[limit.name][row]):
-            broken.append(limit.name)
-        if bool(result.void[limit.name][row]):
-            columns = ", ".join(model.data_inputs[k].label for k in model.void_inputs[limit.name])
-            unchecked.append(f"not checked: {limit.name}, no {columns}")
-    for extra in instance.extra:
-        value = values[extra.quantity]
-        r = float(residual(value, extra.limit, extra.sense, 1e-9))
-        limits[extra.name], residuals[extra.name] = (value, extra.limit), r
-        used[extra.name] = None if np.isnan(r) else float(utilisation(value, extra.limit, extra.sense))
-        if not np.isnan(r) and not holds(r, guard=False):
-            broken.append(extra.name)
-    return limits, residuals, used, broken, unchecked
-
-
-def off_grid(variables: Sequence[Variable], values: np.ndarray) -> dict[str, str]:
-    """Return the variables that are off their grid, with the nearest makeable value."""
-    result = {}
-    for variable, value in zip(variables, values, strict=True):
+def off_grid(variables: Sequence[Variable], points: np.ndarray) -> list[dict[str, str]]:
+    """Return, per design, the variables that are off their grid, with the nearest makeable value."""
+    result: list[dict[str, str]] = [{} for _ in points]
+    for variable, values in zip(variables, points.T, strict=True):
         if len(variable.grid):
-            nearest = variable.grid[np.argmin(np.abs(variable.grid - value))]
-            if abs(nearest - value) > ON_GRID * abs(nearest):
-                result[variable.name] = f"nearest makeable {format_quantity(float(nearest), variable.unit)}"
+            nearest = variable.grid[np.argmin(np.abs(variable.grid - values[:, None]), axis=1)]
+            for k in np.flatnonzero(np.abs(nearest - values) > ON_GRID * np.abs(nearest)).tolist():
+                makeable = format_quantity(float(nearest[k]), variable.unit)
+                result[k][variable.name] = f"nearest makeable {makeable}"
     return result
 
 

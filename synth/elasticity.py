@@ -13,7 +13,7 @@ from synth.batch_nlp import Tasks
 from synth.feasibility import residual
 from synth.formulation import TIE, Candidate, Formulation
 from synth.instance import Instance, numeric
-from synth.model import Model
+from synth.model import Evaluation, Model
 from synth.special import expanded
 
 NOISE = 1e-6
@@ -73,32 +73,31 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     start = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
     positions = requirement_positions(form)
-    moved = [_followers_of(form, c) for c in combinations]
-    speaking = {name: _speaking_of(form, position) for name, position in positions.items()}
-    tight = _tight(form, start, combinations)
+    speaking = np.array([_speaking_of(form, position) for position in positions.values()], dtype=bool)
+    result = form.evaluate(start, combinations)
+    tight, sizes = _tight(form, result), _sizes(form, result)
+    # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
+    _, follows = _shares(form, combinations)
+    spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     for k in range(chosen):
         if not form.log_goals[k]:
             continue
-        found = optima(form, combinations, start, phi, chosen, k)
-        for i in np.flatnonzero(found.converged):
-            own = {
-                name: float(found.limits[i, j])
-                for j, name in enumerate(names)
-                if logs[j] and abs(found.limits[i, j]) > NOISE
-            }
-            for q, name in enumerate(positions):
-                # Where a tight limit speaks of it, the least change breaks what no variable can restore.
-                spoken = np.any([speaking[other] for other in moved[i][name]], axis=0)
-                if abs(found.requirements[i, q]) > NOISE and not np.any(tight[i] & spoken):
-                    own[name] = float(found.requirements[i, q])
-            results[i][form.names[k]] = own
+        found = optima(form, combinations, start, phi, chosen, k, sizes)
+        counts = np.concatenate(
+            [logs & (np.abs(found.limits) > NOISE), (np.abs(found.requirements) > NOISE) & ~spoken], axis=1
+        )
+        numbers = np.concatenate([found.limits, found.requirements], axis=1).tolist()
+        labels = [*names, *positions]
+        for i in np.flatnonzero(found.converged).tolist():
+            results[i][form.names[k]] = {labels[j]: numbers[i][j] for j in np.flatnonzero(counts[i]).tolist()}
     return results
 
 
 def optima(
-    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int
-) -> Optima:
+    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int,
+    sizes: np.ndarray | None = None,
+) -> Optima:  # fmt: skip
     """Make designs as good as their parts allow in one objective, and return what moves it there.
 
     Parameters
@@ -108,13 +107,15 @@ def optima(
     phi : array (designs, objectives)
         The chosen objectives but the one numbered ``k`` are held at these.
     chosen, k : int
+    sizes : array (designs, limits), optional
+        Those of ``sides`` at the start, where they are known.
     """
     tasks = held(form, phi, chosen, k)
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
     answer = form.solve_many(tasks, combinations, start, skipped=immovable(form))
     data = form.instance.data(combinations)
-    sizes, _ = sides(form, start, data)
-    _, bounds = sides(form, answer.variables, data)
+    sizes = _sizes(form, form.model.evaluate(start, data)) if sizes is None else sizes
+    bounds = _bounds(form, answer.variables, data)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
     with np.errstate(all="ignore"):
@@ -123,16 +124,20 @@ def optima(
     positions = requirement_positions(form)
     slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
     requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
-    for i in np.flatnonzero(answer.converged):
-        point = [float(np.asarray(x).ravel()[i if np.size(x) > 1 else 0]) for x in data]
+    solved = np.flatnonzero(answer.converged)
+    if len(solved):
+        known = np.empty((len(solved), len(data)))
+        for j, x in enumerate(data):
+            known[:, j] = x[solved] if np.ndim(x) else x
+        points = answer.variables[solved]
         own, at_ends = slopes(
-            form, answer.variables[i], point, sizes[i], answer.cut_multipliers[i], answer.goal_multipliers[i], k
+            form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
         )
-        ends[i] = at_ends * answer.variables[i]
-        moved = _followers_of(form, combinations[i])
-        for q, (name, position) in enumerate(positions.items()):
-            slope = sum(share * float(own[positions[other]]) for other, share in moved[name].items())
-            requirements[i, q] = slope * point[position]
+        ends[solved] = at_ends * points
+        places = list(positions.values())
+        share, _ = _shares(form, combinations[solved])
+        slope = _sum_of_shares(share, own[:, places])
+        requirements[solved] = slope * known[:, places]
     return Optima(
         answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
     )  # fmt: skip
@@ -160,9 +165,41 @@ def immovable(form: Formulation) -> np.ndarray:
     return np.array([not any(moving[k] for k in (c.value, c.limit) if k is not None) for c in form.cuts], dtype=bool)
 
 
-def _followers_of(form: Formulation, combination: int) -> dict[str, dict[str, float]]:
-    """Return what moves with each requirement in the question that a combination belongs to; worked out once."""
-    instance = form.instance.of(int(combination))
+def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
+    questions: dict[int, int] = {}
+    kinds, numbers = list[dict[str, dict[str, float]]](), list[int]()
+    for combination in combinations.tolist():
+        instance = form.instance.of(combination)
+        if id(instance) not in questions:
+            questions[id(instance)] = len(kinds)
+            kinds.append(_followers_of(form, instance))
+        numbers.append(questions[id(instance)])
+    place = {name: q for q, name in enumerate(requirement_positions(form))}
+    share = np.zeros((len(kinds), len(place), len(place)))
+    follows = np.zeros(share.shape, dtype=bool)
+    for own, moved in enumerate(kinds):
+        for name, others in moved.items():
+            for other, by in others.items():
+                share[own, place[name], place[other]] = by
+                follows[own, place[name], place[other]] = True
+    return share[numbers], follows[numbers]
+
+
+def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Return the slope to each requirement and what moves with it, from those to each alone (designs, requirements)."""
+    own = np.arange(slopes.shape[1])
+    total: np.ndarray = 0.0 + share[:, own, own] * slopes
+    # One after another, in the order in which they are declared: sums of numbers depend on it.
+    for other in own[np.any(share, axis=(0, 1))]:
+        more = share[:, :, other] * slopes[:, [other]]
+        more[:, other] = 0.0
+        total += more
+    return total
+
+
+def _followers_of(form: Formulation, instance: Instance) -> dict[str, dict[str, float]]:
+    """Return what moves with each requirement of a question; worked out once."""
     known = form.followers.get(id(instance))
     if known is None:
         known = form.followers[id(instance)] = followers(instance)
@@ -222,15 +259,17 @@ def _gradient(form: Formulation) -> Any:
     function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
 
     def evaluate(
-        own: Formulation, point: np.ndarray, known: Sequence[float], size: np.ndarray, cuts: np.ndarray,
+        own: Formulation, points: np.ndarray, known: np.ndarray, size: np.ndarray, cuts: np.ndarray,
         goals: np.ndarray, k: int,
     ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-        clean = [1.0 if np.isnan(v) else v for v in known]
+        clean = np.where(np.isnan(known), 1.0, known)
         units = np.where(rows.log_goals, 1.0, own.goal_scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units
-        weights[k] += 1.0 / units[k]
-        found = function(point, clean, own.bounds, size, np.where(cuts == 0, 0.0, cuts), weights)
-        slopes, ends = (np.nan_to_num(np.asarray(part).ravel()) for part in found)
+        weights[:, k] += 1.0 / units[k]
+        limits = np.tile(own.bounds, (len(points), 1))
+        # One call for all designs, a column each.
+        found = function(points.T, clean.T, limits.T, size.T, np.where(cuts == 0, 0.0, cuts).T, weights.T)
+        slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in found)
         return slopes, ends
 
     return evaluate
@@ -238,24 +277,41 @@ def _gradient(form: Formulation) -> Any:
 
 def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
     """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
-    result = form.model.evaluate(variables, data)
-    bounds, sizes = np.empty((len(variables), len(form.cuts))), np.empty((len(variables), len(form.cuts)))
-    found = [(*result.limits[x.name], x.scale) for x in form.model.limits]
-    found += [(result.values[x.quantity], np.array(x.limit), 1e-9) for x in form.instance.extra]
-    for j, (value, limit, scale) in enumerate(found):
-        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
-        sizes[:, j], bounds[:, j] = np.where(np.isfinite(size), size, 1.0), limit
-    return sizes, bounds
+    return _sizes(form, form.model.evaluate(variables, data)), _bounds(form, variables, data)
 
 
-def _tight(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
-    """Return which limits that no variable can move are active (designs, limits)."""
-    result = form.evaluate(variables, combinations)
-    tight = np.zeros((len(variables), len(form.cuts)), dtype=bool)
+def _limits(form: Formulation, result: Evaluation) -> list[tuple[Any, Any, str, float]]:
+    """Return both sides of every limit, its sense and the smallest size that counts."""
     found = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
-    found += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra]
+    return [*found, *((result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra)]
+
+
+def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
+    """Return the size of every limit as its row measures it (designs, limits)."""
+    sizes = np.empty((len(result.feasible), len(form.cuts)))
+    for j, (value, limit, _, scale) in enumerate(_limits(form, result)):
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
+        sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
+    return sizes
+
+
+def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+    """Return the limits themselves (designs, limits)."""
+    moving = [cut.limit for cut in form.cuts if cut.limit is not None]
+    limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))
+    with np.errstate(all="ignore"):
+        found = iter(limits([*variables.T, *data]))
+    bounds = np.empty((len(variables), len(form.cuts)))
+    for j, cut in enumerate(form.cuts):
+        bounds[:, j] = cut.bound if cut.limit is None else next(found)
+    return bounds
+
+
+def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
+    """Return which limits that no variable can move are active (designs, limits)."""
     fixed = immovable(form)
-    for j, (value, limit, sense, scale) in enumerate(found):
+    tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
+    for j, (value, limit, sense, scale) in enumerate(_limits(form, result)):
         if fixed[j]:
             tight[:, j] = np.abs(residual(value, limit, sense, scale)) < TIGHT
     return tight

@@ -494,6 +494,37 @@ class Formulation:
         feasible &= np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
         return np.flatnonzero(feasible), phi
 
+    def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:
+        """Tell which of many points may be feasible and keep caps of phi; ``feasible_rows`` has the last word.
+
+        What many points have in common is computed once for them, so this costs much less than to look at each.
+
+        Parameters
+        ----------
+        variables, combinations : array per variable, array
+            That broadcast to (designs, points of each).
+        caps : array (designs, objectives)
+            Of the first objectives.
+        """
+        data = self.instance.data(combinations)
+        keep = np.ones(np.broadcast_shapes(combinations.shape, *(x.shape for x in variables)), dtype=bool)
+        most = self.values_of(caps + 2 * TIE * np.maximum(np.abs(caps), 1.0))
+        limits = len(self.cuts)
+        with np.errstate(all="ignore"):
+            sides = self._screen([*variables, *data])
+            for k, sign in enumerate(self._goal_signs[: caps.shape[1]]):
+                keep &= sign * sides[2 * limits + k] <= most[:, k, None]
+            for j, cut in enumerate(self.cuts):
+                value, limit = sides[j], sides[limits + j]
+                # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
+                room = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
+                kept = np.True_ if cut.sense == "at_least" else value <= limit + room
+                kept = kept if cut.sense == "at_most" else kept & (value >= limit - room)
+                for k in self.model.void_inputs[self.model.limits[j].name] if j < len(self.model.limits) else ():
+                    kept = kept | np.isnan(np.asarray(data[k], dtype=float))
+                keep &= kept
+        return keep
+
     def _prepare_screen(self) -> None:
         """Prepare what tells which of many points are feasible: both sides of all limits, and the objectives."""
         values = [c.value for c in self.cuts]

@@ -589,14 +589,15 @@ class Instance:
             rest = rest // size
         return result[::-1]
 
-    def neighbours(self, combination: int) -> np.ndarray:
-        """Return the numbers of all combinations that differ in one part, count or choice."""
-        found, weight = [np.empty(0, dtype=np.int64)], 1
+    def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
+        """Return the numbers of all combinations that differ in one part, count or choice (..., neighbours)."""
+        number, weight = np.asarray(combination, dtype=np.int64)[..., None], 1
+        found = [np.empty((*number.shape[:-1], 0), dtype=np.int64)]
         for size in reversed(self.radix):
-            own = combination // weight % size
-            found.append(combination + weight * (np.delete(np.arange(size), own) - own))
+            own, others = number // weight % size, np.arange(size - 1)
+            found.append(number + weight * (others + (others >= own) - own))
             weight *= size
-        return np.concatenate(found)
+        return np.concatenate(found, axis=-1)
 
     def data(self, combinations: np.ndarray) -> list[Any]:
         """Return the data inputs of the model for combinations given by number."""
@@ -628,7 +629,10 @@ class Instance:
 
     def describe(self, combination: int) -> tuple[dict[str, tuple[Table, int]], dict[str, float], dict[str, str]]:
         """Return parts (table and row), counts and choices of one combination."""
-        digits = [int(x[0]) for x in self.digits(np.array([combination]))]
+        digits, left = list[int](), int(combination)
+        for size in reversed(self.radix):
+            left, digit = divmod(left, size)
+            digits.insert(0, digit)
         slots = self.selection.slots
         parts = {s.slot: (s.table, int(s.rows[digits[k]])) for k, s in enumerate(slots)}
         rest = digits[len(slots) :]

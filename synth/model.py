@@ -209,7 +209,7 @@ class Model:
         count = len(variables)
         with np.errstate(all="ignore"):
             raw = self._evaluate([variables[:, k] for k in range(len(self.variables))] + list(data))
-            numbers = iter([np.broadcast_to(np.asarray(x, dtype=float), (count,)) for x in raw])
+            numbers = iter([_column(x, count) for x in raw])
             values = {name: next(numbers) for name in self.quantity_node}
             limits = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
             advice = {k: next(numbers) > 0.5 for k in range(len(self.advice_nodes))}
@@ -241,6 +241,13 @@ class Model:
         if key not in self._function_cache:
             self._function_cache[key] = make()
         return self._function_cache[key]
+
+
+def _column(x: Any, count: int) -> np.ndarray:
+    """Return an output as an array over the batch."""
+    if isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == float:
+        return x
+    return np.broadcast_to(np.asarray(x, dtype=float), (count,))
 
 
 def part_column_value(column: DataInput | PartColumn, numbers: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.analysis import chosen_objectives, found_design, make_frame, offered, with_ties
+from synth.analysis import chosen_objectives, found_designs, make_frame, offered, with_ties
 from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
 from synth.cover import Covered, best, cover
@@ -816,26 +816,22 @@ class FrontSearch:
         result = self.form.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
         values = np.stack([result.values[name] for name in self.chosen], axis=1)
         ranking = rank(self.chosen, values, weights)
-        designs = []
+        proven = self.closed and settle
+        more = [
+            {
+                "status": Status.OPTIMAL if proven else Status.FEASIBLE,
+                "gap": self.gap if proven else None,
+                "score": float(ranking.scores[k]),
+                "note": ranking.notes[k],
+                "alternatives": alternatives[k],
+                "elasticity": costs[k],
+            }
+            for k in range(len(settled))
+        ]
         for position, k in enumerate(ranking.order):
-            proven = self.closed and settle
-            designs.append(
-                found_design(
-                    self.form,
-                    frame,
-                    settled[k],
-                    result,
-                    k,
-                    status=Status.OPTIMAL if proven else Status.FEASIBLE,
-                    gap=self.gap if proven else None,
-                    rank=position + 1,
-                    score=float(ranking.scores[k]),
-                    note=ranking.notes[k],
-                    alternatives=alternatives[k],
-                    elasticity=costs[k],
-                )
-            )
-        return designs
+            more[k]["rank"] = position + 1
+        designs = found_designs(self.form, [frame] * len(settled), settled, result, more)
+        return [designs[k] for k in ranking.order]
 
     def _settled(self) -> tuple[list[Candidate], list[tuple[str, ...]]]:
         """Settle what the chosen objectives do not see, and name other combinations that tie."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ DIRECTIONS = 5
 BATCH = 2048
 MOST_TIES = 50
 MOST_MOVES = 8
+TRIED_AT_ONCE = 16_384  # points, that arrays stay in the cache
+EVALUATED_AT_ONCE = 65_536
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
@@ -39,43 +41,112 @@ def settle_discrete(
     """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
 
     None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid or among
-    parts, the other objectives decide that way. Parts stay where ``parts`` is False.
+    parts, the other objectives decide that way. Parts stay where ``parts`` is False. All designs take their steps at
+    the same time; each goes where it would go alone.
     """
-    return [_settle_discrete(form, candidate, traded, list(order), parts) for candidate in candidates]
-
-
-def _settle_discrete(form: Formulation, candidate: Candidate, traded: int, order: list[int], parts: bool) -> Candidate:
-    movable = np.flatnonzero(form.gridded & (form.lower < form.upper))
-    for _ in range(MOST_MOVES):
-        before = candidate
-        for k in movable:
-            grid = form.grids[k]
-            grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
-            trials = np.tile(candidate.variables, (len(grid), 1))
-            trials[:, k] = grid
-            candidate = _better(form, candidate, trials, np.full(len(grid), candidate.combination), traded, order)
-        others = form.instance.neighbours(candidate.combination) if parts else np.empty(0, dtype=np.int64)
-        trials = np.tile(candidate.variables, (len(others), 1))
-        candidate = _better(form, candidate, trials, others, traded, order)
-        if candidate is before:
+    if not candidates:
+        return []
+    combinations = np.array([c.combination for c in candidates], dtype=np.int64)
+    variables = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    phi = np.array([c.phi for c in candidates])
+    steps: list[int | None] = [int(k) for k in np.flatnonzero(form.gridded & (form.lower < form.upper))]
+    steps += [None] if parts else []
+    moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
+    for step in steps * MOST_MOVES:
+        # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
+        own = np.flatnonzero(idle < len(steps))
+        if not len(own):
             break
-    return candidate
+        known = combinations[own], variables[own], phi[own, :traded]
+        trials = _other_parts(form, *known) if step is None else _other_values(form, step, *known)
+        found = _better(phi[own], _feasible(form, *trials), traded, list(order))
+        better = own[found.whose]
+        idle[own] += 1
+        idle[better], moved[better] = 0, True
+        combinations[better], variables[better], phi[better] = found.combinations, found.variables, found.phi
+    return [
+        Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else own for k, own in enumerate(candidates)
+    ]
 
 
-def _better(
-    form: Formulation, own: Candidate, trials: np.ndarray, combinations: np.ndarray, traded: int, order: list[int]
-) -> Candidate:
-    """Return the best trial by the objectives in their order where it is better than a design, else the design."""
-    rows, phi = form.feasible_rows(trials, combinations)
-    left = rows[np.all(phi[rows, :traded] <= own.phi[:traded] + TIE, axis=1)]
+@dataclass(frozen=True)
+class _Found:
+    """Feasible points to put in place of designs, and whose each is."""
+
+    whose: np.ndarray
+    combinations: np.ndarray
+    variables: np.ndarray
+    phi: np.ndarray
+
+    def take(self, rows: np.ndarray) -> _Found:
+        """Return some of them, by mask or positions."""
+        return _Found(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
+
+
+def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
+    """Return the feasible ones of some points."""
+    rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
+    for first in range(0, len(whose), EVALUATED_AT_ONCE):
+        part = slice(first, first + EVALUATED_AT_ONCE)
+        own, values = form.feasible_rows(variables[part], combinations[part])
+        rows.append(first + own)
+        phi.append(values[own])
+    kept = np.concatenate(rows)
+    return _Found(whose[kept], combinations[kept], variables[kept], np.concatenate(phi))
+
+
+def _other_values(
+    form: Formulation, k: int, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with makeable values of one variable that promise to be as good: whose, combination, variables."""
+    grid = form.grids[k]
+    grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
+    own = [np.empty(0, dtype=np.int64)]
+    places = [np.empty(0, dtype=np.int64)]
+    for part in _slices(len(combinations), len(grid)):
+        columns = list(variables[part].T[:, :, None])
+        columns[k] = grid[None, :]
+        rows, there = np.nonzero(form.promising(columns, combinations[part, None], phi[part]))
+        own.append(part.start + rows)
+        places.append(there)
+    whose = np.concatenate(own)
+    points = variables[whose]
+    points[:, k] = grid[np.concatenate(places)]
+    return whose, combinations[whose], points
+
+
+def _other_parts(
+    form: Formulation, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with one other part that promise to be as good: whose, combination, variables."""
+    own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for part in _slices(len(combinations), len(form.instance.neighbours(combinations[0]))):
+        others = form.instance.neighbours(combinations[part])
+        keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
+        own.append(part.start + np.nonzero(keep)[0])
+        numbers.append(others[keep])
+    whose = np.concatenate(own)
+    return whose, np.concatenate(numbers), variables[whose]
+
+
+def _slices(count: int, each: int) -> list[slice]:
+    """Return which of so many designs are tried at once, with so many points each."""
+    at_once = max(TRIED_AT_ONCE // max(each, 1), 1)
+    return [slice(first, first + at_once) for first in range(0, count, at_once)]
+
+
+def _better(own: np.ndarray, found: _Found, traded: int, order: list[int]) -> _Found:
+    """Return, per design with phi ``own``, the best point by the objectives in their order, where that is better."""
+    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + TIE, axis=1))
     for j in order:
-        left = left[phi[left, j] <= np.min(phi[left, j], initial=np.inf) + TIE]
-    for row in left[:1]:
-        gain = own.phi[order] - phi[row, order]
-        decisive = np.flatnonzero(np.abs(gain) > TIE)
-        if len(decisive) and gain[decisive[0]] > 0:
-            return Candidate(int(combinations[row]), trials[row], phi[row])
-    return own
+        least = np.full(len(own), np.inf)
+        np.minimum.at(least, left.whose, left.phi[:, j])
+        left = left.take(left.phi[:, j] <= least[left.whose] + TIE)
+    _, first = np.unique(left.whose, return_index=True)
+    left = left.take(first)
+    gain = (own[left.whose] - left.phi)[:, order]
+    decisive = np.argmax(np.abs(gain) > TIE, axis=1)
+    return left.take(gain[np.arange(len(gain)), decisive] > TIE)
 
 
 def settle_variables(
@@ -163,19 +234,27 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     cell = np.zeros_like(start.cell)
     cell[:, :apart] = form.cell_of(np.array([c.combination for c in candidates]))[:, :apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
+    tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
         single = form.cells.single(boxes.cell)
-        numbers = [form.cells.members(cell, MOST_TIES) for cell in boxes.cell[single]]
-        tags = np.repeat(boxes.tag[single], [len(n) for n in numbers])
-        combinations = np.concatenate(numbers) if numbers else np.empty(0, dtype=np.int64)
-        rows, values = form.feasible_rows(points[tags], combinations)
-        for k in rows:
-            same = np.all(np.abs(values[k, :traded] - phi[tags[k], :traded]) <= TIE)
-            if same and len(found[tags[k]]) < MOST_TIES:
-                found[tags[k]].append(Candidate(int(combinations[k]), points[tags[k]], values[k]))
+        numbers = _members(form, boxes.cell[single])
+        tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
+        combinations += numbers
         boxes, _ = form.split(boxes.take(~single))
+    whose = np.concatenate(tags)
+    same = _feasible(form, whose, np.concatenate(combinations), points[whose])
+    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= TIE, axis=1)):
+        if len(found[same.whose[k]]) < MOST_TIES:
+            found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
     return found
+
+
+def _members(form: Formulation, cells: np.ndarray) -> list[np.ndarray]:
+    """Return the combinations of each of some cells that cannot be split, most of which have one."""
+    if np.all(form.cells.size(cells) == 1):
+        return list(form.cells.combination(cells)[:, None])
+    return [form.cells.members(cell, MOST_TIES) for cell in cells]
 
 
 def solve_everywhere(

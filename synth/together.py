@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.analysis import found_design, make_frame, offered, with_ties
+from synth.analysis import found_designs, make_frame, offered, with_ties
 from synth.batch_nlp import MISSED, Tasks
 from synth.clock import Clock
 from synth.cover import cover
@@ -93,10 +93,11 @@ class Together(Instance):
         entry = self.model.data_inputs[position]
         return self.moving[entry.name] if self._moves(entry) else super().column(position)
 
-    def neighbours(self, combination: int) -> np.ndarray:
+    def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
         """Return the combinations of the same question that differ in one part, count or choice."""
-        question, own = divmod(combination, self.size)
-        return question * self.size + self.each[question].neighbours(own)
+        question, own = np.divmod(np.asarray(combination, dtype=np.int64), self.size)
+        beside: np.ndarray = question[..., None] * self.size + self.each[0].neighbours(own)
+        return beside
 
     def describe(self, combination: int) -> tuple[Any, dict[str, float], dict[str, str]]:
         """Return parts, counts and choices of one combination."""
@@ -515,24 +516,32 @@ class TogetherSearch:
     ) -> list[ParetoFront | None]:
         """Return the front of each question from the best designs, each with what ties with it."""
         form, together = self.form, self.together
-        fronts: list[ParetoFront | None] = [None] * len(together.each)
         if not found:
-            return fronts
+            return [None] * len(together.each)
         designs = [c for c, _ in found]
         costs = elasticities(form, designs if priced else [], 1) or [{}] * len(designs)
         combinations, points, _ = rows_of(designs)
         result = form.evaluate(points.reshape(len(designs), form.n), combinations)
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.question(every), minlength=len(together.each))
-        for row, (number, (candidate, ties)) in enumerate(zip(together.question(combinations), found, strict=True)):
+        numbers = together.question(combinations).tolist()
+        # A design that stands alone ranks as any other that does.
+        first = self.questions[numbers[0]]
+        values = np.array([[result.values[name][0] for name in first.chosen]])
+        ranking = rank(first.chosen, values, list(first.weights.values()))
+        frames, more = [], []
+        for number, (_, ties), cost in zip(numbers, found, costs, strict=True):
             question = self.questions[number]
-            frame = make_frame(question.instance, question.chosen)
-            values = np.array([[result.values[name][row] for name in question.chosen]])
-            ranking = rank(question.chosen, values, list(question.weights.values()))
-            design = found_design(
-                form, frame, candidate, result, row, status=Status.OPTIMAL, gap=self.gap, rank=1,
-                score=float(ranking.scores[0]), note=ranking.notes[0], alternatives=ties, elasticity=costs[row],
-            )  # fmt: skip
+            frames.append(make_frame(question.instance, question.chosen))
+            more.append({
+                "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
+                "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
+            })  # fmt: skip
+        fronts: list[ParetoFront | None] = [None] * len(together.each)
+        for number, frame, design in zip(
+            numbers, frames, found_designs(form, frames, designs, result, more), strict=True
+        ):
+            question = self.questions[number]
             total, own = question.instance.combinations, int(solved[number])
             statistics = {
                 **offered(question.instance),

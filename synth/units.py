@@ -481,6 +481,8 @@ _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?
 _MINUS = "−‐‑‒–—﹣－"
 _LARGEST_EXPONENT = 1000
 _MOST_DIGITS = 40
+_SURELY_NORMAL = 1e-200  # below, numbers lose digits
+_FAR = 1e-14  # relative, more than floats round
 _WIDE = Context(prec=60)
 
 
@@ -813,16 +815,25 @@ def _in_unit(si: float, unit: Unit) -> Decimal:
 
 @lru_cache(maxsize=4096)
 def _shortest(si: float, unit: Unit) -> str:
-    if number_to_si("0", unit) == si:
+    if si == (number_to_si("0", unit) if unit.offset else 0.0):
         return "0"
     value = _in_unit(si, unit)
     text = ""
     # 17 digits name a float; only a temperature within 1e-9 K of absolute zero takes many more
-    for digits in range(1, _MOST_DIGITS + 1):
+    for digits in range(_least_digits(float(value), unit), _MOST_DIGITS + 1):
         text = _as_text(Context(prec=digits).plus(value))
         if number_to_si(text, unit) == si:
             break
     return text
+
+
+def _least_digits(value: float, unit: Unit) -> int:
+    """Return a number of digits below which a number in a unit is far from itself; exact arithmetic is slow."""
+    digits = 1
+    if not unit.offset and abs(value) > _SURELY_NORMAL:
+        while abs(float(f"{value:.{digits - 1}e}") - value) > _FAR * abs(value):
+            digits += 1
+    return digits
 
 
 def header(name: str, unit: str | Unit) -> str:

@@ -5,6 +5,9 @@ import math
 import pytest
 
 import synth
+from synth.elasticity import elasticities
+from synth.search import pose
+from synth.together import TogetherSearch
 from tests.unit.strut import RODS, Strut
 
 STEP = 1e-3
@@ -192,3 +195,50 @@ def test_what_a_default_makes_of_a_requirement_moves_with_it(stated, expected):
     assert design.elasticity["mass"]["load"] == pytest.approx(expected, rel=1e-4)
     if not stated:
         assert design.elasticity["mass"]["peak"] == pytest.approx(1.6, rel=1e-4)  # 2 * 40 of 50
+
+
+# -- many designs at once ------------------------------------------------------------------------------
+
+
+def test_elasticities_of_many_designs_are_those_of_each():
+    search = pose(Strut(), {"load": "20 kN", "room": "150 mm"}, None, 12, {"rods": RODS}).search()
+    search.run([1.0, 1.0], {}, explained=False)
+    assert len(search.front) == 12
+    together = elasticities(search.form, search.front, 2)
+    for own, found in zip(search.front, together, strict=True):
+        (alone,) = elasticities(search.form, [own], 2)
+        assert list(found) == list(alone) == ["mass", "flexibility"]
+        for objective in alone:
+            assert found[objective] == pytest.approx(alone[objective], rel=1e-12)
+
+
+def test_elasticities_of_questions_searched_together_are_those_of_each_alone():
+    # The second load follows the first one in every question, at its own slope.
+    family = synth.load(Followed)
+    ask = [pose(family, {"load": load}, ["mass"], 1, gap=1e-5) for load in (10.0, 20.0, 40.0)]
+    search = TogetherSearch(ask)
+    fronts = search.answers()
+    for front, question in zip(fronts, ask, strict=True):
+        (own,), (alone,) = front.designs, question.answer().designs
+        assert own.elasticity["mass"] == pytest.approx(alone.elasticity["mass"], rel=1e-6)
+        assert own.elasticity["mass"]["load"] == pytest.approx(1.0, rel=1e-4)
+
+
+class Boxed(synth.DesignProblem):
+    """Parts and a count, and nothing continuous."""
+
+    name = "boxed"
+
+    def declare(self, d):
+        load = d.requirement("load", "N", lower=1, upper=1e6)
+        bolts = d.count("bolts", 1, 12)
+        rod = d.part("material", "rods")
+        d.derive("mass", "kg", bolts * rod.density)
+        d.at_most("stress", load / (bolts * 1e-4), rod.stress_allow, "N/mm2")
+        d.objective("mass")
+
+
+def test_without_variables_nothing_has_a_price():
+    (design,) = synth.synthesize(Boxed, {"load": 50e3}, catalogs={"rods": RODS}).designs
+    assert design.values["bolts"] == 4
+    assert design.elasticity == {"mass": {}}

@@ -1,9 +1,15 @@
 """What the best design in one objective leaves free is settled by the other objectives, makeable values included."""
 
+import numpy as np
 import pytest
 
 import synth
 from synth import DesignProblem
+from synth.formulation import TIE, Candidate
+from synth.search import pose
+from synth.settle import MOST_MOVES, settle_discrete
+from synth.together import TogetherSearch
+from tests.unit.strut import RODS, Strut
 
 
 class Beam(DesignProblem):
@@ -48,3 +54,97 @@ def test_the_parts_that_an_objective_does_not_see_are_the_lightest():
 def test_a_makeable_value_that_is_pinned_stays():
     front = synth.synthesize(Beam, {}, points=6, fix={"cover": "7.5 mm"})
     assert {round(d.values["cover"], 9) for d in front.designs} == {0.0075}
+
+
+# -- many designs at once ------------------------------------------------------------------------------
+
+
+def forms():
+    """Return formulations with two variables of which one is makeable, parts, voids and refusals; of two questions."""
+    strut = Strut()
+    ask = [
+        pose(strut, {"load": load, "room": "150 mm"}, ["mass"], 1, {"rods": RODS}, limits={"area": ">= 60 mm2"})
+        for load in ("20 kN", "30 kN")
+    ]
+    return {"one question": ask[0].search().form, "two together": TogetherSearch(ask).form}
+
+
+FORMS = forms()
+
+
+def some_designs(form, count):
+    rng = np.random.default_rng(7)
+    low, high = form.lower, form.upper
+    points = form.makeable(low + (high - low) * rng.random((20 * count, form.n)))
+    found = form.feasible_points(points, rng.integers(0, form.instance.combinations, len(points)))
+    assert len(found) >= count
+    return found[:count]
+
+
+def step(form, own, trials, combinations, traded, order):
+    """Return the best of some points by the objectives in their order, where it is better than a design."""
+    rows, phi = form.feasible_rows(trials, combinations)
+    left = [k for k in rows if np.all(phi[k, :traded] <= own.phi[:traded] + TIE)]
+    for j in order:
+        least = min((phi[k, j] for k in left), default=np.inf)
+        left = [k for k in left if phi[k, j] <= least + TIE]
+    gains = [g for k in left[:1] for g in own.phi[order] - phi[k, order] if abs(g) > TIE]
+    return Candidate(int(combinations[left[0]]), trials[left[0]], phi[left[0]]) if gains and gains[0] > 0 else own
+
+
+def settled_alone(form, own, traded, order, parts):
+    """Return what a design becomes that takes its steps alone, all points of each looked at."""
+    for _ in range(MOST_MOVES):
+        before = own
+        for k in np.flatnonzero(form.gridded & (form.lower < form.upper)):
+            grid = form.grids[k]
+            trials = np.tile(own.variables, (len(grid), 1))
+            trials[:, k] = grid
+            own = step(form, own, trials, np.full(len(grid), own.combination), traded, order)
+        if parts:
+            others = form.instance.neighbours(own.combination)
+            own = step(form, own, np.tile(own.variables, (len(others), 1)), others, traded, order)
+        if own is before:
+            break
+    return own
+
+
+@pytest.mark.parametrize("which", FORMS)
+@pytest.mark.parametrize("parts", [True, False])
+@pytest.mark.parametrize(("traded", "order"), [(0, [0, 1, 2]), (1, [1, 0]), (2, [0, 1, 2]), (2, [1])])
+def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, traded, order, monkeypatch):
+    form = FORMS[which]
+    designs = some_designs(form, 60)
+    together = settle_discrete(form, designs, traded, order, parts)
+    alone = [settled_alone(form, own, traded, order, parts) for own in designs]
+    if traded == 0 or (parts and 0 in order):
+        assert any(a is not own for a, own in zip(alone, designs, strict=True))
+    monkeypatch.setattr("synth.settle.TRIED_AT_ONCE", 300)
+    monkeypatch.setattr("synth.settle.EVALUATED_AT_ONCE", 7)
+    for found in (together, settle_discrete(form, designs, traded, order, parts)):
+        assert [c.combination for c in found] == [c.combination for c in alone]
+        np.testing.assert_array_equal([c.variables for c in found], [c.variables for c in alone])
+        np.testing.assert_array_equal([c.phi for c in found], [c.phi for c in alone])
+
+
+def test_no_designs_settle_to_none():
+    assert settle_discrete(FORMS["one question"], [], 1, [0]) == []
+
+
+@pytest.mark.parametrize("which", FORMS)
+def test_what_is_feasible_and_as_good_is_promising(which):
+    form = FORMS[which]
+    rng = np.random.default_rng(3)
+    combinations = rng.integers(0, form.instance.combinations, (40, 1))
+    points = form.lower + (form.upper - form.lower) * rng.random((40, form.n))
+    caps = np.array([c.phi[:2] for c in some_designs(form, 40)])
+    grid = np.linspace(form.lower[0], form.upper[0], 50)
+    columns = [grid[None, :], *points.T[1:, :, None]]
+    keep = form.promising(columns, combinations, caps)
+    every = np.repeat(points, 50, axis=0)
+    every[:, 0] = np.tile(grid, 40)
+    rows, phi = form.feasible_rows(every, np.repeat(combinations[:, 0], 50))
+    good = rows[np.all(phi[rows, :2] <= np.repeat(caps, 50, axis=0)[rows] + TIE, axis=1)]
+    assert len(good)
+    assert keep.ravel()[good].all()
+    assert keep.mean() < 0.5
