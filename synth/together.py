@@ -323,7 +323,9 @@ class TogetherSearch:
         if not len(self.known):
             return nothing
         found = np.isfinite(self.known.best())
-        unproven = self._unproven(self.form, self.pool, asked & found, EFFORT) | (asked & ~found)
+        purpose = Each(self.form, self.known, self._slack(0), asked & found)
+        outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, EFFORT * int(found.sum()))
+        unproven = purpose.open_questions(outcome.open) | (asked & ~found)
         if unproven.any():
             unproven = self._unproven_in_conflict(unproven)
         asked &= ~unproven
@@ -374,22 +376,23 @@ class TogetherSearch:
         form.archive = self.known
         return result
 
-    def _unproven(self, form: Formulation, pool: Boxes, asked: np.ndarray, effort: int) -> np.ndarray:
-        """Cover everything; return those of the questions asked that this leaves open."""
-        purpose = Each(form, self.known, self._slack(0), asked)
-        outcome = cover(form, pool, purpose, self.clock, self.rng, effort * int(asked.sum()))
-        return purpose.open_questions(outcome.open)
-
     def _unproven_in_conflict(self, asked: np.ndarray) -> np.ndarray:
         """Try again with boxes that carry what limits share, which helps where limits leave little."""
         form = Formulation(self.together, self.goals, 1, conflict=True)
-        form.workers, form.archive, form.work = self.form.workers, self.known, self.form.work
+        form.workers, form.work = self.form.workers, self.form.work
         form.solved_combinations = self.form.solved_combinations
         form.propagation.taught_by(self.form.propagation.lessons())
-        left = self._unproven(form, form.root(), asked, EFFORT_IN_CONFLICT)
+        # Designs of other questions would only seem to say that those of these are found.
+        known = BestOfEach(self.together, 0, form.n, len(form.goals))
+        rows = asked[self.known.questions()]
+        known.add(self.known.combination[rows], self.known.variables[rows], self.known.phi[rows])
+        form.archive = known
+        purpose, pool = Each(form, known, self._slack(0), asked), form.root()
+        outcome = cover(form, pool, purpose, self.clock, self.rng, EFFORT_IN_CONFLICT * int(asked.sum()))
+        self.known.add(known.combination, known.variables, known.phi)
         self.form.contracted += form.contracted
         self.form.nlp_solves += form.nlp_solves
-        return left
+        return purpose.open_questions(outcome.open)
 
     def _told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
@@ -422,8 +425,7 @@ class TogetherSearch:
         for effort in FIRST_EFFORTS:
             if not len(purpose.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
-        if len(purpose.known):
-            self._improve(purpose)
+        self._improve(purpose)
 
     def _recalled(self, purpose: Each) -> None:
         """Try the designs of similar questions in every question."""
@@ -446,7 +448,7 @@ class TogetherSearch:
     def _improve(self, purpose: Each) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
         elsewhere, expanded = set[int](), set[int]()
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS if len(purpose.known) else 0):
             own = purpose.known.combination % self.together.size
             fresh = list(dict.fromkeys(int(c) for c in own if int(c) not in elsewhere))[:MOST_KNOWN]
             elsewhere.update(fresh)
@@ -480,7 +482,7 @@ class TogetherSearch:
 
     def _tried(self, purpose: Each, combinations: np.ndarray, start: np.ndarray) -> int:
         """Solve continuous problems and round off the best of each question; return how many designs are of use."""
-        form, size, k, known = self.form, self.together.size, purpose.columns[0], purpose.known
+        form, size, k, known = purpose.form, self.together.size, purpose.columns[0], purpose.known
         seeker = Seeker(form, purpose, self.rng, False)
         keep = form.not_refused(combinations)
         combinations, start = combinations[keep], start[keep]
