@@ -195,7 +195,7 @@ class Cells:
     def all_members(self, cells: np.ndarray, most: int) -> np.ndarray:
         """Return the different combinations of some cells, at most so many."""
         found = np.empty(0, dtype=np.int64)
-        for cell in cells:
+        for cell in np.unique(cells, axis=0):
             found = np.union1d(found, self.members(cell, most))[:most]
             if len(found) == most:
                 break

@@ -306,13 +306,14 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
     return list(values.values())
 
 
-def _effort(instance: Instance) -> int:
+def _effort(instance: Instance, objectives: int) -> int:
     """Return how many boxes are worth looking into: with many unknowns they hardly close.
 
-    Combinations that are few are solved one by one instead.
+    Combinations that are few are solved one by one instead; where boxes for one best design over few combinations do
+    not close soon, limits leave a sliver that they hardly ever close on.
     """
     if int(np.sum(instance.lower < instance.upper)) < MANY:
-        return EFFORT
+        return EFFORT_WITH_MANY if objectives == 1 and instance.combinations <= EXHAUSTIVE_LIMIT else EFFORT
     return EFFORT_WITH_FEW_PARTS if instance.combinations <= EXHAUSTIVE_LIMIT else EFFORT_WITH_MANY
 
 
@@ -335,7 +336,7 @@ class FrontSearch:
         lessons: Lessons | None = None,
     ) -> None:
         # A question that is worth only some effort is not worth compiling for, nor solving what stays open.
-        self.effort, self.thorough = (_effort(instance), True) if effort is None else (effort, False)
+        self.effort, self.thorough = (_effort(instance, len(chosen)), True) if effort is None else (effort, False)
         self.alike = alike
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
         self.started = time.monotonic()
