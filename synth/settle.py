@@ -160,8 +160,9 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     caps = np.full(phi.shape, np.inf)
     caps[:, :traded] = phi[:, :traded] + TIE
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
-    cell = np.zeros_like(start.cell)
-    cell[:, :apart] = form.cell_of(np.array([c.combination for c in candidates]))[:, :apart]
+    cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
+    cell[:, :apart] = form.cell_of(own)[:, :apart]
+    questions = form.instance.digits(own)[:apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
@@ -169,6 +170,11 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         numbers = [form.cells.members(cell, MOST_TIES) for cell in boxes.cell[single]]
         tags = np.repeat(boxes.tag[single], [len(n) for n in numbers])
         combinations = np.concatenate(numbers) if numbers else np.empty(0, dtype=np.int64)
+        # A cell may hold questions that are the same in all that counts: theirs are no other designs.
+        keep = np.ones(len(tags), dtype=bool)
+        for digit, its in zip(form.instance.digits(combinations)[:apart], questions, strict=True):
+            keep &= digit == its[tags]
+        combinations, tags = combinations[keep], tags[keep]
         rows, values = form.feasible_rows(points[tags], combinations)
         for k in rows:
             same = np.all(np.abs(values[k, :traded] - phi[tags[k], :traded]) <= TIE)

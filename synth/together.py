@@ -109,7 +109,9 @@ class Together(Instance):
 
 def different(each: Sequence[Instance]) -> list[str]:
     """Return the requirements that are not the same in all of some questions."""
-    return [n for n, v in each[0].requirements.items() if any(i.requirements[n] != v for i in each)]
+    # Options may leave out requirements.
+    names = dict.fromkeys(n for i in each for n in i.requirements)
+    return [n for n in names if len({i.requirements[n] for i in each if n in i.requirements}) > 1]
 
 
 def alike(question: Question) -> tuple[Any, ...]:
@@ -359,6 +361,7 @@ class TogetherSearch:
         rows = [(q, q * together.size + c, design) for q, c, design in offered if c is not None]
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
+        asked &= self._told_apart()
         purpose = Each(form, known, self._slack(0), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
@@ -367,7 +370,7 @@ class TogetherSearch:
         fronts = self._fronts(list(known), False, form.nlp_solves) if len(known) else [None] * len(self.questions)
         for q, _, _ in rows:
             front = fronts[q]
-            result[q] = (None if front is None else front.designs[0]), not left[q]
+            result[q] = (None if front is None else front.designs[0]), bool(asked[q] and not left[q])
         form.archive = self.known
         return result
 
