@@ -46,6 +46,7 @@ class Ropes(synth.DesignProblem):
         d.derive("cost", "-", cost)
         d.derive("gain", "-", income - cost)
         d.derive("loss", "-", cost - income)
+        d.derive("bulk", "-", strands / rope.fixed)
         d.at_most("carry", load, rope.most * (1 + (strands - 1) / 4), "kN")
         d.at_most("jerk", jolt, rope.jolt, "kN")
         if most is not None:
@@ -57,6 +58,7 @@ class Ropes(synth.DesignProblem):
         d.objective("cost")
         d.objective("gain", sense="max", default=False)
         d.objective("loss", default=False)
+        d.objective("bulk", default=False)
 
 
 LIMITS = ("most", "jolt", "worn", "bundle")  # loads in kN, or jolts, that a rope bears in one sense or another
