@@ -152,7 +152,11 @@ def crossing(words: Callable[[float], str], low: float, high: float) -> float:
 
 
 def test_against_a_dense_scan() -> None:
-    limits = {"most": [14, 300, 22, 55, 70], "worn": [1000, 25, 1000, 48, 1000], "bundle": [13, 1000, 24, 1000, 80]}
+    limits: dict[str, list[float]] = {
+        "most": [14, 300, 22, 55, 70],
+        "worn": [1000, 25, 1000, 48, 1000],
+        "bundle": [13, 1000, 24, 1000, 80],
+    }
     table = ropes((12, 5), (21, 3.4), (33, 2.2), (46, 1.3), (71, 0.6), **limits)
     steps = [2.0, 31.0, 57.0, 86.0]
     found = study(FREE, {"load": [f"{x} kN" for x in steps]}, table)

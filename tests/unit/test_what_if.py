@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -73,7 +74,7 @@ def test_steps_with_one_objective_are_those_asked_alone(problem: Ropes) -> None:
     for step, load in zip(fronts_of(found), (4, 14, 34, 390), strict=True):
         own = alone({"load": f"{load} kN", "most_cost": 200}, problem)
         check_same(step, own)
-        true = best_ropes(problem, own.question.requirements, FOUR)  # type: ignore[union-attr]
+        true = best_ropes(problem, own.question.requirements, FOUR)
         if load == 390:
             assert true is None
             assert not step.designs
@@ -163,7 +164,7 @@ def test_weights_change_the_order_alone() -> None:
     for step, weight in zip(found.fronts, (0.0, 1.0, 9.0), strict=True):
         check_same(step, alone({"load": "20 kN"}, GIVEN, both, weights={"cost": weight}))
         scores = [d.score for d in step.designs]
-        assert scores == sorted(scores)
+        assert all(a is not None and b is not None and a <= b for a, b in pairwise(scores))
         assert step.settings["weights"]["cost"] == weight
     assert made_of(found.fronts[0].designs[0])[0] == "rope c"
     assert made_of(found.fronts[2].designs[0])[0] == "rope b"
