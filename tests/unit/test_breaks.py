@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import synth
-from synth.breaks import WIDTH
 from synth.pareto import rank
 from synth.study import Break, Study
 from synth.tables import Catalogs
 from tests.unit.ropes import Ropes, best_ropes, ropes
 
+WIDTH = 1e-3  # of a value: so closely breaks are located
 FREE, GIVEN = Ropes(), Ropes(thick="given")
 BOTH = pytest.mark.parametrize("problem", [FREE, GIVEN], ids=["free", "no_variable"])
 
