@@ -158,13 +158,16 @@ def check_ropes(
             assert made_of(front.designs[0]) in own.made
 
 
-@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
-@pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
+@pytest.mark.parametrize(
+    ("problem", "grid"),
+    [(FREE, True), (MAKEABLE, True), (MAKEABLE, False), (GIVEN, True)],
+    ids=["free", "makeable", "no_grid", "no_variable"],
+)
 def test_loads_are_answered_as_alone(problem: DesignProblem, grid: bool) -> None:
     check_ropes(problem, loads(5, 12.3, 40, 301), grid=grid)
 
 
-@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
+@pytest.mark.parametrize("problem", [MAKEABLE, GIVEN], ids=["makeable", "no_variable"])
 def test_what_is_infeasible_is_left_to_be_asked_alone(problem: DesignProblem) -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     check_ropes(problem, loads(10, 29, 31, 89, 91, 300), weak)
@@ -179,8 +182,11 @@ def test_questions_that_are_all_infeasible_have_no_answer() -> None:
     assert TogetherSearch(asked(GIVEN, loads(100, 200, 300), catalogs=weak)).answers() == [None] * 3
 
 
-@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
-@pytest.mark.parametrize("objective", ["gain", "loss"])
+@pytest.mark.parametrize(
+    ("problem", "objective"),
+    [(FREE, "gain"), (GIVEN, "gain"), (MAKEABLE, "loss")],
+    ids=["gain", "gain_no_variable", "loss_makeable"],
+)
 def test_objectives_may_be_negative_or_zero(problem: DesignProblem, objective: str) -> None:
     # At 15 kN the best rope costs 35.
     both = [{"load": "15 kN", "income": i} for i in (0, 34.99, 35, 35.01, 900)]
@@ -204,10 +210,9 @@ def test_an_objective_is_made_large_where_it_is_asked_for() -> None:
     check_each(questions, lambda k: costs[k])
 
 
-@pytest.mark.parametrize("problem", [FREE, MAKEABLE], ids=["free", "makeable"])
-def test_two_requirements_may_differ(problem: DesignProblem) -> None:
+def test_two_requirements_may_differ() -> None:
     pairs = product((4, 18, 90), (0.3, 4.1))
-    check_ropes(problem, [{"load": f"{f} kN", "share": s} for f, s in pairs])
+    check_ropes(FREE, [{"load": f"{f} kN", "share": s} for f, s in pairs])
 
 
 def test_what_a_default_is_made_of_moves_it() -> None:
@@ -220,7 +225,6 @@ def test_what_a_default_is_made_of_moves_it() -> None:
 def test_refusals_of_combinations_depend_on_the_question() -> None:
     # More strands bear more, but not for every load: beyond 30 kN the first rope must be single, which bears 25.
     tied = ropes((10, 1), (30, 0.9), most=[25, 300], bundle=[30, 1000])
-    check_ropes(FREE, loads(10, 24.9, 29.9, 30.1), tied)
     check_ropes(GIVEN, loads(10, 24.9, 29.9, 30.1), tied)
     found = [f.designs[0] for f in TogetherSearch(asked(FREE, loads(29, 31), catalogs=tied)).answers() if f]
     assert [made_of(d)[:2] for d in found] == [("rope a", 2.0), ("rope b", 1.0)]
@@ -344,22 +348,8 @@ def lightest(question: Question) -> float | None:
 
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
 def test_struts(grid: bool) -> None:
-    hard = {"material": ["soft", "hard"]}
-    varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (20, 1.5), (20, 4), (89, 9))]
-    questions = asked(STRUT, varied, ["mass"], STRUTS, grid=grid, parts=hard, limits={"plates": "<= 2"})
-
-    def least(k: int) -> float | None:
-        r = questions[k].instance.requirements
-        found = []
-        for n, t, allowed in product((1, 2), plates(), (80e6, 160e6)):
-            bare = r["safety"] * r["load"] / allowed / (n * t)
-            width = max(0.005, math.ceil(bare * 1e3 - 1e-7) / 1e3 if grid else bare)
-            if width <= 0.09 + 1e-12:
-                found.append(7850.0 * n * width * t * (0.1 + 0.02 * n) * 1.1)
-        return min(found, default=None)
-
-    assert [least(k) is None for k in range(4)] == [False, False, False, True]
-    check_each(questions, least)
+    loaded = ((3, 1.5), (20, 4), (89, 9.9))
+    varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in loaded]
     whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
     check_each(whole, lambda k: lightest(whole[k]))
 
@@ -368,7 +358,7 @@ def test_brakes_whose_limits_are_not_monotone() -> None:
     brake, tables = ShaftBrake(), Catalogs(PAIRS_TABLE)
     varied = [
         {"torque": f"{t} N*m", "speed": f"{n} 1/min", "lining_wear": f"{w} mm"}
-        for t, n, w in ((50, 1200, 2), (100, 1200, 2), (100, 900, 2), (160, 700, 5), (400, 1200, 0), (1000, 1200, 0))
+        for t, n, w in ((50, 1200, 2), (100, 900, 2), (160, 700, 5), (1000, 1200, 0))
     ]
     questions = asked(brake, varied, ["force"], tables)
 
@@ -388,7 +378,7 @@ def test_brakes_whose_limits_are_not_monotone() -> None:
 
 def test_valleys_of_a_cost() -> None:
     problem, tables = Wells(), Catalogs({"wells": WELLS})
-    varied = [{"load": v} for v in (-6, -1.3, -0.1, 0.1, 0.9, 3, 8)]
+    varied = [{"load": v} for v in (-6, -1.3, 0.1, 3)]
     x = np.linspace(0, 4, 100_001)
 
     def least(k: int) -> float:
@@ -398,7 +388,7 @@ def test_valleys_of_a_cost() -> None:
             for b, t in zip(WELLS["base [-]"], WELLS["tilt [-]"], strict=True)
         )
 
-    assert min(least(k) for k in range(7)) < 0 < max(least(k) for k in range(7))
+    assert min(least(k) for k in range(4)) < 0 < max(least(k) for k in range(4))
     check_each(asked(problem, varied, catalogs=tables), least, priced=False)
 
 

@@ -105,10 +105,10 @@ def test_steps_with_two_objectives_are_those_asked_alone() -> None:
 def test_a_front_of_continuous_designs_is_found_at_every_step() -> None:
     asked = {"load": "20 kN", "room": "90 mm"}
     found = synth.whatif(
-        Strut(), asked, {"load": "10, 20, 40 kN"}, ["mass", "flexibility"], catalogs={"rods": RODS}, points=4, gap=0.01,
+        Strut(), asked, {"load": "10, 40 kN"}, ["mass", "flexibility"], catalogs={"rods": RODS}, points=4, gap=0.01,
         parts={"plate": ["core 1", "core 2"]}, breaks=False,
     )  # fmt: skip
-    for step, load in zip(fronts_of(found), (10, 20, 40), strict=True):
+    for step, load in zip(fronts_of(found), (10, 40), strict=True):
         assert step.certificate.kind == "global"
         assert step.verify().holds
         own = synth.synthesize(
@@ -254,7 +254,7 @@ def test_a_study_run_again_keeps_every_step(whole: tuple[str, int, bytes], tmp_p
     assert len(set(s.fingerprint for s in first.steps)) == count
 
 
-@pytest.mark.parametrize("lost", [[1], [2, 3], [1, 2, 3, 4, 5]])
+@pytest.mark.parametrize("lost", [[1], [2, 3]])
 def test_steps_that_were_lost_are_searched_again(
     whole: tuple[str, int, bytes], tmp_path: Path, lost: Sequence[int]
 ) -> None:
@@ -328,7 +328,7 @@ def test_a_study_that_is_interrupted_goes_on(whole: tuple[str, int, bytes], tmp_
     kind, count, text = whole
     seen = list[int]()
     stopped = 0
-    for number in range(0, 60, 3):
+    for number in range(0, 60, 8):
         found = asked(kind, tmp_path, progress=Stopper(number))
         seen.append(sum(s.front is not None for s in found.steps))
         assert found.statistics["kept"] == (seen[-2] if number else 0)
