@@ -231,8 +231,9 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     caps = np.full(phi.shape, np.inf)
     caps[:, :traded] = phi[:, :traded] + TIE
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
-    cell = np.zeros_like(start.cell)
-    cell[:, :apart] = form.cell_of(np.array([c.combination for c in candidates]))[:, :apart]
+    cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
+    cell[:, :apart] = form.cell_of(own)[:, :apart]
+    questions = form.instance.digits(own)[:apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
@@ -242,8 +243,13 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
         combinations += numbers
         boxes, _ = form.split(boxes.take(~single))
-    whose = np.concatenate(tags)
-    same = _feasible(form, whose, np.concatenate(combinations), points[whose])
+    whose, every = np.concatenate(tags), np.concatenate(combinations)
+    # A cell may hold questions that are the same in all that counts: theirs are no other designs.
+    keep = np.ones(len(whose), dtype=bool)
+    for digit, its in zip(form.instance.digits(every)[:apart], questions, strict=True):
+        keep &= digit == its[whose]
+    whose = whose[keep]
+    same = _feasible(form, whose, every[keep], points[whose])
     for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= TIE, axis=1)):
         if len(found[same.whose[k]]) < MOST_TIES:
             found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))

@@ -110,7 +110,9 @@ class Together(Instance):
 
 def different(each: Sequence[Instance]) -> list[str]:
     """Return the requirements that are not the same in all of some questions."""
-    return [n for n, v in each[0].requirements.items() if any(i.requirements[n] != v for i in each)]
+    # Options may leave out requirements.
+    names = dict.fromkeys(n for i in each for n in i.requirements)
+    return [n for n in names if len({i.requirements[n] for i in each if n in i.requirements}) > 1]
 
 
 def alike(question: Question) -> tuple[Any, ...]:
@@ -364,6 +366,7 @@ class TogetherSearch:
         rows = [(q, q * together.size + c, design) for q, c, design in offered if c is not None]
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
+        asked &= self._told_apart()
         purpose = Each(form, known, self._slack(0), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
@@ -372,7 +375,7 @@ class TogetherSearch:
         fronts = self._fronts([(c, ()) for c in known], False, form.nlp_solves)
         for q, _, _ in rows:
             front = fronts[q]
-            result[q] = (None if front is None else front.designs[0]), not left[q]
+            result[q] = (None if front is None else front.designs[0]), bool(asked[q] and not left[q])
         form.archive = self.known
         return result
 
@@ -521,7 +524,7 @@ class TogetherSearch:
         if not found:
             return [None] * len(together.each)
         designs = [c for c, _ in found]
-        costs = elasticities(form, designs if priced else [], 1) or [{}] * len(designs)
+        costs = self._prices(designs) if priced else [{}] * len(designs)
         combinations, points, _ = rows_of(designs)
         result = form.evaluate(points.reshape(len(designs), form.n), combinations)
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
@@ -568,6 +571,19 @@ class TogetherSearch:
                 question=question.instance,
             )
         return fronts
+
+    def _prices(self, designs: Sequence[Candidate]) -> list[dict[str, dict[str, float]]]:
+        """Return the elasticities of each design, as its question alone would tell them."""
+        if self.form.log_goals[0]:
+            return elasticities(self.form, designs, 1)
+        # The objective may be positive in some questions although it is not in all.
+        result = []
+        for c in designs:
+            question, own = divmod(c.combination, self.together.size)
+            form, number = Formulation(self.together.each[question], self.goals, 1), np.array([own])
+            _, phi = form.feasible_rows(c.variables[None, :], number)
+            result += elasticities(form, [Candidate(own, c.variables, phi[0])], 1)
+        return result
 
     def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
         """Return designs that are as good in the objective and better in the next one, over all parts."""
