@@ -33,9 +33,10 @@ from synth.settle import settle_ties, settle_variables
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 EFFORT, EFFORT_IN_CONFLICT = 10_000, 30_000  # boxes per question; what needs more is easier alone
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
-TIE_EFFORT = 200
+TIE_EFFORT = 200  # boxes per question
 ROUNDS = 6
 MOST_KNOWN = 32  # combinations that are tried for every question
+PLACES = 8  # among the questions, at which the neighbours of parts are tried
 MOST_SOLVED = 16_384  # continuous problems of a round
 ROUNDED_OFF = 10  # of them, per question
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
@@ -450,7 +451,7 @@ class TogetherSearch:
 
     def _improve(self, purpose: Each) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
-        elsewhere, expanded = set[int](), set[int]()
+        elsewhere, expanded = set[int](), set[tuple[int, int]]()
         for _ in range(ROUNDS if len(purpose.known) else 0):
             own = purpose.known.combination % self.together.size
             fresh = list(dict.fromkeys(int(c) for c in own if int(c) not in elsewhere))[:MOST_KNOWN]
@@ -469,10 +470,13 @@ class TogetherSearch:
         every = np.repeat(questions, len(place)) * size + own[rows]
         return self._tried(purpose, every, purpose.known.variables[rows])
 
-    def _beside(self, purpose: Each, expanded: set[int]) -> int:
+    def _beside(self, purpose: Each, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
-        parents = [c for c in purpose.known if c.combination not in expanded]
-        expanded.update(c.combination for c in parents)
+        # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
+        questions, size = purpose.known.questions() * PLACES // len(self.questions), self.together.size
+        own = {(int(q), c.combination % size): c for q, c in zip(questions, purpose.known, strict=True)}
+        parents = [c for place, c in own.items() if place not in expanded]
+        expanded.update(own)
         if not parents:
             return 0
         made = [self.together.neighbours(c.combination) for c in parents]

@@ -175,10 +175,10 @@ class _Run:
                 front = _reranked(known, question)
             if front is None:
                 front = self._search(number, question, [self.answered[k] for k in self._neighbours(position)])
-            text = record_text(front_record(front))
-            self.store.put(number, own, text)
+            record = front_record(front)
+            self.store.put(number, own, record)
             # As it would be read again: a study that goes on is the same to the last digit.
-            front = front_of_record(json.loads(text), Path(RECORD))
+            front = front_of_record(json.loads(json.dumps(record, allow_nan=False)), Path(RECORD))
         front = replace(front, question=question.instance, record=None, folder=None)
         self.same_but_weights.setdefault(unweighted, front)
         return Step(number, values, front, own)
@@ -263,6 +263,9 @@ def _fingerprint(question: Question, weights: bool = True) -> str:
     """Return the hash of all that decides an answer but ideas: question, formulas, tables, code."""
     instance, selection = question.instance, question.instance.selection
     program = instance.model.program
+    formulas = instance.model.function(
+        "fingerprint", lambda: hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest()
+    )
     settings = {k: v for k, v in question.settings.items() if weights or k != "weights"}
     content = {
         "format": FORMAT,
@@ -275,7 +278,7 @@ def _fingerprint(question: Question, weights: bool = True) -> str:
         "limits": [repr(x) for x in instance.extra],
         "objectives": dict(question.chosen),
         "settings": {k: repr(v) for k, v in settings.items()},
-        "formulas": hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest(),
+        "formulas": formulas,
         "code": code_digest(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -313,14 +316,13 @@ class _Store:
         digest = record.pop("digest", None)
         return front if digest == entry.get("digest") == ParetoFront.digest_of(record) else None
 
-    def put(self, number: int, fingerprint: str, text: str) -> None:
-        """Keep the front of a step, as its front.json."""
+    def put(self, number: int, fingerprint: str, record: Mapping[str, Any]) -> None:
+        """Keep the front of a step, by the content of its front.json."""
         if self.folder is None:
             return
         name = f"{STEPS}/step_{number:04d}.json"
-        self._write(self.folder / name, text)
-        digest = json.loads(text)["digest"]
-        self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": digest})
+        self._write(self.folder / name, record_text(record))
+        self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": record["digest"]})
 
     def value(self, key: str, fingerprint: str) -> Any:
         """Return something else that is kept; None where it is not, or of another question."""
