@@ -414,7 +414,7 @@ class TogetherSearch:
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
             self.progress({
-                "stage": "together",
+                "stage": "search",
                 "done": 0.0,
                 "combinations": self.together.size,
                 "incumbents": len(self.known),
