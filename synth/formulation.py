@@ -84,6 +84,15 @@ class Candidate:
     phi: np.ndarray
 
 
+def rows_of(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return combinations, variables and phi of some designs as arrays."""
+    return (
+        np.array([c.combination for c in candidates], dtype=np.int64),
+        np.array([c.variables for c in candidates]),
+        np.array([c.phi for c in candidates]),
+    )
+
+
 class Archive:
     """The feasible designs found so far that no other one dominates in the traded objectives.
 

@@ -18,7 +18,7 @@ from synth.dives import dive
 from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
@@ -251,15 +251,6 @@ def distinct(candidates: Sequence[Candidate], m: int) -> list[Candidate]:
         # Of those that beat each other by rounding alone the first stays.
         gone[own] = np.any(beaten & (~beats | (number[:, None] < number[None, own])), axis=0)
     return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]
-
-
-def _rows(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return combinations, variables and phi of some designs as arrays."""
-    return (
-        np.array([c.combination for c in candidates], dtype=np.int64),
-        np.array([c.variables for c in candidates]),
-        np.array([c.phi for c in candidates]),
-    )
 
 
 def check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
@@ -729,7 +720,7 @@ class FrontSearch:
                 break
             better = settle_variables(form, rough, self.m, range(self.m))
             done.update(c.phi[: self.m].tobytes() for c in better)
-            archive.add(*_rows(better))
+            archive.add(*rows_of(better))
         return self._spread(distinct(list(archive), self.m), most)
 
     def _look_for_more(self) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
-from synth.formulation import SNAP, Boxes, Candidate, Formulation
+from synth.formulation import SNAP, Boxes, Candidate, Formulation, rows_of
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
 from synth.settle import settle_variables
@@ -62,7 +62,7 @@ class Seeker:
             self.nlps = min(2 * self.nlps, MOST_NLPS) if 4 * good > len(chosen) else max(self.nlps // 2, LEAST_NLPS)
             found += good
         if found and len(self.purpose.columns) == 1:
-            self._settle_best()
+            self.settle_best(0, self.purpose.columns)
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
@@ -74,12 +74,15 @@ class Seeker:
         found = len(form.archive) > 0 and form.propagation.taught >= LESSONS
         return len(self.purpose.columns) > 1 or form.conflict or not found
 
-    def _settle_best(self) -> None:
-        """Make what is best as good as its parts and makeable values allow: what was rounded may leave much."""
-        best = self.purpose.leading(self.form.archive)
-        exact = settle_variables(self.form, best, 0, self.purpose.columns)
+    def settle_best(self, traded: int, order: Sequence[int]) -> None:
+        """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
+
+        The first ``traded`` objectives stay as good as they are; the others follow in ``order``.
+        """
+        exact = settle_variables(self.form, self.purpose.leading(self.form.archive), traded, order)
         if exact:
-            self.offer(np.array([c.variables for c in exact]), np.array([c.combination for c in exact]))
+            combinations, points, _ = rows_of(exact)
+            self.offer(points, combinations)
 
     def _conflicts(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""

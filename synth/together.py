@@ -21,14 +21,14 @@ from synth.clock import Clock
 from synth.cover import cover
 from synth.elasticity import elasticities
 from synth.feasibility import Status
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
 from synth.instance import Instance
 from synth.pareto import rank
 from synth.recall import combination_like
 from synth.results import Certificate, Design, ParetoFront
-from synth.search import Question
+from synth.search import SMALLEST_SIZE, Question
 from synth.seeker import Seeker
-from synth.settle import settle_ties, settle_variables
+from synth.settle import settle_ties
 
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 EFFORT, EFFORT_IN_CONFLICT = 10_000, 30_000  # boxes per question; what needs more is easier alone
@@ -39,7 +39,6 @@ MOST_KNOWN = 32  # combinations that are tried for every question
 PLACES = 8  # among the questions, at which the neighbours of parts are tried
 MOST_SOLVED = 16_384  # continuous problems of a round
 ROUNDED_OFF = 10  # of them, per question
-SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 
 
 class Together(Instance):
@@ -362,9 +361,9 @@ class TogetherSearch:
         form, together = self.form, self.together
         known = BestOfEach(together, 0, form.n, len(form.goals))
         form.archive = known
-        offered = [(q, combination_like(together.each[q], design), design) for q, design in wanted]
-        result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in offered if c is None}
-        rows = [(q, q * together.size + c, design) for q, c, design in offered if c is not None]
+        like = [(q, combination_like(together.each[q], design), design) for q, design in wanted]
+        result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
+        rows = [(q, q * together.size + c, design) for q, c, design in like if c is not None]
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
         asked &= self._told_apart()
@@ -373,10 +372,9 @@ class TogetherSearch:
         self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
         outcome = cover(form, form.leaves(combinations), purpose, self.clock, self.rng, EFFORT * len(rows))
         left = purpose.open_questions(outcome.open)
-        fronts = self._fronts([(c, ()) for c in known], False, form.nlp_solves)
+        designs = self._designs([(c, ()) for c in known], priced=False)
         for q, _, _ in rows:
-            front = fronts[q]
-            result[q] = (None if front is None else front.designs[0]), bool(asked[q] and not left[q])
+            result[q] = designs.get(q), bool(asked[q] and not left[q])
         form.archive = self.known
         return result
 
@@ -513,9 +511,7 @@ class TogetherSearch:
             new = seeker.round_off(form.leaves(combinations[best]), found.variables[best])
         else:
             new = seeker.offer(found.variables[best], combinations[best])
-        exact = settle_variables(form, purpose.leading(known), k, range(k + 1))
-        if exact:
-            seeker.offer(np.array([c.variables for c in exact]), np.array([c.combination for c in exact]))
+        seeker.settle_best(k, range(k + 1))
         return new
 
     # -- the report ----------------------------------------------------------------------------
@@ -525,31 +521,10 @@ class TogetherSearch:
     ) -> list[ParetoFront | None]:
         """Return the front of each question from the best designs, each with what ties with it."""
         form, together = self.form, self.together
-        if not found:
-            return [None] * len(together.each)
-        designs = [c for c, _ in found]
-        costs = self._prices(designs) if priced else [{}] * len(designs)
-        combinations, points, _ = rows_of(designs)
-        result = form.evaluate(points.reshape(len(designs), form.n), combinations)
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.question(every), minlength=len(together.each))
-        numbers = together.question(combinations).tolist()
-        # A design that stands alone ranks as any other that does.
-        first = self.questions[numbers[0]]
-        values = np.array([[result.values[name][0] for name in first.chosen]])
-        ranking = rank(first.chosen, values, list(first.weights.values()))
-        frames, more = [], []
-        for number, (_, ties), cost in zip(numbers, found, costs, strict=True):
-            question = self.questions[number]
-            frames.append(make_frame(question.instance, question.chosen))
-            more.append({
-                "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
-                "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
-            })  # fmt: skip
         fronts: list[ParetoFront | None] = [None] * len(together.each)
-        for number, frame, design in zip(
-            numbers, frames, found_designs(form, frames, designs, result, more), strict=True
-        ):
+        for number, design in self._designs(found, priced).items():
             question = self.questions[number]
             total, own = question.instance.combinations, int(solved[number])
             statistics = {
@@ -563,7 +538,7 @@ class TogetherSearch:
                 "seconds": {"total": time.monotonic() - self.started},
             }
             fronts[number] = ParetoFront(
-                frame=frame,
+                frame=design.frame,
                 designs=[design],
                 status=Status.OPTIMAL,
                 complete=True,
@@ -575,6 +550,30 @@ class TogetherSearch:
                 question=question.instance,
             )
         return fronts
+
+    def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], priced: bool) -> dict[int, Design]:
+        """Return the design of each question that has one, from the best ones with what ties with each."""
+        form, together = self.form, self.together
+        if not found:
+            return {}
+        designs = [c for c, _ in found]
+        costs = self._prices(designs) if priced else [{}] * len(designs)
+        combinations, points, _ = rows_of(designs)
+        result = form.evaluate(points.reshape(len(designs), form.n), combinations)
+        numbers = together.question(combinations).tolist()
+        # A design that stands alone ranks as any other that does.
+        first = self.questions[numbers[0]]
+        values = np.array([[result.values[name][0] for name in first.chosen]])
+        ranking = rank(first.chosen, values, list(first.weights.values()))
+        frames, more = [], []
+        for number, (_, ties), cost in zip(numbers, found, costs, strict=True):
+            question = self.questions[number]
+            frames.append(make_frame(question.instance, question.chosen))
+            more.append({
+                "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
+                "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
+            })  # fmt: skip
+        return dict(zip(numbers, found_designs(form, frames, designs, result, more), strict=True))
 
     def _prices(self, designs: Sequence[Candidate]) -> list[dict[str, dict[str, float]]]:
         """Return the elasticities of each design, as its question alone would tell them."""
@@ -606,15 +605,6 @@ class TogetherSearch:
         cover(form, self.pool, purpose, self.clock, self.rng, TIE_EFFORT * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]
-
-
-def rows_of(candidates: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return combinations, variables and phi of some designs as arrays."""
-    return (
-        np.array([c.combination for c in candidates], dtype=np.int64),
-        np.array([c.variables for c in candidates]),
-        np.array([c.phi for c in candidates]),
-    )
 
 
 def groups_of(questions: Sequence[Question], least: int = 2) -> list[list[int]]:

@@ -113,6 +113,7 @@ class _Run:
         self.answered: list[Step] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
         self.fingerprints: list[str] = []
+        self.stored: list[ParetoFront | None] = []  # answers of an earlier run, by position
         self.ahead: dict[int, ParetoFront] = {}  # answers that were found together, by position
         self.kept = 0
         self.share_of_steps = 1.0
@@ -155,8 +156,9 @@ class _Run:
             ideas = [self.fingerprints[k] for k in self._neighbours(position)]
             group_mark = [marks[position]] if position in marks else []
             self.fingerprints.append(_joined([alone, *ideas, *group_mark]))
+        self.stored = [self.store.get(k + 1, own) for k, own in enumerate(self.fingerprints)]
         for group in groups:
-            missing = [k for k in group if self.store.get(k + 1, self.fingerprints[k]) is None]
+            missing = [k for k in group if self.stored[k] is None]
             if missing:
                 shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
                 search = TogetherSearch([self.questions[k] for k in group], self.workers, shown, self._left())
@@ -166,7 +168,7 @@ class _Run:
     def _answer(self, position: int) -> Step:
         number, values, question = position + 1, self.steps.values[position], self.questions[position]
         own, unweighted = self.fingerprints[position], self.unweighted[position]
-        front = self.store.get(number, own)
+        front = self.stored[position]
         if front is not None:
             self.kept += 1
         else:
