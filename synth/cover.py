@@ -13,13 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.clock import Clock
-from synth.formulation import Archive, Boxes, Candidate, Formulation
-from synth.purposes import Cover, Purpose, reaches_beyond
-from synth.seeker import Seeker
+from synth.formulation import Archive, Boxes, Candidate, Formulation, Subtrees
+from synth.purposes import Cover, Purpose, Tabled, reaches_beyond
+from synth.seeker import PATIENCE, Seeker
 
 BATCH = 8192
 GENERATION = 8 * BATCH
 FEW = 1024
+LEVELS = 4  # generations that are taken at once
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Covered:
 def cover(
     form: Formulation,
     boxes: Boxes,
-    purpose: Purpose,
+    purpose: Tabled,
     clock: Clock,
     rng: np.random.Generator,
     effort: float = np.inf,
@@ -52,7 +53,7 @@ def cover(
     form : Formulation
     boxes : Boxes
         Where to search.
-    purpose : Purpose
+    purpose : Tabled
         Feasible designs go there, and into the archive of the formulation.
     clock : Clock
     rng : Generator
@@ -91,9 +92,24 @@ def cover(
             batch, small = form.split(batch)
             if len(small):
                 stuck = Boxes.joined([stuck, seeker.settle(small)])
+        grown = _grown(form, batch, purpose, seeker, effort - looked) if not every else None
+        if grown is not None:
+            looked += grown.looked
+            batch = grown.halves
+            if len(grown.small):
+                stuck = Boxes.joined([stuck, seeker.settle(grown.small)])
         fresh.append(batch)
     left = Boxes.joined([queue, *fresh, stuck])
     return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+
+
+def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:
+    """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
+    found = purpose.proves or seeker.failures >= PATIENCE
+    if not len(boxes) or not found or len(boxes) << LEVELS > effort:
+        return None
+    tables = purpose.tables(form)
+    return None if tables is None else form.grow(boxes, tables, LEVELS)
 
 
 def best(

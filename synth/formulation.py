@@ -16,6 +16,7 @@ from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.model import Evaluation
 from synth.native import COMPILED_FROM
+from synth.native_tree import CapTables
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
 from synth.program import Program
@@ -73,6 +74,15 @@ class Boxes:
             np.concatenate([b.scores for b in batches]),
             np.concatenate([b.tag for b in batches]),
         )
+
+
+@dataclass(frozen=True)
+class Subtrees:
+    """What some generations of boxes leave: halves to go on with, boxes too small to be split, how many were seen."""
+
+    halves: Boxes
+    small: Boxes
+    looked: int
 
 
 @dataclass(frozen=True)
@@ -325,6 +335,25 @@ class Formulation:
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
 
+    def grow(self, boxes: Boxes, caps: CapTables, levels: int, passes: int = 2) -> Subtrees | None:
+        """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
+
+        The boxes carry their pivots and the bounds of the first objectives alone.
+        """
+        found = self.propagation.grown(
+            boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
+            caps, passes, levels, (SNAP, PINNED), self.workers,
+        )  # fmt: skip
+        if found is None:
+            return None
+        self.contracted += found.contracted
+        scores = np.ones((len(found.cell), boxes.scores.shape[1]), dtype=np.float32)
+        both = Boxes(found.cell, found.low, found.high, found.bounds, scores, found.tag)
+        halves, small = both.take(~found.too_small), both.take(found.too_small)
+        if self.instance.joint_refusals:
+            halves, small = self._without_refused(halves), self._without_refused(small)
+        return Subtrees(halves, small, found.contracted)
+
     def _with_pivots(self, boxes: Boxes) -> Boxes:
         """Return boxes of variables with all that the inner nodes they carry could be."""
         low, high = (
@@ -440,12 +469,14 @@ class Formulation:
     def values_of(self, phi: np.ndarray) -> np.ndarray:
         """Return signed objective values for phi (..., objectives), all or the first ones."""
         values = np.empty(phi.shape)
+        for k in range(phi.shape[-1]):
+            values[..., k] = self.signed(k, phi[..., k])
+        return values
+
+    def signed(self, k: int, phi: np.ndarray) -> np.ndarray:
+        """Return signed values of one objective for its phi."""
         with np.errstate(all="ignore"):
-            for k in range(phi.shape[-1]):
-                if self.log_goals[k]:
-                    np.exp(phi[..., k], out=values[..., k])
-                else:
-                    np.multiply(phi[..., k], self.goal_scales[k], out=values[..., k])
+            values: np.ndarray = np.exp(phi) if self.log_goals[k] else phi * self.goal_scales[k]
         return values
 
     def phi_of(self, values: np.ndarray) -> np.ndarray:

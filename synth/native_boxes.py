@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import re
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -21,6 +21,7 @@ from synth import native_rules as rules
 from synth.contractor import CONSTANT, Assign, Check, Code, Contractor, Enclose, Hold, Kill, Narrow, Root, Statement
 from synth.native import FLAGS, library, switched_on
 from synth.native_source import EXPRESSIONS, VECTORS
+from synth.native_tree import TREE, CapTables, Grown, Halves, bind, grow
 from synth.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
 from synth.special import SpecialFunction
 
@@ -161,6 +162,7 @@ class BoxCode:
         self._contract = loaded.contract
         self._contract.argtypes = [ctypes.POINTER(_Batch)]
         self._contract.restype = ctypes.c_longlong
+        self._grow = bind(loaded, _Batch)
 
     def contract(
         self,
@@ -244,21 +246,79 @@ class BoxCode:
             packed("out_scores"), packed("out_tag"), taken["open"],
         )  # fmt: skip
 
+    def grow(
+        self,
+        prepared: Prepared,
+        halves: Halves,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: np.ndarray,
+        tag: np.ndarray,
+        caps: CapTables,
+        weights: np.ndarray,
+        passes: int,
+        levels: int,
+        workers: int = 1,
+    ) -> Grown:
+        """Tighten and split boxes, and what comes of them, for some generations.
+
+        Parameters
+        ----------
+        prepared, cell, low, high, tag, weights, passes, workers
+            As for :meth:`contract`.
+        halves : Halves
+        bounds : array (boxes, objectives)
+            Of the objectives that the code knows, no others.
+        caps : CapTables
+        levels : int
+            Generations.
+        """
+        given: dict[str, np.ndarray] = {
+            "cell": np.ascontiguousarray(cell, dtype=np.int32),
+            "low": np.ascontiguousarray(low, dtype=float),
+            "high": np.ascontiguousarray(high, dtype=float),
+            "bounds": np.ascontiguousarray(bounds, dtype=float),
+            "tag": np.ascontiguousarray(tag, dtype=np.int32),
+        }
+        fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)}
+        numbers = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1}
+        still = {name: a.ctypes.data for name, a in fixed.items()}
+
+        def batch(first: int, last: int) -> _Batch:
+            places = {name: a.ctypes.data + first * a.strides[0] for name, a in given.items()}
+            return _Batch(count=last - first, goals=bounds.shape[1], passes=passes, **numbers, **still, **places)
+
+        widths = (prepared.factors, prepared.n, bounds.shape[1])
+        return grow(self._grow, batch, len(cell), widths, halves, caps, levels, lambda work: _all_done(work, workers))
+
     def _run(self, batches: Sequence[_Batch], workers: int) -> list[int]:
         kept = [0] * len(batches)
-        waiting = iter(range(len(batches)))
 
-        def run() -> None:
-            for k in waiting:
+        def part(k: int) -> Callable[[], None]:
+            def work() -> None:
                 kept[k] = self._contract(ctypes.byref(batches[k]))
 
-        threads = [threading.Thread(target=run) for _ in range(min(workers, len(batches)) - 1)]
-        for thread in threads:
-            thread.start()
-        run()
-        for thread in threads:
-            thread.join()
+            return work
+
+        _all_done([part(k) for k in range(len(batches))], workers)
         return kept
+
+
+def _all_done(work: Sequence[Callable[[], None]], workers: int) -> None:
+    """Do all of some work, shared among threads."""
+    waiting = iter(work)
+
+    def run() -> None:
+        for part in waiting:
+            part()
+
+    threads = [threading.Thread(target=run) for _ in range(min(workers, len(work)) - 1)]
+    for thread in threads:
+        thread.start()
+    run()
+    for thread in threads:
+        thread.join()
 
 
 def compiled(code: Code) -> BoxCode | None:
@@ -287,7 +347,7 @@ def source(code: Code) -> str | None:
             VECTORS, rules.COMMON, _sizes(code),
             *_specials(statements, owner.program),
             *_rules(statements, owner),
-            _loading(code), _tighten(code), DRIVER,
+            _loading(code), _tighten(code), DRIVER, TREE,
         ]  # fmt: skip
     except (UnsupportedOperation, KeyError):
         return None
@@ -532,60 +592,73 @@ static float dot(const float *a, const float *b, long long width) {
     return parts[0];
 }
 
-long long contract(const Batch *b) {
+typedef struct {
     vd RL[NODES], RH[NODES], B[ANY(LIMITS)], C[ANY(GOALS)], V[ANY(N)][2], T[ANY(TABLES)][2];
     vd goals[ANY(GOALS)], scores[ANY(N)];
     vi open[ANY(LIMITS)];
+} Registers;
+
+static void begin(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
+    for (int k = 0; k < NODES; k++) { r->RL[k] = all(b->root_low[k]); r->RH[k] = all(b->root_high[k]); }
+    for (int j = 0; j < LIMITS; j++) { r->B[j] = all(b->rights[j]); r->open[j] = all_i(0); }
+    memset(counted, 0, LANES * sizeof counted[0]);
+}
+
+/* How much each variable blurs what is left of boxes, and how much each limit and objective counts. */
+static void score(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
+    const double *own[LANES];
+    for (int i = 0; i < N; i++) r->scores[i] = all(0.0);
+    for (int l = 0; l < LANES; l++) {
+        long long pattern = 0;
+        for (int j = 0; j < b->bits; j++) pattern |= (long long)(r->C[j][l] - r->C[j][l] == 0.0) << j;
+        own[l] = b->weights + pattern * b->weights_step;
+    }
+    for (int j = 0; j < LIMITS + GOALS; j++) {
+        vd weight;
+        for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || r->open[j][l] ? own[l][j] : 0.0;
+        for (int i = 0; i < N; i++) r->scores[i] += weight * b->steep[j * N + i];
+        for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
+    }
+    for (int i = 0; i < N; i++) {
+        const vd low = r->V[i][0], high = r->V[i][1];
+        r->scores[i] *= b->spans[i] == 0.0 ? v_log(high / low) : (high - low) / b->spans[i];
+    }
+}
+
+long long contract(const Batch *b) {
+    Registers r;
     float counted[LANES][b->score_width];
     const long long columns = N + b->factors;
     long long kept = 0;
-    for (int k = 0; k < NODES; k++) { RL[k] = all(b->root_low[k]); RH[k] = all(b->root_high[k]); }
-    for (int j = 0; j < LIMITS; j++) { B[j] = all(b->rights[j]); open[j] = all_i(0); }
-    memset(counted, 0, sizeof counted);
+    begin(b, &r, counted);
     for (long long first = 0; first < b->count; first += LANES) {
         const long long left = b->count - first;
         for (int l = 0; l < LANES; l++) {
             const long long box = first + (l < left ? l : left - 1);
-            for (int i = 0; i < N; i++) { V[i][0][l] = b->low[box * N + i]; V[i][1][l] = b->high[box * N + i]; }
-            for (int j = 0; j < GOALS; j++) C[j][l] = b->caps[box * b->caps_step + j];
-            load_tables(b, b->cell + box * b->factors, T, l);
+            for (int i = 0; i < N; i++) { r.V[i][0][l] = b->low[box * N + i]; r.V[i][1][l] = b->high[box * N + i]; }
+            for (int j = 0; j < GOALS; j++) r.C[j][l] = b->caps[box * b->caps_step + j];
+            load_tables(b, b->cell + box * b->factors, r.T, l);
         }
-        vi dead = tighten(b, RL, RH, B, C, V, T, goals, open);
-        dead |= snap(b, V);
+        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.open);
+        dead |= snap(b, r.V);
         for (int l = 0; l < LANES && l < left; l++) {
             b->alive[first + l] = !dead[l];
-            for (int j = 0; j < LIMITS; j++) b->open[(first + l) * LIMITS + j] = open[j][l] != 0;
+            for (int j = 0; j < LIMITS; j++) b->open[(first + l) * LIMITS + j] = r.open[j][l] != 0;
         }
         if (!any(~dead)) continue;
-        for (int i = 0; i < N; i++) scores[i] = all(0.0);
-        const double *own[LANES];
-        for (int l = 0; l < LANES; l++) {
-            long long pattern = 0;
-            for (int j = 0; j < b->bits; j++) pattern |= (long long)(C[j][l] - C[j][l] == 0.0) << j;
-            own[l] = b->weights + pattern * b->weights_step;
-        }
-        for (int j = 0; j < LIMITS + GOALS; j++) {
-            vd weight;
-            for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || open[j][l] ? own[l][j] : 0.0;
-            for (int i = 0; i < N; i++) scores[i] += weight * b->steep[j * N + i];
-            for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
-        }
-        for (int i = 0; i < N; i++) {
-            const vd width = V[i][1] - V[i][0];
-            scores[i] *= b->spans[i] == 0.0 ? v_log(V[i][1] / V[i][0]) : width / b->spans[i];
-        }
+        score(b, &r, counted);
         for (int l = 0; l < LANES && l < left; l++) {
             if (dead[l]) continue;
             const long long box = first + l;
             const int *cell = b->cell + box * b->factors;
             for (int i = 0; i < N; i++) {
-                b->out_low[kept * N + i] = V[i][0][l];
-                b->out_high[kept * N + i] = V[i][1][l];
-                b->out_scores[kept * columns + i] = (float)scores[i][l];
+                b->out_low[kept * N + i] = r.V[i][0][l];
+                b->out_high[kept * N + i] = r.V[i][1][l];
+                b->out_scores[kept * columns + i] = (float)r.scores[i][l];
             }
             for (long long j = 0; j < b->goals; j++) {
                 const double bound = b->bounds[box * b->goals + j];
-                const double least = j < GOALS ? goals[j][l] : NAN;
+                const double least = j < GOALS ? r.goals[j][l] : NAN;
                 b->out_bounds[kept * b->goals + j] = bound >= least || least != least ? bound : least;
             }
             for (long long f = 0; f < b->factors; f++) {

@@ -198,6 +198,8 @@ class _Near:
     ``found`` holds, per combination, the design that is least worse than the chosen one, and by how much.
     """
 
+    proves = False
+
     def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray) -> None:
         self.columns = list(range(traded))
         self.slack, self.plain = sizes, caps

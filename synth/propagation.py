@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import casadi as ca
@@ -16,7 +16,8 @@ from synth.contractor import INNER, Code, Contractor, Layout, Root
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.native import COMPILED_FROM
-from synth.native_boxes import Packed, Prepared, Question, compiled
+from synth.native_boxes import BoxCode, Packed, Prepared, Question, compiled
+from synth.native_tree import CapTables, Grown, Halves
 from synth.program import OP_SPECIAL
 from synth.special import SpecialCall, expanded
 
@@ -419,16 +420,59 @@ class Propagation:
         workers : int
             Threads.
         """
-        code = (
-            compiled(self._code(every, caps is not None))
-            if self._to_compile(every, caps is not None, len(cell))
-            else None
-        )
+        code = self._compiled_code(every, caps is not None, len(cell))
         if code is None:
             return None
+        prepared = self._prepared_for(every, margins)
+        return code.contract(prepared, cell, low, high, bounds, tag, caps, self.weights, passes, workers)
+
+    def grown(
+        self,
+        cell: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: np.ndarray,
+        tag: np.ndarray,
+        caps: CapTables,
+        passes: int,
+        levels: int,
+        margins: tuple[float, float],
+        workers: int = 1,
+    ) -> Grown | None:
+        """Tighten and split boxes for some generations by compiled code; None where there is none.
+
+        Parameters
+        ----------
+        cell, low, high, bounds, tag, passes, margins, workers
+            As for :meth:`packed`, for the objectives that are bounded in every box.
+        caps : CapTables
+        levels : int
+            Generations.
+        """
+        code = self._compiled_code(False, True, 0)
+        if code is None:
+            return None
+        prepared = self._prepared_for(False, margins)
+        found = code.grow(
+            prepared, self._halves, cell, low, high, bounds, tag, caps, self.weights, passes, levels, workers
+        )
+        self._contracted[False, True] += found.contracted
+        return found
+
+    def _compiled_code(self, every: bool, capped: bool, boxes: int) -> BoxCode | None:
+        """Return the code for so many boxes more, if they are worth compiling."""
+        return compiled(self._code(every, capped)) if self._to_compile(every, capped, boxes) else None
+
+    def _prepared_for(self, every: bool, margins: tuple[float, float]) -> Prepared:
         if every not in self._prepared:
             self._prepared[every] = Prepared(self._contractors[every], self._question(every, margins))
-        return code.contract(self._prepared[every], cell, low, high, bounds, tag, caps, self.weights, passes, workers)
+        return self._prepared[every]
+
+    @cached_property
+    def _halves(self) -> Halves:
+        trees = self.cells.trees
+        ranges = np.concatenate([self.instance.upper - self.instance.lower, np.zeros(len(self.pivots))])
+        return Halves([t.left for t in trees], [t.right for t in trees], ranges)
 
     @property
     def compiled_at_once(self) -> bool:

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.native_tree import CapTables
 
 ROWS = 1024
 
@@ -18,6 +19,7 @@ class Purpose(Protocol):
     columns: list[int]
     slack: np.ndarray
     plain: np.ndarray
+    proves: bool  # designs that have been looked for, so that hardly any better ones are left
 
     def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use.
@@ -36,6 +38,13 @@ class Purpose(Protocol):
         """Take feasible designs; return how many were of use."""
 
 
+class Tabled(Purpose, Protocol):
+    """A purpose whose caps compiled code may read from tables."""
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what :meth:`caps` and :meth:`room` say as tables; None where they cannot say it."""
+
+
 class Cover:
     """Cover everything: for each possible design a known one that is at most the slack worse in every objective.
 
@@ -50,6 +59,8 @@ class Cover:
     known : Archive
         Designs known, no one better than another in all the objectives traded.
     """
+
+    proves = False
 
     def __init__(self, columns: Sequence[int], slack: np.ndarray, plain: np.ndarray, known: Archive) -> None:
         self.columns, self.slack, self.plain, self.known = list(columns), slack, plain, known
@@ -85,6 +96,18 @@ class Cover:
         k = self.columns[0]
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what the caps are as tables, for one objective or two."""
+        columns, bounded = self.columns, form.bounded
+        if reaches_beyond(self, bounded) or len(columns) > 2:
+            return None
+        plain = self.plain[:bounded] + TIE
+        if len(columns) == 1:
+            least = (self.known.phi[:, columns[0]] - self.slack[0]).min(initial=np.inf)
+            plain[columns[0]] = min(plain[columns[0]], least)
+        known = _covered_from(form, self.known, columns, self.slack) if len(columns) == 2 else ()
+        return CapTables(columns, form.values_of(plain), known=known)
+
 
 class Staircase:
     """Prove some designs: nothing is better than one of them by more than the slack in every objective.
@@ -105,6 +128,8 @@ class Staircase:
     proven : set of bytes
         phi of designs that need no proof any more.
     """
+
+    proves = True
 
     def __init__(
         self,
@@ -173,16 +198,29 @@ class Staircase:
 
     def _below_two(self, own: np.ndarray) -> np.ndarray:
         """Do the same for two objectives: steps in order of the first fall in the second."""
-        steps = self.steps[np.argsort(self.steps[:, 0], kind="stable")]
-        highest = np.maximum.accumulate(steps[::-1, 1])[::-1]  # the largest second among this and all later steps
-        from_here = np.searchsorted(steps[:, 0], own[:, 0], side="right")  # steps above the box in the first objective
-        up_to = len(steps) - np.searchsorted(highest[::-1], own[:, 1], side="right")  # ... and in the second
+        first, highest = self._in_order()
+        from_here = np.searchsorted(first, own[:, 0], side="right")  # steps above the box in the first objective
+        up_to = len(first) - np.searchsorted(highest[::-1], own[:, 1], side="right")  # ... and in the second
         alive = from_here < up_to
-        last = np.minimum(up_to, len(steps)) - 1
+        last = np.minimum(up_to, len(first)) - 1
         result = np.full(own.shape, -np.inf)
-        result[alive, 0] = steps[last[alive], 0]
+        result[alive, 0] = first[last[alive]]
         result[alive, 1] = highest[from_here[alive]]
         return result
+
+    def _in_order(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the steps of two objectives in order, and the largest second among each and all later ones."""
+        steps = self.steps[np.argsort(self.steps[:, 0], kind="stable")]
+        return steps[:, 0], np.maximum.accumulate(steps[::-1, 1])[::-1]
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what the caps are as tables, for two objectives."""
+        columns = self.columns
+        if reaches_beyond(self, form.bounded) or len(columns) != 2:
+            return None
+        (first, highest), known = self._in_order(), _covered_from(form, self.known, columns, self.slack)
+        steps = form.signed(columns[0], first), form.signed(columns[1], highest)
+        return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Replace designs that are beaten; return how many were."""
@@ -211,6 +249,19 @@ def beating(rows: np.ndarray, phi: np.ndarray) -> np.ndarray:
     """Tell which rows (..., objectives) are as good as phi in all, and better in some by more than rounding."""
     better: np.ndarray = np.all(rows <= phi, axis=-1) & np.any(rows < phi - TIE, axis=-1)
     return better
+
+
+def _covered_from(
+    form: Formulation, known: Archive, columns: Sequence[int], slack: np.ndarray
+) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """Return what ``Archive.caps`` says of two objectives: from where the other is covered, and the least that is."""
+    covering = known.phi[:, columns] - slack
+    result = []
+    for k in (0, 1):
+        order = np.argsort(covering[:, 1 - k], kind="stable")
+        at, least = covering[order, 1 - k], np.minimum.accumulate(covering[order, k])
+        result.append((form.signed(columns[1 - k], at), form.signed(columns[k], least)))
+    return tuple(result)
 
 
 def reaches_beyond(purpose: Purpose, bounded: int) -> bool:

@@ -66,13 +66,13 @@ class Seeker:
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
-        """Tell whether boxes are worth a solver: for one objective points say as much once designs are known.
+        """Tell whether boxes are worth a solver: once designs are known points say as much, but along a whole front.
 
         Before that, optima tell what is worth splitting.
         """
-        form = self.form
+        form, purpose = self.form, self.purpose
         found = len(form.archive) > 0 and form.propagation.taught >= LESSONS
-        return len(self.purpose.columns) > 1 or form.conflict or not found
+        return form.conflict or not found or (len(purpose.columns) > 1 and not purpose.proves)
 
     def settle_best(self, traded: int, order: Sequence[int]) -> None:
         """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.

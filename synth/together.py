@@ -23,7 +23,9 @@ from synth.elasticity import elasticities
 from synth.feasibility import Status
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
 from synth.instance import Instance
+from synth.native_tree import CapTables
 from synth.pareto import rank
+from synth.purposes import reaches_beyond
 from synth.recall import combination_like
 from synth.results import Certificate, Design, ParetoFront
 from synth.search import SMALLEST_SIZE, Question
@@ -194,6 +196,8 @@ class Each:
         Questions that are not asked need no proof.
     """
 
+    proves = False
+
     def __init__(
         self, form: Formulation, known: BestOfEach, slack: Callable[[np.ndarray], np.ndarray], asked: np.ndarray
     ) -> None:
@@ -249,6 +253,16 @@ class Each:
         better = best < self._polished - TIE
         self._polished = np.minimum(best, self._polished)
         return [c for c, q in zip(self.known, self.known.questions(), strict=True) if better[q]]
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return the caps by the cluster of questions that a box speaks of."""
+        if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._plain[:, form.bounded :])):
+            return None
+        caps = self._plain[:, : form.bounded] + TIE
+        every = np.zeros((len(caps), 1), dtype=np.int32)
+        every[:, 0] = np.arange(len(caps))
+        caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(every))
+        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.values_of(caps))
 
     def open_questions(self, left: Boxes) -> np.ndarray:
         """Tell of which questions boxes that were left open may hold something of use."""

@@ -150,12 +150,14 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
     for combination in range(instance.combinations):
         data = instance.data(np.array([combination]))
         points = np.column_stack([rings / 1e3, np.full(len(rings), 1e3), np.full(len(rings), 2.0)])
-        # Torque grows with the force in proportion, so the least force is known; it harms nothing else.
+        # Torque grows with the force in proportion, so the least force is known; time and heat may ask for more.
         points[:, 2] *= (lambda v: v["required_torque"] / v["torque"])(instance.model.evaluate(points, data).values)
-        result = instance.model.evaluate(points, data)
-        near_by = np.all([result.values[n] <= chosen.values[n] * 1.2 for n in chosen.objectives], axis=0)
-        if np.any(result.feasible & near_by):
-            members.add(combination)
+        for more in np.linspace(1.0, 1.4, 41):
+            result = instance.model.evaluate(points * [1, 1, more, 1], data)
+            near_by = np.all([result.values[n] <= chosen.values[n] * 1.2 for n in chosen.objectives], axis=0)
+            if np.any(result.feasible & near_by):
+                members.add(combination)
+                break
     assert 3 < len(members) < instance.combinations
     assert found.found == len(members) - 1
 
