@@ -3,6 +3,8 @@
 import pandas as pd
 
 import synth
+from synth.formulation import Formulation
+from synth.instance import Instance, catalogs_for
 
 RODS = pd.DataFrame({
     "designation": ["soft", "hard", "odd"],
@@ -43,3 +45,19 @@ class Strut(synth.DesignProblem):
         d.objective("width", default=False)
         d.refuse("heavy_hook", load > 90e3, "at most 90 kN")
         d.advise("wide", width > 0.05, "a wide bar")
+
+
+def strut_form(grid=True):
+    """Return the problem ready to be searched."""
+    problem = Strut()
+    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
+    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2)
+
+
+def designs_of(form, rng, count):
+    """Return random feasible makeable designs of random combinations, and phi."""
+    share = rng.random((count, form.n))
+    points = form.makeable(form.lower + share * (form.upper - form.lower))
+    combinations = rng.integers(form.instance.combinations, size=count)
+    rows, phi = form.feasible_rows(points, combinations)
+    return points[rows], combinations[rows], phi[rows]

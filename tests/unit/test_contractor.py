@@ -19,7 +19,7 @@ from synth.instance import Instance, as_catalogs, catalogs_for
 from synth.intervals import Cut, Goal
 from synth.program import Program
 from synth.special import recorded
-from tests.unit.strut import NEEDED, RODS, Strut
+from tests.unit.strut import designs_of, strut_form
 
 ROWS = 6
 
@@ -376,21 +376,6 @@ def test_a_void_column_says_nothing(second):
 
 
 # -- a small problem with makeable values ------------------------------------------------------------
-
-
-def strut_form(grid=True):
-    problem = Strut()
-    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
-    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2)
-
-
-def designs_of(form, rng, count):
-    """Return random feasible makeable designs of random combinations, and phi."""
-    share = rng.random((count, form.n))
-    points = form.makeable(form.lower + share * (form.upper - form.lower))
-    combinations = rng.integers(form.instance.combinations, size=count)
-    rows, phi = form.feasible_rows(points, combinations)
-    return points[rows], combinations[rows], phi[rows]
 
 
 def around(form, rng, points, combinations, scale):
