@@ -15,12 +15,12 @@ import numpy as np
 from synth.clock import Clock
 from synth.formulation import Archive, Boxes, Candidate, Formulation, Subtrees
 from synth.purposes import Cover, Purpose, Tabled, reaches_beyond
-from synth.seeker import PATIENCE, Seeker
+from synth.seeker import Seeker
 
 BATCH = 8192
 GENERATION = 8 * BATCH
 FEW = 1024
-LEVELS = 4  # generations that are taken at once
+LEVELS = 3  # generations that are taken at once
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,7 @@ def cover(
 
 def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:
     """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
-    found = purpose.proves or seeker.failures >= PATIENCE
-    if not len(boxes) or not found or len(boxes) << LEVELS > effort:
+    if not len(boxes) or not seeker.content or len(boxes) << LEVELS > effort:
         return None
     tables = purpose.tables(form)
     return None if tables is None else form.grow(boxes, tables, LEVELS)

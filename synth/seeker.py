@@ -30,6 +30,7 @@ FAMILIES = 48  # known combinations that are tried at all places
 MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
 CONFLICTS = 64
+LONG = 10  # rounds of a proof
 LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
 NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
 THIN = 1e-5  # relative
@@ -66,13 +67,26 @@ class Seeker:
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
-        """Tell whether boxes are worth a solver: once designs are known points say as much, but along a whole front.
+        """Tell whether boxes are worth a solver: points say as much once designs are known, but along a whole front.
 
-        Before that, optima tell what is worth splitting.
+        Before that, optima tell what is worth splitting. Of a whole front they are worth it as long as designs are
+        looked for; then points are enough where values are makeable, unless a proof goes on for long: boxes do not
+        close around a design that is not known.
         """
         form, purpose = self.form, self.purpose
         found = len(form.archive) > 0 and form.propagation.taught >= LESSONS
-        return form.conflict or not found or (len(purpose.columns) > 1 and not purpose.proves)
+        pointed_at = self._known_before and self.rounds <= LONG
+        return form.conflict or not found or (len(purpose.columns) > 1 and not pointed_at)
+
+    @property
+    def _known_before(self) -> bool:
+        """Tell whether makeable designs were chosen before: what is better than they are points show."""
+        return self.purpose.proves and bool(self.form.gridded.any())
+
+    @property
+    def content(self) -> bool:
+        """Tell whether hardly any designs seem to be left, so that boxes may go further before the next look."""
+        return self._known_before or self.failures >= PATIENCE
 
     def settle_best(self, traded: int, order: Sequence[int]) -> None:
         """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
