@@ -30,7 +30,7 @@ from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
 from synth.scatter import read_block
-from synth.seeker import Seeker
+from synth.seeker import SCARCE, Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 
@@ -52,7 +52,6 @@ ROWS = 256  # of a large comparison at a time
 ROUNDED = 2e-9
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
-SCARCE = 16  # designs known below which it is worth looking harder before all is covered
 OUTER_TRIALS = 576
 
 

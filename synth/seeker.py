@@ -31,6 +31,7 @@ MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
 ROUNDED_OFF = 48
 CONFLICTS = 64
 LONG = 10  # rounds of a proof
+SCARCE = 16  # designs of a front below which it is worth looking harder
 LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
 NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
 THIN = 1e-5  # relative
@@ -85,8 +86,13 @@ class Seeker:
 
     @property
     def content(self) -> bool:
-        """Tell whether hardly any designs seem to be left, so that boxes may go further before the next look."""
-        return self._known_before or self.failures >= PATIENCE
+        """Tell whether hardly any designs seem to be left, so that boxes may go further before the next look.
+
+        Where few designs of a front are known they are hard to find, and each spares many boxes.
+        """
+        archive = self.form.archive
+        scarce = len(archive.columns) > 1 and len(archive) < SCARCE
+        return self._known_before or (self.failures >= PATIENCE and not scarce)
 
     def settle_best(self, traded: int, order: Sequence[int]) -> None:
         """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
