@@ -47,14 +47,14 @@ class ClusterTree:
     def __init__(self, factor: Factor, weights: np.ndarray) -> None:
         self.factor = factor
         place = _places(factor.columns)
-        scaled = place * np.where(np.isfinite(weights), np.maximum(weights, 0.0), 0.0)
+        counted = np.where(np.isfinite(weights), np.maximum(weights, 0.0), 0.0)
         self.order = np.arange(len(place))
         left, right, start, stop = [-1], [-1], [0], [len(place)]
         waiting = [0]
         while waiting:
             k = waiting.pop()
             rows = self.order[start[k] : stop[k]]
-            mask = _halved(place[rows], scaled[rows])
+            mask = _halved(place[rows], counted)
             if mask is None:
                 continue
             self.order[start[k] : stop[k]] = np.concatenate([rows[mask], rows[~mask]])
@@ -108,23 +108,24 @@ def _places(columns: np.ndarray) -> np.ndarray:
     return result
 
 
-def _halved(place: np.ndarray, scaled: np.ndarray) -> np.ndarray | None:
+def _halved(place: np.ndarray, weights: np.ndarray) -> np.ndarray | None:
     """Return which rows go into the first half, or None where all are equal."""
-    if len(place) < 2:
+    if len(place) < 2 or not place.shape[1]:
         return None
-    unknown = np.isnan(place)
-    mixed = np.any(unknown, axis=0) & ~np.all(unknown, axis=0)
-    if mixed.any():
-        # A limit without a value is void: rows that have one are kept apart, or nothing would be known of any.
-        return np.asarray(~unknown[:, int(np.argmax(mixed))])
-    with np.errstate(all="ignore"):
-        spread = np.nan_to_num(np.ptp(scaled, axis=0)) if place.shape[1] else np.zeros(0)
-        plain = np.nan_to_num(np.ptp(place, axis=0)) if place.shape[1] else np.zeros(0)
-    column = int(np.argmax(spread)) if len(spread) and spread.max() > 0 else int(np.argmax(plain)) if len(plain) else -1
-    if column < 0 or plain[column] == 0.0:
-        if not len(plain) or plain.max() == 0.0:
-            return None
+    plain = place.max(axis=0) - place.min(axis=0)
+    unknown = np.isnan(plain)
+    if unknown.any():
+        lacking = np.isnan(place)
+        mixed = np.any(lacking, axis=0) & ~np.all(lacking, axis=0)
+        if mixed.any():
+            # A limit without a value is void: rows that have one are kept apart, or nothing would be known of any.
+            return np.asarray(~lacking[:, int(np.argmax(mixed))])
+        plain = np.where(unknown, 0.0, plain)
+    column = int(np.argmax(plain * weights))
+    if plain[column] * weights[column] <= 0.0:
         column = int(np.argmax(plain))
+    if plain[column] == 0.0:
+        return None
     values = place[:, column]
     middle = 0.5 * (values.min() + values.max())
     mask = np.asarray(values <= middle)

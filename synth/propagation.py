@@ -106,18 +106,22 @@ class Propagation:
         wanted = {False: goals[:bounded], True: goals}
         self._contractors = {every: contractor(own, ()) for every, own in wanted.items()}
         self.factors = self._factors(names, owner)
-        self._constants, self._roots = dict[bool, list[float]](), dict[bool, Root]()
+        self._constants = dict[bool, list[float]]()
         self._least = dict[int, float]()
         per_row = {}
         for every, c in self._contractors.items():
             values = c.constant_values(self._inputs(owner))
             self._constants[every] = [float(np.asarray(v).ravel()[0]) for v in values]
             per_row[every] = self._values_of_tables(c)
-            hull = (np.array([np.min(v) for v in per_row[every]]), np.array([np.max(v) for v in per_row[every]]))
-            self._roots[every] = c.root(instance.lower, instance.upper, hull, self._constants[every], self.bounds)
             for node, v in zip(c.tables, per_row[every], strict=True):
                 known = v[~np.isnan(v)]
                 self._least[node] = float(known.min()) if len(known) else np.nan
+        # Objectives that only settle ties cut nothing off: what holds over the whole question is the same without them.
+        hull = (np.array([np.min(v) for v in per_row[True]]), np.array([np.max(v) for v in per_row[True]]))
+        every_root = self._contractors[True].root(
+            instance.lower, instance.upper, hull, self._constants[True], self.bounds
+        )
+        self._roots = {every: every_root for every in self._contractors}
         # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
         self._floor = LEAST_IN_CONFLICT if conflict else LEAST
         self.empty = any(root.empty for root in self._roots.values())
@@ -321,9 +325,10 @@ class Propagation:
             values = [np.broadcast_to(np.asarray(v, dtype=float), moved[0].shape) for v in evaluate(moved)]
             goals = np.array([np.abs(v[0]) for v in values[len(nodes) - len(self.goals) :]]).reshape(-1, count)
             sizes = _medians(np.where(goals > 0, goals, np.nan))
-            for j, size in enumerate(self._sizes(values)):
-                steep = _medians(np.abs(size[1:] - size[0]) / scales[:, None])
-                result[j, moving] = np.minimum(steep, LARGEST_INFLUENCE)
+            changed = np.array([size[1:] - size[0] for size in self._sizes(values)])
+            if changed.size:
+                steep = _medians(np.abs(changed) / scales[:, None])
+                result[:, moving] = np.minimum(steep, LARGEST_INFLUENCE)
         return result, np.where(sizes > 0, sizes, 1.0)
 
     def _sizes(self, values: Sequence[np.ndarray]) -> list[np.ndarray]:
