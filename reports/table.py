@@ -52,12 +52,12 @@ def ranked_tables(front: ParetoFront, count: int, width: int) -> list[Table]:
     width : int
         Characters on a line.
     """
-    frame = front.to_frame()
-    described = len(frame.columns) - len(front.frame.limit_units)
+    headers, rows = front.table()
+    described = len(headers) - len(front.frame.limit_units)
     derived = [n for n, kind in front.frame.kinds.items() if kind == "derived" and n not in front.frame.objectives]
-    names = ["score", *frame.columns[6 : described - len(derived)]]  # objectives, variables, counts, choices, parts
-    columns = [_column(name, frame[name].head(count).tolist()) for name in names]
-    ranks = _column("rank", [f"#{rank}" for rank in frame["rank"].head(count)])
+    places = [1, *range(6, described - len(derived))]  # score, objectives, variables, counts, choices, parts
+    columns = [_column(headers[k], [row[k] for row in rows[:count]]) for k in places]
+    ranks = _column("rank", [f"#{design.rank}" for design in front.designs[:count]])
     groups: list[list[list[str]]] = []
     room = 0
     for column in columns:

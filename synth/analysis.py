@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
-from scipy.optimize import least_squares
 
 from synth.declaration import Variable
 from synth.errors import InputError
@@ -486,6 +485,8 @@ def _complete_variables(
 def _solve_for(
     model: Model, missing: list[int], derived: Mapping[str, float], variables: np.ndarray, data: Sequence[float]
 ) -> np.ndarray:
+    from scipy.optimize import least_squares  # costly to import; most designs are given by their variables
+
     unknown = [model.variables[k] for k in missing]
     names = list(derived)
     target = np.array([derived[n] for n in names])

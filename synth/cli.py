@@ -134,18 +134,18 @@ def describe(
 ) -> None:
     """Show what a family asks for, searches, computes and limits."""
     from synth.console import output, print_description
-    from synth.description import describe as describe_problem
+    from synth.description import described, tabulated
 
     problem = _load(family, dict(pair("--option", text) for text in option or []))
-    table = describe_problem(problem)
+    rows = described(problem)
     if as_csv:
-        table.to_csv(sys.stdout, index=False, lineterminator="\n")
+        tabulated(rows).to_csv(sys.stdout, index=False, lineterminator="\n")
         return
     console = output()
     console.print(f"{problem.title} ({problem.name})")
     for source in problem.sources:
         console.print(f"  {source}")
-    print_description(table, console)
+    print_description(rows, console)
 
 
 @app.command()
@@ -228,7 +228,7 @@ def check(
 ) -> None:
     """Compute everything about a given design and test every limit; nothing is rounded or searched."""
     from synth.console import output, print_check, write_check
-    from synth.description import describe as describe_problem
+    from synth.description import described
     from synth.spec import read_spec
 
     asked = read_spec(design)
@@ -237,7 +237,7 @@ def check(
         check_output(folder)
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
-        details = describe_problem(problem, catalogs).to_dict("records")
+        details = described(problem, catalogs)
     print_check(result, details, output())
     if folder is not None:
         print(f"\nwritten: {write_check(result, details, folder)}")

@@ -97,10 +97,10 @@ TITLES = {
 }
 
 
-def print_description(table: pd.DataFrame, console: Console) -> None:
-    """Print what ``describe`` returned, kind by kind."""
+def print_description(description: Sequence[Mapping[Any, Any]], console: Console) -> None:
+    """Print the rows of ``describe``, kind by kind."""
     for kind, title in TITLES.items():
-        rows = table[table["kind"] == kind].to_dict("records")
+        rows = [row for row in description if row["kind"] == kind]
         if not rows:
             continue
         console.print(f"\n{title}")

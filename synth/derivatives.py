@@ -220,8 +220,10 @@ def _numpy_code(nodes: Sequence[Node], order: Sequence[int], wanted: Sequence[in
 
 
 def _function(head: str, lines: Sequence[str]) -> Callable[..., list[Any]]:
-    from scipy.special import erf  # only generated code calls it
+    scope: dict[str, Any] = {"np": np}
+    if any("erf(" in line for line in lines):
+        from scipy.special import erf  # costly to import; few formulas name it
 
-    scope: dict[str, Any] = {"np": np, "erf": erf}
+        scope["erf"] = erf
     exec(compile("\n".join([head, *lines]), "<generated from the trace>", "exec"), scope)
     return scope["evaluate"]  # type: ignore[no-any-return]

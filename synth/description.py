@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
@@ -68,8 +68,11 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     >>> str(table.loc["load_torque", "unit"]), str(table.loc["load_torque", "symbol"])
     ('N*m', 'M_load')
     """
-    import pandas as pd  # costly to import; only this function needs it here
+    return tabulated(described(p, catalogs))
 
+
+def described(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None) -> list[dict[str, Any]]:
+    """Return the rows of ``describe``, each by the names of the columns."""
     problem = load(p)
     tables = as_catalogs(catalogs)
     everything = frozenset(problem.model(frozenset(), tables).declaration.requirements)
@@ -109,6 +112,13 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
         rows.append(_row("setting", setting, name=name, choices=words, optional=True))
     rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
     rows += [_row("advice", a, name=a.code, text=a.message) for a in d.advices]
+    return rows
+
+
+def tabulated(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """Return the rows of a description as the frame that ``describe`` returns."""
+    import pandas as pd  # costly to import; who reads a description on the terminal does without
+
     frame = pd.DataFrame({c: [row[c] for row in rows] for c in COLUMNS if c != "default"})
     # One column of numbers, words and nothing: kept as it is, never turned into text.
     frame.insert(COLUMNS.index("default"), "default", pd.Series([row["default"] for row in rows], dtype=object))

@@ -23,8 +23,7 @@ INLINE vd v_fmax(vd a, vd b) {{
     const __mmask8 known = _mm512_cmp_pd_mask((__m512d)b, (__m512d)b, _CMP_ORD_Q);
     return (vd)_mm512_mask_max_pd((__m512d)a, known, (__m512d)a, (__m512d)b);
 #elif defined(__AVX__)
-    return (vd)_mm256_blendv_pd(_mm256_max_pd((__m256d)a, (__m256d)b), (__m256d)a,
-                                _mm256_cmp_pd((__m256d)b, (__m256d)b, _CMP_UNORD_Q));
+    return (vd)blend_of_four(max_of_four(a, b), a, (vd)(b != b));
 #else
     return choose((a >= b) | (b != b), a, b);
 #endif
@@ -34,8 +33,7 @@ INLINE vd v_fmin(vd a, vd b) {{
     const __mmask8 known = _mm512_cmp_pd_mask((__m512d)b, (__m512d)b, _CMP_ORD_Q);
     return (vd)_mm512_mask_min_pd((__m512d)a, known, (__m512d)a, (__m512d)b);
 #elif defined(__AVX__)
-    return (vd)_mm256_blendv_pd(_mm256_min_pd((__m256d)a, (__m256d)b), (__m256d)a,
-                                _mm256_cmp_pd((__m256d)b, (__m256d)b, _CMP_UNORD_Q));
+    return (vd)blend_of_four(min_of_four(a, b), a, (vd)(b != b));
 #else
     return choose((a <= b) | (b != b), a, b);
 #endif

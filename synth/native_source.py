@@ -194,8 +194,19 @@ def _gram(layout: method.Layout) -> str:
 VECTORS = r"""
 #include <math.h>
 #include <string.h>
-#if defined(__AVX512F__) || defined(__AVX__) || defined(__SSE2__)
+/* Reading the header of all vector instructions takes as long as compiling a sixth of the rest: what few there are of
+   AVX have names of their own in GCC. */
+#if defined(__AVX__) && !defined(__AVX512F__) && defined(__GNUC__) && !defined(__clang__)
+#define sqrt_of_four __builtin_ia32_sqrtpd256
+#define max_of_four __builtin_ia32_maxpd256
+#define min_of_four __builtin_ia32_minpd256
+#define blend_of_four __builtin_ia32_blendvpd256
+#elif defined(__AVX512F__) || defined(__AVX__) || defined(__SSE2__)
 #include <immintrin.h>
+#define sqrt_of_four _mm256_sqrt_pd
+#define max_of_four _mm256_max_pd
+#define min_of_four _mm256_min_pd
+#define blend_of_four _mm256_blendv_pd
 #endif
 #if defined(__AVX512F__)
 #define LANES 8
@@ -231,7 +242,7 @@ INLINE vd v_sqrt(vd a) {
 #if defined(__AVX512F__)
     return (vd)_mm512_sqrt_pd((__m512d)a);
 #elif defined(__AVX__)
-    return (vd)_mm256_sqrt_pd((__m256d)a);
+    return (vd)sqrt_of_four(a);
 #elif defined(__SSE2__)
     return (vd)_mm_sqrt_pd((__m128d)a);
 #else

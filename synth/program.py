@@ -256,8 +256,10 @@ class Program:
             names[k] = f"r{slot}"
             lines.append(f"    r{slot} = {code}")
         lines.append("    return [" + ", ".join(names[k] for k in wanted) + "]")
-        from scipy.special import erf  # only generated code calls it
+        scope: dict[str, Any] = {"np": np, "specials": [f.formula for f in self.specials]}
+        if any("erf(" in line for line in lines):
+            from scipy.special import erf  # costly to import; few formulas name it
 
-        scope: dict[str, Any] = {"np": np, "erf": erf, "specials": [f.formula for f in self.specials]}
+            scope["erf"] = erf
         exec(compile("\n".join(lines), "<generated from the trace>", "exec"), scope)
         return scope["evaluate"]  # type: ignore[no-any-return]

@@ -178,7 +178,7 @@ class ParetoFront:
         """Return one row per design, with units in the headers."""
         import pandas as pd  # costly to import; most runs write CSV only
 
-        columns, rows = self._table()
+        columns, rows = self.table()
         frame = pd.DataFrame(rows, columns=columns)
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
@@ -225,7 +225,8 @@ class ParetoFront:
 
         return verify(self, problem, catalogs, time_limit)
 
-    def _table(self) -> tuple[list[str], list[list[Any]]]:
+    def table(self) -> tuple[list[str], list[list[Any]]]:
+        """Return headers with units, and one row per design; None where there is no value."""
         first = self.designs[0] if self.designs else None
         columns = ["rank", "score", "status", "gap", "note", "alternatives"]
         columns += design_columns(self.frame, first.choices if first else (), first.parts if first else ())
@@ -239,7 +240,7 @@ class ParetoFront:
         return columns, rows
 
     def _csv(self) -> str:
-        return csv_text(*self._table())
+        return csv_text(*self.table())
 
     @staticmethod
     def digest_of(content: Mapping[str, Any]) -> str:

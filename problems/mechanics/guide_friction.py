@@ -27,8 +27,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import lambertw
 
 from problems.mechanics import Quantity
 from problems.mechanics.ring import friction_radius, mean_diameter, ring_ratio
@@ -565,6 +563,8 @@ def guide_jams(mu: Quantity, mu_guide: Quantity, friction_radius: Quantity, spli
 
 def _principal_lambert(argument: Quantity) -> Quantity:
     """Real principal branch of Lambert W; clipped at -1/e, where rounding may step across the branch point."""
+    from scipy.special import lambertw  # costly to import; few series of guides need it
+
     return np.real(lambertw(np.maximum(argument, -np.exp(-1.0))))
 
 
@@ -697,6 +697,8 @@ def guide_number_of_effectiveness(effectiveness: float, surfaces: float, series:
     >>> guide_number_of_effectiveness(0.75, 10)
     0.0560446
     """
+    from scipy.optimize import brentq  # costly to import; designing needs no inverse relation
+
     if not 0 < effectiveness < 1:
         raise InputError("effectiveness", effectiveness, "a number between 0 and 1, both excluded")
 
@@ -828,6 +830,8 @@ def _solve_surfaces(series: str, known: dict[str, float]) -> float:
 
 def _solve_grip(unknown: str, series: str, known: dict[str, float]) -> float:
     """Solve for mu, or for the friction radius and from it one radius of the ring."""
+    from scipy.optimize import brentq  # costly to import; designing needs no inverse relation
+
     surfaces, mu_guide = known["surfaces"], known["mu_guide"]
     inverse_radii = 1 / known["inner_spline_radius"] + 1 / known["outer_spline_radius"]
     # M = F0 (mu r) E(z, (mu r) mu1 (1/a + 1/b)): only the product mu r is sought.

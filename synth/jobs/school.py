@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from synth.jobs.solve import LIKE
 from synth.jobs.store import digest
@@ -55,6 +54,8 @@ class School:
         if not teachers or key in teachers:
             return key, question, key if teachers else ""
         if structure not in self._nearest:
+            from scipy.spatial import cKDTree  # costly to import; small jobs have no teachers
+
             keys = sorted(teachers)
             self._nearest[structure] = keys, cKDTree([teachers[k][0] for k in keys])
         keys, tree = self._nearest[structure]

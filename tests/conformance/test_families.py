@@ -289,13 +289,21 @@ def first_objective(family):
     return next(o for o in declared if o.default)
 
 
-def test_five_seeds_reach_the_same_optimum(example):
+@pytest.fixture(scope="module")
+def optimum(example):
+    """Return the least value of the first objective, for the seed that is used where none is given."""
+    family, case, _ = example
+    objective = first_objective(family).name
+    return best(family, case, objective).values[objective]
+
+
+def test_other_seeds_reach_the_same_optimum(example, optimum):
     family, case, front = example
     objective = first_objective(family).name
-    found = [best(family, case, objective, seed=seed).values[objective] for seed in range(5)]
-    assert found == pytest.approx([found[0]] * 5, rel=1e-3)
+    found = [best(family, case, objective, seed=seed).values[objective] for seed in (1, 2)]
+    assert found == pytest.approx([optimum] * 2, rel=1e-3)
     extreme = min(d.values[objective] for d in front.designs)
-    assert found[0] == pytest.approx(extreme, rel=1e-3)
+    assert optimum == pytest.approx(extreme, rel=1e-3)
 
 
 def test_random_starts_of_the_solver_find_nothing_better(example):
@@ -324,17 +332,16 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
     assert min(reached) >= optimum * (1 - 1e-3)
 
 
-def test_tightening_never_improves_an_objective(example):
+def test_tightening_never_improves_an_objective(example, optimum):
     family, case, _ = example
     objective = first_objective(family)
     assert objective.sense == "min"
-    free = best(family, case, objective.name).values[objective.name]
     for name, value in case.tighten.items():
         tight = best(family, case, objective.name, requirements={name: value})
         if tight is not None:
-            assert tight.values[objective.name] >= free * (1 - 1e-3), name
+            assert tight.values[objective.name] >= optimum * (1 - 1e-3), name
     loose = best(family, case, objective.name, gap=0.05)
-    assert loose.values[objective.name] <= free * 1.06
+    assert loose.values[objective.name] <= optimum * 1.06
 
 
 @pytest.mark.parametrize("family", CASES)
