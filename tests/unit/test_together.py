@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
+from synth import propagation
 from synth.clock import Stopped
 from synth.feasibility import Status
 from synth.formulation import TIE
@@ -346,8 +347,10 @@ def lightest(question: Question) -> float | None:
     return min(found, default=None)
 
 
+@pytest.mark.parametrize("at_once", [True, False], ids=["compiled", "not_compiled"])
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
-def test_struts(grid: bool) -> None:
+def test_struts(grid: bool, at_once: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0 if at_once else math.inf)
     loaded = ((3, 1.5), (20, 4), (89, 9.9))
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in loaded]
     whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
@@ -626,6 +629,12 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
             assert room[b] == 0
         else:
             assert room[b] == cap - lower[b, 0]
+    tables = purpose.tables(form)
+    if tables is None:
+        assert np.isfinite(plain[:, form.bounded :]).any()
+    else:
+        of_boxes = tables.of_cluster[cell[:, 0]]
+        np.testing.assert_allclose(of_boxes, form.values_of(caps[:, : form.bounded]), rtol=1e-12)
 
 
 @cache
