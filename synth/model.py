@@ -13,6 +13,7 @@ import numpy as np
 from synth.declaration import Declaration, DeclarationError, Limit, Part, PartColumn
 from synth.errors import InputError
 from synth.feasibility import holds, residual
+from synth.interrupts import held_back
 from synth.program import Program
 from synth.special import SpecialCall, expanded
 
@@ -239,7 +240,8 @@ class Model:
     def function(self, key: Any, make: Callable[[], Any]) -> Any:
         """Return an object that is built once per model, for example a CasADi function or a solver."""
         if key not in self._function_cache:
-            self._function_cache[key] = make()
+            with held_back():
+                self._function_cache[key] = make()
         return self._function_cache[key]
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.declaration import Declaration, DeclarationError, Setting
 from synth.errors import InputError
+from synth.interrupts import held_back
 from synth.model import Model
 from synth.special import recorded
 from synth.tables import Catalogs
@@ -113,10 +114,11 @@ class DesignProblem:
         key = (given, id(catalogs))
         if key not in self._models:
             declaration = Declaration(self.name, self.options, given, catalogs)
-            with recorded() as calls:
+            with held_back(), recorded() as calls:
                 self.declare(declaration)
+                made = Model(self.name, declaration, calls)
             # The catalogues are kept with the model, so that their id stays theirs.
-            self._models[key] = (Model(self.name, declaration, calls), catalogs)
+            self._models[key] = (made, catalogs)
         return self._models[key][0]
 
 
