@@ -153,10 +153,8 @@ class Archive:
         if m == 1:
             result[:, 0] = known[:, 0].min()
         elif m == 2:
-            for k in (0, 1):
-                order = np.argsort(known[:, 1 - k], kind="stable")
-                least = np.minimum.accumulate(known[order, k])
-                place = np.searchsorted(known[order, 1 - k], lower[:, 1 - k], side="right")
+            for k, (at, least) in enumerate(self.covering(slack)):
+                place = np.searchsorted(at, lower[:, 1 - k], side="right")
                 result[:, k] = np.where(place > 0, least[place - 1], np.inf)
         else:
             for first in range(0, len(lower), CAP_ROWS):
@@ -166,6 +164,12 @@ class Archive:
                     others = under[:, :, [j for j in range(m) if j != k]].all(axis=2)
                     result[rows, k] = np.where(others, known[None, :, k], np.inf).min(axis=1)
         return result
+
+    def covering(self, slack: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return, for each of two objectives, values of the other in order and the least that is covered from there."""
+        known = self.phi[:, self.columns] - slack
+        orders = [np.argsort(known[:, 1 - k], kind="stable") for k in (0, 1)]
+        return [(known[o, 1 - k], np.minimum.accumulate(known[o, k])) for k, o in enumerate(orders)]
 
 
 class Formulation:

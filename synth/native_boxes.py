@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import re
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -195,15 +195,9 @@ class BoxCode:
             Threads; the boxes are split between them and the result is the same for any number.
         """
         count, n, factors = len(cell), prepared.n, prepared.factors
-        given: dict[str, np.ndarray] = {
-            "cell": np.ascontiguousarray(cell, dtype=np.int32),
-            "low": np.ascontiguousarray(low, dtype=float),
-            "high": np.ascontiguousarray(high, dtype=float),
-            "bounds": np.ascontiguousarray(bounds, dtype=float),
-            "tag": np.ascontiguousarray(tag, dtype=np.int32),
-            "caps": np.ascontiguousarray(np.full(bounds.shape[1], np.inf) if caps is None else caps, dtype=float),
-        }
-        step = given["caps"].shape[1] if given["caps"].ndim == 2 else 0
+        given = _rows(cell, low, high, bounds, tag)
+        most = np.ascontiguousarray(np.full(bounds.shape[1], np.inf) if caps is None else caps, dtype=float)
+        step = most.shape[1] if most.ndim == 2 else 0
         taken: dict[str, np.ndarray] = {
             "out_cell": np.empty((count, factors), dtype=np.int32),
             "out_low": np.empty((count, n)),
@@ -214,24 +208,9 @@ class BoxCode:
             "alive": np.empty(count, dtype=bool),
             "open": np.empty((count, self.limits), dtype=bool),
         }
-        fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)}
-        numbers = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1}
-        moving = {name: (a.ctypes.data, a.strides[0]) for name, a in (given | taken).items() if name != "caps" or step}
-        still = {name: a.ctypes.data for name, a in (fixed | given).items() if name not in moving}
-
-        def part(first: int, last: int) -> _Batch:
-            # Every array has a row per box, so that a part begins so many rows further on.
-            places = {name: place + first * stride for name, (place, stride) in moving.items()}
-            return _Batch(
-                count=last - first,
-                goals=bounds.shape[1],
-                passes=passes,
-                caps_step=step,
-                **numbers,
-                **still,
-                **places,
-            )
-
+        moving, still = given | taken, dict[str, np.ndarray]()
+        (moving if step else still)["caps"] = most
+        part = _batches(prepared, weights, passes, moving, still, caps_step=step)
         parts = max(1, count // PART) if workers > 1 else 1
         ends = [count * k // parts for k in range(parts + 1)]
         kept = self._run([part(first, last) for first, last in pairwise(ends)], workers)
@@ -274,21 +253,7 @@ class BoxCode:
         levels : int
             Generations.
         """
-        given: dict[str, np.ndarray] = {
-            "cell": np.ascontiguousarray(cell, dtype=np.int32),
-            "low": np.ascontiguousarray(low, dtype=float),
-            "high": np.ascontiguousarray(high, dtype=float),
-            "bounds": np.ascontiguousarray(bounds, dtype=float),
-            "tag": np.ascontiguousarray(tag, dtype=np.int32),
-        }
-        fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)}
-        numbers = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1}
-        still = {name: a.ctypes.data for name, a in fixed.items()}
-
-        def batch(first: int, last: int) -> _Batch:
-            places = {name: a.ctypes.data + first * a.strides[0] for name, a in given.items()}
-            return _Batch(count=last - first, goals=bounds.shape[1], passes=passes, **numbers, **still, **places)
-
+        batch = _batches(prepared, weights, passes, _rows(cell, low, high, bounds, tag))
         widths = (prepared.factors, prepared.n, bounds.shape[1])
         return grow(self._grow, batch, len(cell), widths, halves, caps, levels, lambda work: _all_done(work, workers))
 
@@ -303,6 +268,43 @@ class BoxCode:
 
         _all_done([part(k) for k in range(len(batches))], workers)
         return kept
+
+
+def _rows(
+    cell: np.ndarray, low: np.ndarray, high: np.ndarray, bounds: np.ndarray, tag: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return boxes as the compiled code reads them."""
+    return {
+        "cell": np.ascontiguousarray(cell, dtype=np.int32),
+        "low": np.ascontiguousarray(low, dtype=float),
+        "high": np.ascontiguousarray(high, dtype=float),
+        "bounds": np.ascontiguousarray(bounds, dtype=float),
+        "tag": np.ascontiguousarray(tag, dtype=np.int32),
+    }
+
+
+def _batches(
+    prepared: Prepared,
+    weights: np.ndarray,
+    passes: int,
+    moving: Mapping[str, np.ndarray],
+    still: Mapping[str, np.ndarray] | None = None,
+    **numbers: int,
+) -> Callable[[int, int], _Batch]:
+    """Return what makes a batch of the boxes from a first to a last one.
+
+    ``moving`` arrays have a row per box, so that a batch begins so many rows further on; ``still`` ones serve all.
+    """
+    fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)} | dict(still or {})
+    shared = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1, **numbers}
+
+    def batch(first: int, last: int) -> _Batch:
+        # A batch knows addresses only: the arrays live as long as this function does.
+        places = {name: a.ctypes.data for name, a in fixed.items()}
+        places |= {name: a.ctypes.data + first * a.strides[0] for name, a in moving.items()}
+        return _Batch(count=last - first, goals=moving["bounds"].shape[1], passes=passes, **shared, **places)
+
+    return batch
 
 
 def _all_done(work: Sequence[Callable[[], None]], workers: int) -> None:

@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from synth.clusters import Cells, ClusterTree, Factor
-from synth.contractor import INNER, Code, Contractor, Layout, Root
+from synth.contractor import INNER, Code, Contractor, Layout
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.native import COMPILED_FROM
@@ -118,13 +118,12 @@ class Propagation:
                 self._least[node] = float(known.min()) if len(known) else np.nan
         # Objectives that only settle ties cut nothing off: what holds over the whole question is the same without them.
         hull = (np.array([np.min(v) for v in per_row[True]]), np.array([np.max(v) for v in per_row[True]]))
-        every_root = self._contractors[True].root(
+        self._root = self._contractors[True].root(
             instance.lower, instance.upper, hull, self._constants[True], self.bounds
         )
-        self._roots = {every: every_root for every in self._contractors}
         # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
         self._floor = LEAST_IN_CONFLICT if conflict else LEAST
-        self.empty = any(root.empty for root in self._roots.values())
+        self.empty = self._root.empty
         self.pivots = self._pivots(conflict)
         if self.pivots:
             self._contractors = {every: contractor(own, self.pivots) for every, own in wanted.items()}
@@ -137,9 +136,7 @@ class Propagation:
         weights = self._influence.sum(axis=0)
         trees = [ClusterTree(f, weights[[self.n + i for i in f.inputs]]) for f in self.factors]
         self.cells = Cells(trees, instance.radix)
-        self._tables = {
-            every: self._tables_of(c, self._roots[every], per_row[every]) for every, c in self._contractors.items()
-        }
+        self._tables = {every: self._tables_of(c, per_row[every]) for every, c in self._contractors.items()}
         self._spreads = [self._spread(tree) for tree in trees]
         self._bits = bounded if bounded <= MOST_BITS else 0
         self._learned = np.zeros((1 << self._bits, len(self.cuts) + len(self.goals)))
@@ -167,7 +164,7 @@ class Propagation:
         them although the objective sees that one number alone. Where only limits see it the blur costs less than
         carrying it, unless nothing is feasible: then limits are all that there is.
         """
-        program, contractor, root = self.model.program, self._contractors[False], self._roots[False]
+        program, contractor, root = self.model.program, self._contractors[False], self._root
         order = set(contractor.order)
         seen = contractor.order if conflict else program.needed([g.node for g in contractor.goals])
         readers = [program.nodes[k] for k in contractor.order if program.nodes[k].op == OP_SPECIAL]
@@ -184,7 +181,7 @@ class Propagation:
 
     def _ends_of_variable(self, position: int) -> tuple[float, float]:
         low, high = float(self.instance.lower[position]), float(self.instance.upper[position])
-        node, root = self.model.program.input_nodes[position], self._roots[True]
+        node, root = self.model.program.input_nodes[position], self._root
         if node in self._contractors[True].order and not self.empty:
             low, high = max(low, float(root.low[node])), min(high, float(root.high[node]))
         return min(low, high), high
@@ -224,9 +221,10 @@ class Propagation:
         return result
 
     def _tables_of(
-        self, contractor: Contractor, root: Root, per_row: Sequence[np.ndarray]
+        self, contractor: Contractor, per_row: Sequence[np.ndarray]
     ) -> list[tuple[int, np.ndarray, np.ndarray]]:
         """Return, per tabulated node, its factor and its ends per cluster."""
+        root = self._root
         result: list[tuple[int, np.ndarray, np.ndarray]] = [(-1, np.empty(0), np.empty(0))] * len(contractor.tables)
         for f, tree in enumerate(self.cells.trees):
             own = [p for p, node in enumerate(contractor.tables) if contractor.factor[node] == f]
@@ -348,12 +346,12 @@ class Propagation:
 
     def surely_positive(self, node: int) -> bool:
         """Tell whether a node is positive wherever a design is feasible (rows without a value do not count)."""
-        root = self._roots[True]
+        root = self._root
         return bool(root.low[node] > 0 or self._least.get(node, 0.0) > 0)
 
     def range_of(self, node: int) -> tuple[float, float]:
         """Return what is known of a node over the whole question."""
-        root = self._roots[True]
+        root = self._root
         return float(root.low[node]), float(root.high[node])
 
     def run(
@@ -380,10 +378,10 @@ class Propagation:
             Whether objectives that only settle ties count.
         """
         count = len(cell)
-        function = self._code(every, caps is not None).function(self._roots[every])
+        function = self._code(every, caps is not None).function(self._root)
         variables = [(low[:, i], high[:, i]) for i in range(self.width)]
         tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
-        root = self._roots[every]
+        root = self._root
         with np.errstate(all="ignore"):
             dead, goals, opens = function(
                 variables, tables, self._constants[every], self.bounds, caps, root.low, root.high, passes, count
@@ -396,7 +394,7 @@ class Propagation:
     def _code(self, every: bool, capped: bool) -> Code:
         key = (every, capped)
         if key not in self._codes:
-            self._codes[key] = self._contractors[every].code(self._roots[every], capped)
+            self._codes[key] = self._contractors[every].code(self._root, capped)
         return self._codes[key]
 
     def packed(
@@ -496,7 +494,7 @@ class Propagation:
             tables=self._tables[every],
             constants=np.array(self._constants[every]),
             rights=np.array(self.bounds),
-            root=self._roots[every],
+            root=self._root,
             lower=np.concatenate([instance.lower, self.low[self.n :]]),
             upper=np.concatenate([instance.upper, self.high[self.n :]]),
             spans=np.where(self.positive, 0.0, self._range),

@@ -105,7 +105,7 @@ class Cover:
         if len(columns) == 1:
             least = (self.known.phi[:, columns[0]] - self.slack[0]).min(initial=np.inf)
             plain[columns[0]] = min(plain[columns[0]], least)
-        known = _covered_from(form, self.known, columns, self.slack) if len(columns) == 2 else ()
+        known = _covered_from(form, self.known, self.slack) if len(columns) == 2 else ()
         return CapTables(columns, form.values_of(plain), known=known)
 
 
@@ -218,7 +218,7 @@ class Staircase:
         columns = self.columns
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
-        (first, highest), known = self._in_order(), _covered_from(form, self.known, columns, self.slack)
+        (first, highest), known = self._in_order(), _covered_from(form, self.known, self.slack)
         steps = form.signed(columns[0], first), form.signed(columns[1], highest)
         return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
@@ -251,17 +251,13 @@ def beating(rows: np.ndarray, phi: np.ndarray) -> np.ndarray:
     return better
 
 
-def _covered_from(
-    form: Formulation, known: Archive, columns: Sequence[int], slack: np.ndarray
-) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    """Return what ``Archive.caps`` says of two objectives: from where the other is covered, and the least that is."""
-    covering = known.phi[:, columns] - slack
-    result = []
-    for k in (0, 1):
-        order = np.argsort(covering[:, 1 - k], kind="stable")
-        at, least = covering[order, 1 - k], np.minimum.accumulate(covering[order, k])
-        result.append((form.signed(columns[1 - k], at), form.signed(columns[k], least)))
-    return tuple(result)
+def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """Return what designs cover of two objectives, in signed values."""
+    pairs = zip((0, 1), known.covering(slack), strict=True)
+    first, second = known.columns
+    return tuple(
+        (form.signed((second, first)[k], at), form.signed((first, second)[k], least)) for k, (at, least) in pairs
+    )
 
 
 def reaches_beyond(purpose: Purpose, bounded: int) -> bool:

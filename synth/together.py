@@ -259,9 +259,8 @@ class Each:
         if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._plain[:, form.bounded :])):
             return None
         caps = self._plain[:, : form.bounded] + TIE
-        every = np.zeros((len(caps), 1), dtype=np.int32)
-        every[:, 0] = np.arange(len(caps))
-        caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(every))
+        clusters = np.arange(len(caps))[:, None]
+        caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(clusters))
         return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.values_of(caps))
 
     def open_questions(self, left: Boxes) -> np.ndarray:

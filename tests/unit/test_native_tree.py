@@ -52,12 +52,7 @@ def purpose_of(kind, form, rng):
 
 def after(form, purpose, generations):
     """Return boxes after some generations from the root, step by step."""
-    boxes = form.lean(form.root())
-    for _ in range(generations):
-        boxes = form.contract(boxes, purpose.caps(form.phi_of(boxes.bounds), boxes.cell))
-        boxes = boxes.take(purpose.room(form.phi_of(boxes.bounds), boxes.cell) > 0)
-        boxes, _ = form.split(boxes)
-    return boxes
+    return by_single_steps(form, purpose, form.lean(form.root()), generations)[0]
 
 
 def in_order(boxes):
