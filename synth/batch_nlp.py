@@ -14,15 +14,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from synth.derivatives import RowFunctions
 from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Problems
 from synth.lanes import InteriorPoint
-from synth.native import Native
-from synth.native import native as compiled_solver
+from synth.native import Solver, native
+from synth.native_general import General, general
 from synth.nlp import GUARD_MARGIN, Rows
 from synth.program import Program
 
@@ -30,6 +30,9 @@ from synth.program import Program
 MISSED = 1e-7
 OTHER_STARTS = (0.75, 0.25)
 CHUNK, NATIVE_CHUNK = 6000, 512  # problems at a time; the result is the same for any number
+STEP = 1000  # evaluations of the general solver take as long as one step over arrays
+# How problems are solved: over arrays of NumPy, by code that serves all formulas, or by code of their own.
+Code = Literal["arrays", "general", "own"]
 
 
 @dataclass(frozen=True)
@@ -103,30 +106,33 @@ class BatchNlp:
     program : Program
     n_variables : int
     rows : Rows
-    native : bool, optional
-        Whether to use compiled code; by default where a compiler is at hand.
+    code : {"arrays", "general", "own"}
+        How problems are solved. Without a compiler, or room for so many rows, it is over arrays.
     edge : float
         By which share the edge of max and min is rounded off; 0: not at all.
     """
 
-    def __init__(
-        self, program: Program, n_variables: int, rows: Rows, native: bool | None = None, edge: float = 0.0
-    ) -> None:
+    def __init__(self, program: Program, n_variables: int, rows: Rows, code: Code = "own", edge: float = 0.0) -> None:
         self.rows = rows
         self.functions = RowFunctions(program, n_variables, rows, edge)
         self.log_variables = np.array(rows.log_variables, dtype=bool)
         self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
         self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)
-        compiled = None if native is False else compiled_solver(self.functions)
-        self.native = compiled is not None
-        self.solver: InteriorPoint | Native = compiled or InteriorPoint(self.functions)
+        self.solver: InteriorPoint | Solver = self._solver(code)
+        self.compiled = isinstance(self.solver, Solver)
         self._stored = self.functions.compile_stored()
         self._sides = self._compile_sides(program)
 
+    def _solver(self, code: Code) -> InteriorPoint | Solver:
+        made = {"own": native, "general": general}[code](self.functions) if code != "arrays" else None
+        return made or InteriorPoint(self.functions)
+
     @property
-    def steps(self) -> int:
-        """Return how many steps were taken without compiled code."""
-        return self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
+    def evaluations(self) -> int:
+        """Return how many evaluations all has cost that was solved without code of its own."""
+        if isinstance(self.solver, General):
+            return self.solver.evaluations
+        return STEP * self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
 
     def _compile_sides(self, program: Program) -> Any:
         """Return a function of both sides of the rows that enter by a scaled difference."""
@@ -167,7 +173,7 @@ class BatchNlp:
         """
         count = len(tasks.weights)
         columns = [np.asarray(x, dtype=float) for x in data]
-        chunk = NATIVE_CHUNK if self.native and workers > 1 else CHUNK
+        chunk = NATIVE_CHUNK if self.compiled and workers > 1 else CHUNK
 
         def solved(first: int) -> Solutions:
             rows = slice(first, min(first + chunk, count))
@@ -181,7 +187,7 @@ class BatchNlp:
             )  # fmt: skip
 
         begins = range(0, max(count, 1), chunk)
-        if self.native and min(workers, len(begins)) > 1:
+        if self.compiled and min(workers, len(begins)) > 1:
             with ThreadPoolExecutor(min(workers, len(begins))) as threads:
                 parts = list(threads.map(solved, begins))
         else:

@@ -9,7 +9,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.batch_nlp import BatchNlp, Solutions, Tasks
+from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.declaration import Refusal
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
@@ -24,7 +24,7 @@ from synth.propagation import Propagation
 
 CHUNK = 4096
 # Work of the solver, as ``Formulation.work`` counts it, that costs about as much as compiling it.
-COMPILE_NLP_AFTER = 150_000
+COMPILE_NLP_AFTER = 150_000_000
 SNAP = 1e-9
 PINNED = 1e-12
 TIE = 1e-9
@@ -185,7 +185,7 @@ class Formulation:
     conflict : bool
         Whether to prepare for proving that limits exclude each other.
     compiled : bool
-        Whether code may be compiled for this question.
+        Whether code of its own may be compiled for this question.
     alike : int
         How many questions of its kind are asked: code that is compiled serves them all.
     """
@@ -222,7 +222,7 @@ class Formulation:
         self.contracted = 0
         self.workers = 1
         self.nlp_solves = 0
-        self.work = 0  # of the solver without compiled code: steps times nodes of the program
+        self.work = 0  # of the solver without code of its own: evaluations times nodes of the program
         self.solved_combinations: set[int] = set()
         self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
         self.archive = Archive(range(traded), self.n, len(self.goals))
@@ -657,9 +657,9 @@ class Formulation:
         rows = self.rows()
         large = self.instance.combinations * self.alike >= COMPILED_FROM
         long = self.work > COMPILE_NLP_AFTER
-        native = None if self.compiled and (large or long) else False
+        code: Code = "own" if self.compiled and (large or long) else "general"
         made: BatchNlp = self.model.function(
-            ("batch", rows, native, edge), lambda: BatchNlp(self.model.program, self.n, rows, native, edge)
+            ("batch", rows, code, edge), lambda: BatchNlp(self.model.program, self.n, rows, code, edge)
         )
         return made
 
@@ -698,9 +698,9 @@ class Formulation:
 
         def solved(edge: float, begin: np.ndarray) -> Solutions:
             nlp = self.batch_nlp(edge)
-            before = nlp.steps
+            before = nlp.evaluations
             found = nlp.solve(tasks, data, begin, low, high, self.bounds, void, self.workers)
-            self.work += (nlp.steps - before) * len(self.model.program.nodes)
+            self.work += (nlp.evaluations - before) * len(self.model.program.nodes)
             return found
 
         if not self._edged:

@@ -48,20 +48,20 @@ class _Problems(ctypes.Structure):
     )
 
 
-class Native:
+class Solver:
     """The compiled solver of one set of row functions.
 
     Parameters
     ----------
     functions : RowFunctions
-    library : CDLL
+    code : CDLL
     """
 
-    def __init__(self, functions: RowFunctions, library: Any) -> None:
+    def __init__(self, functions: RowFunctions, code: ctypes.CDLL) -> None:
         self.functions = functions
-        self._solve = library.solve
-        self._solve.argtypes = [ctypes.POINTER(_Problems)]
+        self._solve = code.solve
         self._solve.restype = None
+        self._more: list[Any] = []  # what the code takes after the problems
 
     def solve(self, problems: Problems) -> Ends:
         """Solve all problems, each from its start."""
@@ -89,16 +89,16 @@ class Native:
             **{name: array.ctypes.data_as(DOUBLES) for name, array in inputs.items()},
             **{name: getattr(ends, name).ctypes.data_as(DOUBLES) for name in ("y", "t", "rows", "multipliers")},
         )
-        self._solve(ctypes.byref(given))
+        self._solve(ctypes.byref(given), *self._more)
         return ends
 
 
-def native(functions: RowFunctions) -> Native | None:
+def native(functions: RowFunctions) -> Solver | None:
     """Return the compiled solver; None where code cannot be compiled, kept or loaded."""
     if not switched_on() or functions.n == 0:
         return None
     loaded = library("nlp", source(functions))
-    return None if loaded is None else Native(functions, loaded)
+    return None if loaded is None else Solver(functions, loaded)
 
 
 def switched_on() -> bool:

@@ -6,7 +6,8 @@ one element of a register, and a lane that is done takes the next problem.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 
 import casadi as ca
 import numpy as np
@@ -67,6 +68,7 @@ def source(functions: RowFunctions) -> str:
     layout = method.Layout(functions)
     parts = {
         "SIZES": _sizes(functions),
+        "STORED_IN_STATE": "vd stored[AT_LEAST_ONE(STORED)];",
         "POINT": _point(functions),
         "TRANSPOSED": _transposed(layout),
         "TIMES": _times(layout),
@@ -75,18 +77,19 @@ def source(functions: RowFunctions) -> str:
             f"    matrix[{a}][{b}] += keep(~strange & free[{a}] & free[{b}], hessian[{k}]);"
             for k, (a, b) in enumerate(layout.hessian)
         ),
+        "SOLVE": "void solve(const Problems *p)",
     }
-    text = VECTORS + SOLVER
-    for name, code in parts.items():
-        text = text.replace(f"/*{name}*/", code)
-    return text
+    return filled(parts)
 
 
-def _sizes(functions: RowFunctions) -> str:
-    layout = method.Layout(functions)
+def filled(parts: Mapping[str, str]) -> str:
+    """Return the translation unit of the solver with its parts filled in; those that are not named are empty."""
+    return VECTORS + re.sub(r"/\*([A-Z_]+)\*/", lambda place: parts.get(place[1], ""), SOLVER)
+
+
+def settings() -> list[str]:
+    """Return definitions of the settings of the method."""
     numbers = {
-        "N": layout.n, "ROWS": layout.rows, "CUTS": layout.cuts, "GOALS": layout.goals, "NONZEROS": len(layout.row),
-        "CURVATURES": len(layout.hessian), "STORED": len(functions.stored),
         "MAX_EVALUATIONS": method.MAX_EVALUATIONS, "MAX_LATE": method.MAX_LATE, "MAX_REJECTED": method.MAX_REJECTED,
         "CONVERGED": method.CONVERGED, "INFEASIBLE": method.INFEASIBLE, "STUCK": method.STUCK,
         "STOPPED": method.STOPPED,
@@ -100,7 +103,18 @@ def _sizes(functions: RowFunctions) -> str:
         "LARGEST_SHIFT", "LARGEST_ROW",
     )  # fmt: skip
     lines = [f"#define {name} {value}" for name, value in numbers.items()]
-    lines += [f"#define {name} {_number(float(getattr(method, name)))}" for name in names]
+    return lines + [f"#define {name} {_number(float(getattr(method, name)))}" for name in names]
+
+
+def _sizes(functions: RowFunctions) -> str:
+    layout = method.Layout(functions)
+    numbers = {
+        "N": layout.n, "ROWS": layout.rows, "CUTS": layout.cuts, "GOALS": layout.goals, "NONZEROS": len(layout.row),
+        "CURVATURES": len(layout.hessian), "STORED": len(functions.stored),
+    }  # fmt: skip
+    lines = settings() + [f"#define {name} {value}" for name, value in numbers.items()]
+    lines += [f"#define MOST_{name} {name}" for name in ("N", "ROWS", "GOALS")]
+    lines += [f"#define MOST_{name} AT_LEAST_ONE({name})" for name in ("NONZEROS", "CURVATURES")]
     for name, flags in (("EQUAL", layout.equal.ravel()), ("GUARD", layout.guard)):
         lines.append(f"static const int {name}[] = {{{', '.join(str(int(x)) for x in flags)}}};")
     for name, places in (("ROW", layout.row), ("COLUMN", layout.column)):

@@ -1,4 +1,7 @@
-"""C source of the interior-point method, but for what depends on the row functions; see :mod:`synth.native_source`."""
+"""C source of the interior-point method, but for what depends on the row functions.
+
+:mod:`synth.native_source` fills it in for one set of row functions, :mod:`synth.native_general` for all there are.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ SOLVER = r"""
 /*SIZES*/
 #define AT_LEAST_ONE(n) ((n) > 0 ? (n) : 1)
 #define EACH(k, n) for (int k = 0; k < (n); k++)
+#define MATRIX(name) vd name[MOST_N + 1][MOST_N + 1]
 
 typedef struct {
     long long count;
@@ -18,19 +22,22 @@ typedef struct {
 } Problems;
 
 typedef struct {
-    vd stored[AT_LEAST_ONE(STORED)];
-    vd low[N], high[N], slopes[ROWS], rights[ROWS], weights[GOALS], t_weight;
-    vi free[N], counts[ROWS], t_free, busy;
-    vd y[N], t, form[ROWS], values[ROWS], multipliers[ROWS], low_dual[N], high_dual[N], barrier, penalty, merit;
+    /*STORED_IN_STATE*/
+    vd low[MOST_N], high[MOST_N], slopes[MOST_ROWS], rights[MOST_ROWS], weights[MOST_GOALS], t_weight;
+    vi free[MOST_N], counts[MOST_ROWS], t_free, busy;
+    vd y[MOST_N], t, form[MOST_ROWS], values[MOST_ROWS], multipliers[MOST_ROWS], low_dual[MOST_N], high_dual[MOST_N];
+    vd barrier, penalty, merit;
     vd next_penalty;
     vi restoring;
-    vi absent[ROWS], missing;
-    vd direction[N + 1], uncorrected[N + 1], forecast[ROWS], change[ROWS], low_change[N], high_change[N];
+    vi absent[MOST_ROWS], missing;
+    vd direction[MOST_N + 1], uncorrected[MOST_N + 1], forecast[MOST_ROWS], change[MOST_ROWS];
+    vd low_change[MOST_N], high_change[MOST_N];
     vd slope, step, dual_step;
     vi rejected, evaluations, late, status;
     long long number[LANES];
 } State;
 
+/*FORMULAS*/
 static void point(const vd *restrict y, const vd *restrict weights, const vd *restrict stored, vd *restrict form,
                   vd *restrict jacobian, vd *restrict hessian) {
 /*POINT*/
@@ -44,7 +51,7 @@ INLINE void moved_by(const vd *jacobian, const vd *slopes, const vd *direction, 
 /*TIMES*/
 }
 
-INLINE void gram(const vd *jacobian, const vd *slopes, const vd *vector, vd matrix[N + 1][N + 1]) {
+INLINE void gram(const vd *jacobian, const vd *slopes, const vd *vector, MATRIX(matrix)) {
 /*GRAM*/
 }
 
@@ -120,7 +127,7 @@ static vi absent_of(const State *s, vd *form, vd *jacobian, vi *absent) {
     EACH(r, ROWS) absent[r] = ~(v_abs(form[r]) < LARGEST_ROW);
     EACH(k, NONZEROS) absent[ROW[k]] |= ~is_finite(jacobian[k]);
     EACH(r, ROWS) if (GUARD[r]) beyond |= s->counts[r] & ~(form[r] <= 0.0);
-    vi wanted[ROWS];
+    vi wanted[MOST_ROWS];
     EACH(r, ROWS) {
         wanted[r] = s->counts[r];
         if (r >= CUTS) wanted[r] |= s->weights[r - CUTS] != 0.0;
@@ -143,7 +150,7 @@ static void begin(State *s, vi fresh, vd *totals) {
     const vd first = needed + FIRST_ROOM;
     const vi held = ~s->t_free | first_phase(s, s->missing) | ~is_finite(first);
     s->t = choose(fresh, choose(held, all(0.0), first), s->t);
-    vd values[ROWS];
+    vd values[MOST_ROWS];
     values_of(s, s->form, s->t, s->absent, s->missing, values);
     s->barrier = choose(fresh, all(FIRST_BARRIER), s->barrier);
     s->penalty = choose(fresh, choose(first_phase(s, s->missing), all(FIRST_PENALTY), s->next_penalty), s->penalty);
@@ -172,7 +179,7 @@ INLINE vd bring_in(const State *s, int r, vd own) {
 
 /* Returns which lanes must start again where they are, because what they look for has changed. */
 static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *totals) {
-    vd weights[ROWS], residual[AT_LEAST_ONE(N)];
+    vd weights[MOST_ROWS], residual[MOST_N];
     const vd usual = least_of(s);
     const vi first = first_phase(s, s->missing);
     vd along_t = s->t_weight, largest_multiplier = all(0.0), over = all(0.0);
@@ -233,10 +240,10 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
 }
 
 /* Factors L and one over D of shifted matrices; returns which are positive definite. */
-INLINE vi factorise(vd matrix[N + 1][N + 1], vd shift, vd factor[N + 1][N + 1], vd *inverses) {
+INLINE vi factorise(MATRIX(matrix), vd shift, MATRIX(factor), vd *inverses) {
     vi good = all_i(-1);
     EACH(a, N + 1) {
-        vd scaled[N + 1];
+        vd scaled[MOST_N + 1];
         EACH(b, a) {
             vd entry = matrix[a][b];
             EACH(c, b) entry -= scaled[c] * factor[b][c];
@@ -252,8 +259,9 @@ INLINE vi factorise(vd matrix[N + 1][N + 1], vd shift, vd factor[N + 1][N + 1], 
     return good;
 }
 
-static void solve_shifted(vd matrix[N + 1][N + 1], const vd *right, vd shift, vi wanted, vd *result) {
-    vd factor[N + 1][N + 1], inverses[N + 1];
+static void solve_shifted(MATRIX(matrix), const vd *right, vd shift, vi wanted, vd *result) {
+    MATRIX(factor);
+    vd inverses[MOST_N + 1];
     for (;;) {
         const vi again = wanted & ~factorise(matrix, shift, factor, inverses) & (shift <= LARGEST_SHIFT);
         if (!any(again)) break;
@@ -269,7 +277,7 @@ static void solve_shifted(vd matrix[N + 1][N + 1], const vd *right, vd shift, vi
     }
 }
 
-INLINE vd add_curvature(vd matrix[N + 1][N + 1], const vd *hessian, const vi *free) {
+INLINE vd add_curvature(MATRIX(matrix), const vd *hessian, const vi *free) {
     vd total = all(0.0);
     EACH(k, CURVATURES) total += hessian[k];
     const vi strange = ~is_finite(total);
@@ -280,8 +288,9 @@ INLINE vd add_curvature(vd matrix[N + 1][N + 1], const vd *hessian, const vi *fr
 /* A first step that was refused is corrected by what the rows at the trial point differ from their linear forecast. */
 static void direct(State *s, vi taken, vi bent, const vd *jacobian, const vd *hessian, const vd *slopes,
                    const vd *values) {
-    vd own[ROWS], stiffness[ROWS], weights[ROWS], inverse[ROWS], gradient[N + 1], matrix[N + 1][N + 1];
-    vd direction[N + 1], moved[ROWS], low[N], high[N], by_low[N], by_high[N];
+    MATRIX(matrix);
+    vd own[MOST_ROWS], stiffness[MOST_ROWS], weights[MOST_ROWS], inverse[MOST_ROWS], gradient[MOST_N + 1];
+    vd direction[MOST_N + 1], moved[MOST_ROWS], low[MOST_N], high[MOST_N], by_low[MOST_N], by_high[MOST_N];
     const vd usual = least_of(s);
     const vi first = first_phase(s, s->missing);
     vd along_t = s->t_weight, merit = all(0.0);
@@ -318,10 +327,10 @@ static void direct(State *s, vi taken, vi bent, const vd *jacobian, const vd *he
     const vd shift = add_curvature(matrix, hessian, s->free);
     EACH(a, N) matrix[a][a] += s->low_dual[a] * by_low[a] + s->high_dual[a] * by_high[a];
     matrix[N][N] += keep(held, all(1.0));
-    vd right[N + 1];
+    vd right[MOST_N + 1];
     EACH(a, N + 1) right[a] = gradient[a];
     if (any(bent)) {
-        vd off[ROWS], off_gradient[AT_LEAST_ONE(N)], off_t = all(0.0);
+        vd off[MOST_ROWS], off_gradient[MOST_N], off_t = all(0.0);
         EACH(r, ROWS) {
             off[r] = stiffness[r] * (values[r] - s->forecast[r]);
             off_t -= slopes[r] * off[r];
@@ -368,9 +377,9 @@ static void direct(State *s, vi taken, vi bent, const vd *jacobian, const vd *he
 }
 
 static void advance(State *s) {
-    vd y[AT_LEAST_ONE(N)], form[ROWS], values[ROWS], multipliers[ROWS], weights[ROWS], slopes[ROWS], totals[ROWS];
-    vd jacobian[AT_LEAST_ONE(NONZEROS)], hessian[AT_LEAST_ONE(CURVATURES)];
-    vi absent[ROWS];
+    vd y[MOST_N], form[MOST_ROWS], values[MOST_ROWS], multipliers[MOST_ROWS], weights[MOST_ROWS], slopes[MOST_ROWS];
+    vd totals[MOST_ROWS], jacobian[MOST_NONZEROS], hessian[MOST_CURVATURES];
+    vi absent[MOST_ROWS];
     EACH(a, N) y[a] = s->y[a] + s->step * s->direction[a];
     const vd t = s->t + s->step * s->direction[N];
     EACH(r, ROWS) {
@@ -465,11 +474,12 @@ static void unload(const State *s, const Problems *p, int l) {
     p->evaluations[number] = s->evaluations[l];
 }
 
-void solve(const Problems *p) {
+/*SOLVE*/ {
     State s;
     long long waiting = 0;
     int busy = 0;
     memset(&s, 0, sizeof s);
+    /*BEGIN*/
     for (;;) {
         for (int l = 0; l < LANES && waiting < p->count; l++)
             if (!s.busy[l]) { load(&s, p, l, waiting++); busy++; }

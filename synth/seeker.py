@@ -221,7 +221,7 @@ class Seeker:
                 return
 
     def _most_solved(self) -> int:
-        return MOST_SOLVED if self.form.batch_nlp().native else MOST_SOLVED_PLAIN
+        return MOST_SOLVED if self.form.batch_nlp().compiled else MOST_SOLVED_PLAIN
 
     def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return combinations that differ from a parent in one part, with its variables and phi."""

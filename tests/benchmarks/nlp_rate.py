@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import synth
-from synth.batch_nlp import BatchNlp, Solutions, Tasks
+from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.instance import Instance, as_catalogs
 from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Rows, Task
@@ -70,10 +70,10 @@ class Workload:
             for k in model.void_inputs[limit.name]:
                 self.void[:, j] |= np.isnan(np.asarray(self.data[k], dtype=float))
 
-    def batch(self, native: bool | None) -> Callable[[], Solutions] | None:
+    def batch(self, code: Code) -> Callable[[], Solutions] | None:
         """Return a call that solves all problems at once; None where it was to be compiled and could not be."""
-        solver = BatchNlp(self.model.program, self.n, self.rows, native=native)
-        if native is not False and not solver.native:
+        solver = BatchNlp(self.model.program, self.n, self.rows, code)
+        if code != "arrays" and not solver.compiled:
             return None
         return lambda: solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void)
 
@@ -107,15 +107,16 @@ def measure(count: int = 20_000, referee: int = 60, repeats: int = 3) -> dict[st
     Returns
     -------
     dict
-        ``numpy``, ``native`` (None without a compiler) and ``ipopt``: problems per second and core;
+        ``numpy``, ``general`` and ``native`` (None without a compiler) and ``ipopt``: problems per second and core;
         ``solved``: share of problems for which a feasible point was found.
     """
     work = Workload(count)
-    plain, compiled = work.batch(False), work.batch(None)
+    plain, general, compiled = work.batch("arrays"), work.batch("general"), work.batch("own")
     assert plain is not None
     solution = (compiled or plain)()
     return {
         "numpy": _rate(plain, count, repeats),
+        "general": None if general is None else _rate(general, count, repeats),
         "native": None if compiled is None else _rate(compiled, count, repeats),
         "ipopt": _rate(work.one_by_one(referee), referee, 1),
         "solved": float(np.mean(solution.violation <= FEASIBLE)),

@@ -1,4 +1,4 @@
-"""The batched solver against known optima, against IPOPT, and compiled against not compiled."""
+"""The batched solver against known optima, against IPOPT, and its three ways to solve against each other."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ import numpy as np
 import pytest
 
 import synth
-from synth import native
-from synth.batch_nlp import BatchNlp, Solutions, Tasks
+from synth import native, native_general
+from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.instance import Instance, as_catalogs
 from synth.intervals import Cut, Goal
 from synth.nlp import GUARD_MARGIN, ParametricNlp, Rows, Task
 from synth.program import Program
 
 HAS_COMPILER = shutil.which("cc") is not None
-COMPILED = pytest.param(True, marks=pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler"))
+NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -60,7 +60,7 @@ class Small:
         write: Callable[[Sequence[Any], Sequence[Any]], tuple[list[Row], list[Any]]],
         logs: bool = True,
         guards: tuple[int, ...] = (),
-        compiled: bool = False,
+        code: Code = "arrays",
     ) -> None:
         x, d = [ca.SX.sym(f"x{k}") for k in range(n)], [ca.SX.sym(f"d{k}") for k in range(n_data)]
         limits, goals = write(x, d)
@@ -80,8 +80,8 @@ class Small:
             log_goals=(logs,) * len(goals),
             log_variables=(logs,) * n,
         )
-        self.solver = BatchNlp(self.program, n, self.rows, native=compiled)
-        assert self.solver.native == compiled
+        self.solver = BatchNlp(self.program, n, self.rows, code)
+        assert self.solver.compiled == (code != "arrays")
 
     def solve(
         self,
@@ -106,7 +106,8 @@ class Small:
         return self.solver.solve(tasks, data, *points, self.bounds, gone)
 
 
-BOTH = pytest.mark.parametrize("compiled", [False, COMPILED])
+COMPILED = [pytest.param(code, marks=NEEDS_COMPILER) for code in ("general", "own")]
+EVERY = pytest.mark.parametrize("code", ["arrays", *COMPILED])
 
 
 def box(x: Sequence[Any], d: Sequence[Any]) -> tuple[list[Row], list[Any]]:
@@ -115,9 +116,9 @@ def box(x: Sequence[Any], d: Sequence[Any]) -> tuple[list[Row], list[Any]]:
     return [("at_least", volume, d[0]), ("at_most", x[2], d[1])], [surface, x[2]]
 
 
-@BOTH
-def test_optima_of_a_whole_batch_are_the_known_ones(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_optima_of_a_whole_batch_are_the_known_ones(code):
+    small = Small(3, 2, box, code=code)
     count = 7000  # more than go through at once
     rng = np.random.default_rng(1)
     volume, height = rng.uniform(0.5, 8.0, count), np.where(rng.random(count) < 0.5, 50.0, 0.4)
@@ -140,9 +141,9 @@ def test_optima_of_a_whole_batch_are_the_known_ones(compiled):
     assert (solution.cut_multipliers[~free, 1] > 0.01).all()
 
 
-@BOTH
-def test_scalar_data_and_arrays_give_the_same(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_scalar_data_and_arrays_give_the_same(code):
+    small = Small(3, 2, box, code=code)
     more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf), "count": 3}
     scalar = small.solve([2.0, 0.9], 1.0, 1e-2, 1e2, **more)
     array = small.solve([np.full(3, 2.0), np.full(3, 0.9)], 1.0, 1e-2, 1e2, **more)
@@ -150,9 +151,9 @@ def test_scalar_data_and_arrays_give_the_same(compiled):
     np.testing.assert_array_equal(scalar.variables, scalar.variables[:1].repeat(3, axis=0))
 
 
-@BOTH
-def test_a_chebyshev_task_meets_both_objectives_at_the_same_share(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_a_chebyshev_task_meets_both_objectives_at_the_same_share(code):
+    small = Small(3, 2, box, code=code)
     solution = small.solve(
         [1.0, 50.0],
         1.0,
@@ -172,9 +173,9 @@ def test_a_chebyshev_task_meets_both_objectives_at_the_same_share(compiled):
     assert solution.goal_multipliers[0] @ [1.0, 0.5] == pytest.approx(1.0, abs=1e-6)
 
 
-@BOTH
-def test_pinned_variables_stay_and_the_others_move(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_pinned_variables_stay_and_the_others_move(code):
+    small = Small(3, 2, box, code=code)
     more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf)}
     solution = small.solve([1.0, 50.0], (0.5, 1.0, 1.0), (0.5, 1e-2, 1e-2), (0.5, 1e2, 1e2), **more)
     np.testing.assert_allclose(solution.variables[0], [0.5, np.sqrt(2), np.sqrt(2)], rtol=1e-4)
@@ -188,9 +189,9 @@ def test_pinned_variables_stay_and_the_others_move(compiled):
     assert broken.violation[0] == pytest.approx(np.log(1.5))
 
 
-@BOTH
-def test_bounds_hold_exactly(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_bounds_hold_exactly(code):
+    small = Small(3, 2, box, code=code)
     low, high = np.array([0.1, 0.1, 0.1]), np.array([0.7, 5.0, 5.0])
     more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf)}
     solution = small.solve([1.0, 50.0], 0.3, low, high, **more)
@@ -198,12 +199,12 @@ def test_bounds_hold_exactly(compiled):
     assert solution.variables[0, 0] == pytest.approx(0.7, rel=1e-8)
 
 
-@BOTH
-def test_equalities_are_met_from_both_sides(compiled):
+@EVERY
+def test_equalities_are_met_from_both_sides(code):
     def circle(x, d):
         return [("equal", x[0] ** 2 + x[1] ** 2, d[0])], [x[0] + x[1]]
 
-    small = Small(2, 1, circle, logs=False, compiled=compiled)
+    small = Small(2, 1, circle, logs=False, code=code)
     starts = np.array([[0.1, 0.1], [5.0, 3.0], [-2.0, 1.0], [-0.1, -3.0]])
     solution = small.solve([4.0], starts, -10.0, 10.0, count=4)
     np.testing.assert_allclose(solution.variables, -np.sqrt(2.0), atol=1e-6)
@@ -214,12 +215,12 @@ def test_equalities_are_met_from_both_sides(compiled):
     np.testing.assert_allclose(solution.cut_multipliers[:, 0], sizes / (2 * np.sqrt(2.0)), rtol=1e-5)
 
 
-@BOTH
-def test_void_rows_and_columns_without_value_do_not_count(compiled):
+@EVERY
+def test_void_rows_and_columns_without_value_do_not_count(code):
     def rod(x, d):
         return [("at_least", x[0], d[0]), ("at_least", x[0], d[1])], [x[0]]
 
-    small = Small(1, 2, rod, compiled=compiled)
+    small = Small(1, 2, rod, code=code)
     void = np.array([[False, False], [False, True], [True, False]])
     solution = small.solve([np.array([2.0, 2.0, np.nan]), np.array([3.0, np.nan, 3.0])], 9.0, 1.0, 10.0, void, count=3)
     np.testing.assert_allclose(solution.variables[:, 0], [3.0, 2.0, 3.0], rtol=1e-7)
@@ -227,9 +228,9 @@ def test_void_rows_and_columns_without_value_do_not_count(compiled):
     assert solution.converged.all()
 
 
-@BOTH
-def test_caps_that_cannot_be_met_are_told_by_the_violation(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_caps_that_cannot_be_met_are_told_by_the_violation(code):
+    small = Small(3, 2, box, code=code)
     caps = np.log([[5.0, 9.0], [6.1, 9.0], [6.1, 0.5]])  # a cube of 1 has a surface of 6
     solution = small.solve([1.0, 50.0], 1.3, 1e-2, 1e2, weights=(0.0, 1.0), slopes=(0.0, 0.0), caps=caps, count=3)
     assert solution.converged.tolist() == [False, True, False]
@@ -239,12 +240,12 @@ def test_caps_that_cannot_be_met_are_told_by_the_violation(compiled):
     assert solution.violation[2] > 0.1
 
 
-@BOTH
-def test_an_elastic_task_breaks_all_limits_alike(compiled):
+@EVERY
+def test_an_elastic_task_breaks_all_limits_alike(code):
     def squeeze(x, d):
         return [("at_least", x[0], d[0]), ("at_most", x[0], 1.0), ("at_most", x[1], 7.0)], [x[0] + x[1]]
 
-    small = Small(2, 1, squeeze, compiled=compiled)
+    small = Small(2, 1, squeeze, code=code)
     solution = small.solve([np.array([2.0, 8.0])], 1.0, 1e-3, 1e3, weights=(0.0,), t_weight=1.0, elastic=1.0, count=2)
     np.testing.assert_allclose(solution.t, 0.5 * np.log([2.0, 8.0]), atol=1e-8)
     np.testing.assert_allclose(solution.variables[:, 0], np.sqrt([2.0, 8.0]), rtol=1e-7)
@@ -252,13 +253,13 @@ def test_an_elastic_task_breaks_all_limits_alike(compiled):
     assert solution.converged.all()
 
 
-@BOTH
-def test_guards_never_give_way_and_open_the_way_to_other_formulas(compiled):
+@EVERY
+def test_guards_never_give_way_and_open_the_way_to_other_formulas(code):
     def start_up(x, d):
         root = ca.sqrt(x[0] - d[0])
         return [("at_least", x[0], d[0]), ("at_most", root, 0.5)], [1 / root]
 
-    small = Small(1, 1, start_up, guards=(0,), compiled=compiled)
+    small = Small(1, 1, start_up, guards=(0,), code=code)
     # Below 3 the other formulas are not a number; two of the searches begin there.
     solution = small.solve(
         [3.0], [[0.5], [2.999], [9.0]], 0.1, 10.0, weights=(0.0,), slopes=(1.0,), caps=(0.0,), t_weight=1.0,
@@ -271,19 +272,19 @@ def test_guards_never_give_way_and_open_the_way_to_other_formulas(compiled):
     def tight(x, d):
         return [("at_least", x[0], d[0])], [x[0]]
 
-    barely = Small(1, 1, tight, guards=(0,), compiled=compiled).solve(
+    barely = Small(1, 1, tight, guards=(0,), code=code).solve(
         [3.0], 5.0, 0.1, 10.0, t_weight=1.0, slopes=(1.0,), caps=(0.0,), elastic=5.0, weights=(0.0,)
     )
     assert barely.variables[0, 0] == pytest.approx(3.0 * np.exp(GUARD_MARGIN), rel=1e-8)
 
 
-@BOTH
-def test_a_kink_on_the_way_is_crossed_and_one_at_the_end_is_approached(compiled):
+@EVERY
+def test_a_kink_on_the_way_is_crossed_and_one_at_the_end_is_approached(code):
     def bent(x, d):
         cost = ca.if_else(x[0] < 2.0, 5.0 - x[0], 3.0 + (x[0] - 2.0) ** 2 - (x[0] - 2.0))
         return [("at_most", x[0], d[0])], [cost]
 
-    small = Small(1, 1, bent, compiled=compiled)
+    small = Small(1, 1, bent, code=code)
     solution = small.solve([np.array([9.0, 2.2])], [[0.3], [1.0]], 0.1, 10.0, count=2)
     np.testing.assert_allclose(solution.variables[:, 0], [2.5, 2.2], rtol=1e-4)
     assert solution.converged.all()
@@ -291,18 +292,18 @@ def test_a_kink_on_the_way_is_crossed_and_one_at_the_end_is_approached(compiled)
     def valley(x, d):
         return [("at_most", x[0], 50.0)], [ca.fmax(x[0], d[0] / x[0])]
 
-    end = Small(1, 1, valley, compiled=compiled).solve([4.0], [[0.3], [20.0]], 0.1, 100.0, count=2)
+    end = Small(1, 1, valley, code=code).solve([4.0], [[0.3], [20.0]], 0.1, 100.0, count=2)
     np.testing.assert_allclose(end.phi[:, 0], np.log(2.0), atol=1e-3)
     assert end.violation.max() == 0.0
 
 
-@BOTH
-def test_rows_of_any_sign_enter_by_a_scaled_difference(compiled):
+@EVERY
+def test_rows_of_any_sign_enter_by_a_scaled_difference(code):
     def slope(x, d):
         height = (x[0] - 1.0) ** 2 + x[1]
         return [("at_most", -x[1], d[0]), ("at_least", x[0] - x[1], -3.0)], [height]
 
-    small = Small(2, 1, slope, logs=False, compiled=compiled)
+    small = Small(2, 1, slope, logs=False, code=code)
     # -x1 <= d0, so the least height is -d0, at x0 = 1 where the second limit allows
     solution = small.solve([np.array([2.0, -1.0, 0.0, -9.0])], (0.0, 0.0), -10.0, 10.0, count=4)
     np.testing.assert_allclose(solution.variables, [[1, -2], [1, 1], [1, 0], [6, 9]], atol=2e-4)
@@ -310,14 +311,14 @@ def test_rows_of_any_sign_enter_by_a_scaled_difference(compiled):
     assert solution.converged.all()
 
 
-@BOTH
-def test_objectives_with_a_sense_and_a_scale(compiled):
+@EVERY
+def test_objectives_with_a_sense_and_a_scale(code):
     def write(x, d):
         return [("at_most", x[0] * x[1], d[0])], [x[0] - x[1]]
 
-    small = Small(2, 1, write, logs=False, compiled=compiled)
+    small = Small(2, 1, write, logs=False, code=code)
     upward = replace(small.rows, goals=(Goal(small.rows.goals[0].node, -1),))
-    solver = BatchNlp(small.program, 2, upward, native=compiled)
+    solver = BatchNlp(small.program, 2, upward, code)
     tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), np.array([4.0]), 0.0)
     low, high = np.array([[0.5, 0.5]]), np.array([[9.0, 9.0]])
     solution = solver.solve(tasks, [3.0], np.array([[1.0, 1.0]]), low, high, [0.0], np.zeros((1, 1), dtype=bool))
@@ -325,13 +326,13 @@ def test_objectives_with_a_sense_and_a_scale(compiled):
     assert solution.phi[0, 0] == pytest.approx(-5.5 / 4, abs=1e-8)
 
 
-@pytest.mark.parametrize("compiled", [False, None])
-def test_without_variables_the_rows_are_evaluated(compiled):
+@pytest.mark.parametrize("code", ["arrays", "general", "own"])
+def test_without_variables_the_rows_are_evaluated(code):
     x, d = ca.SX.sym("none", 0), [ca.SX.sym("a"), ca.SX.sym("b")]
     program = Program([*x.nonzeros(), *d], [d[0] * d[1], d[0] + d[1], d[0]])
     value, goal, other = program.outputs
     rows = Rows((Cut("at_most", value, None, 1e-9),), (Goal(goal), Goal(other)), (True,), (True, False), ())
-    solver = BatchNlp(program, 0, rows, native=compiled)
+    solver = BatchNlp(program, 0, rows, code)
     nothing = np.empty((3, 0))
     data = [np.array([2.0, 3.0, 4.0]), np.array([1.0, 2.0, 3.0])]
     tasks = Tasks(np.ones((3, 2)), np.zeros((3, 2)), np.full((3, 2), np.inf), np.array([1.0, 2.0]), 0.0)
@@ -345,9 +346,9 @@ def test_without_variables_the_rows_are_evaluated(compiled):
     np.testing.assert_allclose(solution.t, 2 * np.maximum(np.log([3.0, 5.0, 7.0]), [1.0, 1.5, 2.0]))
 
 
-@BOTH
-def test_an_empty_batch_is_an_empty_answer(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_an_empty_batch_is_an_empty_answer(code):
+    small = Small(3, 2, box, code=code)
     solution = small.solve(
         [2.0, 0.9], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), caps=(np.inf, np.inf), count=0
     )
@@ -369,13 +370,14 @@ FUNCTIONS = {
 }
 
 
-@pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
+@NEEDS_COMPILER
+@pytest.mark.parametrize("code", ["general", "own"])
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_compiled_functions_have_the_values_of_numpy(name):
+def test_compiled_functions_have_the_values_of_numpy(name, code):
     def write(x, d):
         return [("at_most", x[0] * d[0], 1e3)], [FUNCTIONS[name](x[0])]
 
-    pair = [Small(1, 1, write, logs=False, compiled=compiled) for compiled in (False, True)]
+    pair = [Small(1, 1, write, logs=False, code=own) for own in ("arrays", code)]
     points = np.linspace(0.2, 15.0, 40)[:, None]  # pinned: only evaluated
     plain, compiled = (small.solve([1.0], points, points, points, count=40) for small in pair)
     with np.errstate(all="ignore"):
@@ -444,8 +446,8 @@ class Clutch:
         point = np.stack([outer, outer * rng.uniform(0.65, 0.78, count), force, ramp], axis=1)
         return rng.integers(0, self.instance.combinations, count), point
 
-    def solve(self, compiled: bool, workers: int = 1) -> Solutions:
-        solver = BatchNlp(self.model.program, self.n, self.rows, native=compiled)
+    def solve(self, code: Code, workers: int = 1) -> Solutions:
+        solver = BatchNlp(self.model.program, self.n, self.rows, code)
         return solver.solve(self.tasks, self.data, self.start, self.low, self.high, self.bounds, self.void, workers)
 
     def cost(self, phi: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -484,7 +486,7 @@ class Clutch:
 @pytest.mark.parametrize(("kind", "count"), [("chebyshev", 140), ("single", 80), ("pinned", 80)])
 def test_ipopt_finds_nothing_better(kind, count):
     clutch = Clutch(count, 3, kind)
-    solution = clutch.solve(compiled=False)
+    solution = clutch.solve("arrays")
     phi, violation = clutch.judged(solution.variables, solution.t)
     np.testing.assert_allclose(np.minimum(violation, 1e3), np.minimum(solution.violation, 1e3), atol=1e-9)
     holds = violation <= 1e-8
@@ -503,11 +505,12 @@ def test_ipopt_finds_nothing_better(kind, count):
     assert solution.converged[holds].mean() > 0.95
 
 
-@pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
+@NEEDS_COMPILER
 @pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])
-def test_compiled_and_not_compiled_give_the_same(kind):
+@pytest.mark.parametrize("code", ["general", "own"])
+def test_compiled_and_not_compiled_give_the_same(code, kind):
     clutch = Clutch(600, 4, kind)
-    plain, compiled = clutch.solve(compiled=False), clutch.solve(compiled=True)
+    plain, compiled = clutch.solve("arrays"), clutch.solve(code)
     holds = plain.violation <= 1e-8
     assert holds.sum() > 100
     assert np.sum(holds != (compiled.violation <= 1e-8)) <= 3  # rounding decides now and then
@@ -520,20 +523,20 @@ def test_compiled_and_not_compiled_give_the_same(kind):
     np.testing.assert_allclose(np.minimum(violation, 1e3), np.minimum(compiled.violation, 1e3), atol=1e-9)
 
 
-@BOTH
+@EVERY
 @pytest.mark.parametrize("kind", ["chebyshev", "single"])
-def test_the_answers_do_not_depend_on_the_number_of_threads(compiled, kind):
+def test_the_answers_do_not_depend_on_the_number_of_threads(code, kind):
     clutch = Clutch(600, 4, kind)  # more than one thread takes at a time
-    alone = clutch.solve(compiled)
+    alone = clutch.solve(code)
     for workers in (2, 3):
-        together = clutch.solve(compiled, workers)
+        together = clutch.solve(code, workers)
         for field in fields(Solutions):
             np.testing.assert_array_equal(getattr(together, field.name), getattr(alone, field.name), field.name)
 
 
-@BOTH
-def test_threads_may_share_a_solver(compiled):
-    small = Small(3, 2, box, compiled=compiled)
+@EVERY
+def test_threads_may_share_a_solver(code):
+    small = Small(3, 2, box, code=code)
     more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf), "count": 50}
     volumes = [np.linspace(0.5, 1.0 + k, 50) for k in range(6)]
     alone = [small.solve([v, 50.0], 1.0, 1e-2, 1e2, **more).variables for v in volumes]
@@ -544,10 +547,10 @@ def test_threads_may_share_a_solver(compiled):
 
 def test_starts_where_nothing_exists_find_the_way():
     clutch = Clutch(300, 5, "chebyshev")
-    good = clutch.solve(compiled=False).violation <= 1e-8
+    good = clutch.solve("arrays").violation <= 1e-8
     # From corners of the box the rings are often inside out, or the load is never moved.
     clutch.start = np.where(np.random.default_rng(6).random(clutch.start.shape) < 0.5, clutch.low, clutch.high)
-    again = clutch.solve(compiled=False).violation <= 1e-8
+    again = clutch.solve("arrays").violation <= 1e-8
     assert np.sum(good & ~again) <= 0.02 * good.sum()
 
 
@@ -558,7 +561,7 @@ def small_functions() -> Any:
     return Small(3, 2, box).solver.functions
 
 
-@pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
+@NEEDS_COMPILER
 def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     functions = small_functions()
@@ -575,13 +578,36 @@ def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
     assert kept.stat().st_mtime_ns == written
 
 
+@NEEDS_COMPILER
+def test_what_was_compiled_once_solves_what_was_never_compiled_for(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert Small(3, 2, box, code="general").solver.compiled
+    kept = [path.name for path in (tmp_path / "clutchsynth").iterdir()]
+    other = Small(1, 1, lambda x, d: ([("at_most", x[0], d[0])], [1 / x[0]]), code="general")
+    np.testing.assert_allclose(other.solve([3.0], 1.0, 0.1, 9.0).variables, [[3.0]], rtol=1e-7)
+    assert [path.name for path in (tmp_path / "clutchsynth").iterdir()] == kept
+    assert other.solver.evaluations > 0
+
+
+@NEEDS_COMPILER
+def test_what_is_too_large_for_general_code_is_solved_over_arrays():
+    most = native_general.MOST["N"]
+    for n in (most, most + 1):
+        small = Small(n, 1, lambda x, d: ([("at_least", sum(x), d[0])], [sum(y * y for y in x)]))
+        small.solver = BatchNlp(small.program, n, small.rows, "general")
+        assert small.solver.compiled == (n == most)
+        np.testing.assert_allclose(small.solve([float(n)], 2.0, 0.1, 9.0).variables, np.ones((1, n)), rtol=1e-4)
+
+
 def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     assert native.native(small_functions()) is None
     assert not list(tmp_path.iterdir())
-    solver = BatchNlp((s := Small(3, 2, box)).program, 3, s.rows)
-    assert not solver.native
+    assert native_general.general(small_functions()) is None
+    for code in ("general", "own"):
+        solver = BatchNlp((s := Small(3, 2, box)).program, 3, s.rows, code)
+        assert not solver.compiled
 
 
 def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
