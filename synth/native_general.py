@@ -45,8 +45,14 @@ typedef struct {
     const double *constant;
 } Shape;
 
-static __thread const Shape *shape __attribute__((tls_model("initial-exec")));
-static __thread vd *slots __attribute__((tls_model("initial-exec")));
+/* Two pointers fit where they are found without a call, also in a library that is loaded late. */
+#if defined(__ELF__)
+#define OF_THE_THREAD static __thread __attribute__((tls_model("initial-exec")))
+#else
+#define OF_THE_THREAD static __thread
+#endif
+OF_THE_THREAD const Shape *shape;
+OF_THE_THREAD vd *slots;
 
 #define N (shape->n)
 #define ROWS (shape->rows)
