@@ -299,6 +299,7 @@ def _evaluate(
 ) -> Design:
     problem = load(p)
     instance = Instance(problem, requirements, catalogs_for(problem, catalogs), limits=limits, restrict=False)
+    instance.state_limits_on_unknowns()
     model = instance.model
     rows = _chosen_rows(instance, parts)
     known, choices, derived = _read_values(model, values, in_si)

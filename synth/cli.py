@@ -6,20 +6,21 @@ import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from synth import choice_commands, robust_commands
 from synth import study_commands as studies
 from synth.errors import InputError
-from synth.given import given_design, must_be_a_design
+from synth.given import given_design, must_be_a_design, must_be_one_family
 from synth.jobs import commands as batches
 from synth.terminal import (
     BAD_INPUT,
     DOES_NOT_HOLD,
     INFEASIBLE,
     INTERNAL,
+    INTERRUPTED,
     STOPPED,
     as_csv,
     blamed_on,
@@ -78,13 +79,28 @@ def main() -> None:
         # Whoever read the output has gone (``| head``); there is nobody left to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(INTERNAL)
-    except Exception as error:
-        if os.environ.get("CLUTCHSYNTH_DEBUG") == "1":
+    except OSError as error:
+        if error.filename is None:
+            _give_up(error)
+        tell(f"{error.filename}: got what cannot be read or written; expected a place where it can ({error.strerror})")
+        sys.exit(BAD_INPUT)
+    except SystemExit as end:
+        if end.code != INTERRUPTED:
             raise
-        first = next(iter(str(error).splitlines()), "")
-        tell(f"internal error, {type(error).__name__}: {first}")
-        tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
-        sys.exit(INTERNAL)
+        tell("stopped before all was done; what is finished is kept, the same command begins again or goes on")
+        sys.exit(STOPPED)
+    except Exception as error:
+        _give_up(error)
+
+
+def _give_up(error: Exception) -> NoReturn:
+    """Tell of a fault of the program itself."""
+    if os.environ.get("CLUTCHSYNTH_DEBUG") == "1":
+        raise error
+    first = next(iter(str(error).splitlines()), "")
+    tell(f"internal error, {type(error).__name__}: {first}")
+    tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
+    sys.exit(INTERNAL)
 
 
 # ---- commands -------------------------------------------------------------------------------------------------------
@@ -202,6 +218,7 @@ def explain(
 
     asked = read_spec(spec).merged(time_limit=time_limit)
     _must_be_a_question(asked)
+    must_be_one_family(asked)
     if folder is not None:
         check_output(folder)
     with blamed_on(asked.file), progress_display(quiet) as progress:

@@ -13,12 +13,15 @@ if TYPE_CHECKING:
     from synth.tables import Catalogs
 
 
+def must_be_one_family(asked: Spec) -> None:
+    """Refuse a spec of several families."""
+    if asked.compares:
+        raise InputError(f"{asked.file}: family", "several", "one family (clutchsynth run compares several)")
+
+
 def must_be_a_design(asked: Spec) -> None:
     """Refuse a spec of several families, without values, or with something left to fix."""
-    if asked.compares:
-        raise InputError(
-            f"{asked.file}: family", "several", "one family: a design is of one (clutchsynth run compares)"
-        )
+    must_be_one_family(asked)
     if asked.values is None:
         raise InputError(
             f"{asked.file}: values",

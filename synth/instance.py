@@ -321,6 +321,13 @@ class Instance:
                 result.append(ExtraLimit(label, name, sense, bound, unit))
         return result
 
+    def state_limits_on_unknowns(self) -> None:
+        """Let limits on variables and counts, which bound a search, be limits that a given design may miss."""
+        quantities = list(self.model.quantity_sx)
+        for name, texts in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
+            if name not in self.model.declaration.derived:
+                self.extra += self.conditions(name, texts)
+
     @staticmethod
     def read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
         """Return what a text says of a quantity: sense and SI value of each limit."""

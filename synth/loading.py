@@ -29,7 +29,9 @@ def load_front(folder: str | Path) -> ParetoFront:
     path = path / "front.json" if path.is_dir() else path
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, json.JSONDecodeError) as error:
+    except json.JSONDecodeError as error:
+        raise InputError("front", str(path), "a folder that clutchsynth run has written, or its front.json") from error
+    except (OSError, UnicodeDecodeError) as error:
         raise InputError("front", str(path), f"a front.json that clutchsynth wrote ({error})") from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(

@@ -154,5 +154,5 @@ def load(problem: str | type[DesignProblem] | DesignProblem, /, **options: str) 
         if point.name == problem:
             return load(point.load(), **options)
     close = difflib.get_close_matches(problem, families(), n=2)
-    hint = f"did you mean {' or '.join(close)}?" if close else "one of " + ", ".join(families())
+    hint = f"a family (did you mean {' or '.join(close)}?)" if close else "one of " + ", ".join(families())
     raise InputError("family", problem, hint)

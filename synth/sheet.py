@@ -149,7 +149,8 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
             if name in known:
                 continue
             close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
-            expected = f"did you mean {' or '.join(close)}?" if close else "a name that one of the families knows"
+            expected = "a name that one of the families knows"
+            expected += f" (did you mean {' or '.join(close)}?)" if close else ""
             if key == "requirements" and any(name in one.declaration.names() for one in found):
                 expected = (
                     "a requirement that families understand in common, by name; what concerns one family alone is "

@@ -257,8 +257,8 @@ def _whole(least: int) -> Callable[[str, Any], int | None]:
 def _gap(where: str, value: Any) -> float | None:
     if value is None:
         return None
-    if not _is_number(value) or not 0 < value < 1:
-        raise InputError(where, _kind(value), "a fraction above 0 and below 1, for example 0.001")
+    if not _is_number(value) or not 1e-6 <= value <= 0.5:
+        raise InputError(where, _kind(value), "a fraction from 1e-6 to 0.5, for example 0.001")
     return float(value)
 
 

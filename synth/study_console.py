@@ -80,6 +80,6 @@ def _told(b: Break, along: Varied) -> list[str]:
 
 def _proven(study: Study) -> str:
     kinds = [front.certificate.kind for front in study.fronts]
-    if kinds and all(kind == "global" for kind in kinds):
+    if len(kinds) == len(study.steps) and all(kind == "global" for kind in kinds):
         return "proven: every step over all its combinations of parts and counts (certificate and gap in whatif.csv)"
     return f"{kinds.count('global')} of {len(study.steps)} steps are proven; the certificates stand in whatif.csv"

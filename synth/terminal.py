@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
+INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C
 REPORTS = "clutchsynth.reports"
 
 

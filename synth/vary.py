@@ -217,6 +217,9 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
     if match is None or not math.isfinite(float(match.group(1))):
         raise InputError(field, whole if isinstance(whole, str) else value, f"numbers with one unit, as in {RANGE}")
     number, unit = match.groups()
+    if re.match(r",\s*[0-9]", unit):
+        said = whole if isinstance(whole, str) else value
+        raise InputError(field, said, "a decimal point instead of a decimal comma")
     if unit:
         parse_quantity(f"{number} {unit}", declared, field)
         if seen and seen[0] != unit:
@@ -229,8 +232,10 @@ def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     """Return what from:to:step stands for; the end belongs to it where a step meets it."""
     first, last, step = numbers
     if step == 0 or (last - first) * step < 0:
-        raise InputError(field, text, "a step that leads from the first value to the last")
+        raise InputError(field, text, f"a step that leads from the first value to the last, as in {RANGE}")
     count = math.floor((last - first) / step * (1 + 1e-12) + 1e-9) + 1
+    if count == 1 and first != last:
+        raise InputError(field, text, f"a step that is not larger than the whole range, as in {RANGE}")
     if count > MOST_STEPS:
         raise InputError(field, text, f"at most {MOST_STEPS} steps")
     return [float(f"{first + k * step:.{DIGITS}g}") for k in range(count)]

@@ -106,6 +106,8 @@ def batch_job(
 
 def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
     """Plan a batch, work it off, write it, and return the exit code that it has."""
+    if workers is not None and workers < 1:
+        raise InputError("--workers", workers, "a whole number, at least 1")
     with _terminated_as_interrupted():
         try:
             from synth.jobs.console import batch_display, print_summary, print_table_remarks

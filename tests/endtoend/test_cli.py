@@ -160,6 +160,19 @@ def test_check_takes_one_designation_even_as_a_list(tmp_path: Path) -> None:
     assert "parts: inner_plate" in refused(at_once("check", path))
 
 
+def test_own_limits_on_variables_and_counts_are_tested_as_well(tmp_path: Path) -> None:
+    path = tmp_path / "design.yaml"
+    own = "\nlimits: {friction_surfaces: '2 .. 4', ring_outer_diameter: '<= 1 m'}\n"
+    path.write_text(LECTURE.read_text() + own)
+    done = at_once("check", path)
+    assert done.returncode == 3
+    assert "violated: friction_surfaces <= 4" in done.stdout
+    path.write_text(LECTURE.read_text() + own.replace("2 .. 4", "2 .. 400"))
+    done = at_once("check", path)
+    assert done.returncode == 0, done.stderr
+    assert "all 20 limits that apply hold" in done.stdout
+
+
 # ---- bad input ------------------------------------------------------------------------------------------------------
 
 
@@ -179,6 +192,8 @@ def test_check_takes_one_designation_even_as_a_list(tmp_path: Path) -> None:
         ("run", SMALL.replace("core 4", "core 4711"), ["core 4711"]),
         ("run", SMALL + "values: {z: 10}\n", ["values", "clutchsynth check"]),
         ("run", SMALL + "catalogs: nowhere\n", ["catalogs", "nowhere"]),
+        ("run", SMALL + "gap: 0.9\n", ["gap", "1e-6 to 0.5"]),
+        ("explain", "family: any\nrequirements: {load_torque: 600 N*m}\n", ["family", "one family", "clutchsynth run"]),
         ("check", SMALL, ["values", "missing", "clutchsynth run"]),
         ("check", SMALL + "values: {z: 10}\n", ["fix", "under values"]),
         ("check", "family: multi_plate_clutch\nvalues: {q: 1}\n", ["load_torque"]),
