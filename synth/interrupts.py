@@ -1,10 +1,10 @@
-"""Ctrl-C while symbols are made: it waits, or it would be lost."""
+"""Ctrl-C that could be lost: while symbols are made it waits, and a batch asks for it again."""
 
 from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
@@ -28,3 +28,30 @@ def held_back() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
         if heard:
             before(signal.SIGINT, heard[0])
+
+
+@contextmanager
+def heard_again() -> Iterator[Callable[[], None]]:
+    """Take the signal by which a scheduler ends a program as a Ctrl-C, and remember both.
+
+    What is raised while an object is cleared away, or inside a library that drops it, is lost. The block is given a
+    function that raises KeyboardInterrupt where that has happened.
+    """
+    heard: list[int] = []
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    def check() -> None:
+        if heard:
+            raise KeyboardInterrupt
+
+    # Who starts a program with Ctrl-C switched off does not want it heard.
+    deaf = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, *([] if deaf else [signal.SIGINT]))}
+    try:
+        yield check
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

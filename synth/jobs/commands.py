@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from synth.errors import InputError
+from synth.interrupts import heard_again
 from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, objectives, tell
 from synth.terminal_options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from synth.jobs.run import BatchJob
     from synth.jobs.store import Store
 
+Progress = Callable[[Mapping[str, Any]], None]
 DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
 
 RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
@@ -108,12 +108,13 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
     """Plan a batch, work it off, write it, and return the exit code that it has."""
     if workers is not None and workers < 1:
         raise InputError("--workers", workers, "a whole number, at least 1")
-    with _terminated_as_interrupted():
+    with heard_again() as check:
         try:
             from synth.jobs.console import batch_display, print_summary, print_table_remarks
 
             job = make()
             continues = job.plan()
+            check()
         except KeyboardInterrupt:
             tell("stopped while the rows were checked; nothing is kept")
             raise typer.Exit(STOPPED) from None
@@ -121,7 +122,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
             if not quiet:
                 print_table_remarks(job, continues)
             with batch_display(quiet) as progress:
-                stopped = job.work(_processes(workers), scheduler, progress, tell)
+                stopped = job.work(_processes(workers), scheduler, _checked(progress, check), tell)
             counts = job.write()
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
@@ -148,18 +149,15 @@ def _code(counts: dict[str, int], stopped: str) -> int:
     return 0 if counts.get("optimal", 0) + counts.get("feasible", 0) else INFEASIBLE
 
 
-@contextmanager
-def _terminated_as_interrupted() -> Iterator[None]:
-    """Take the signal by which a scheduler ends a program as a Ctrl-C: stop, and leave everything in order."""
+def _checked(progress: Progress | None, check: Callable[[], None]) -> Progress:
+    """Return what shows progress, and stops where a signal has been lost."""
 
-    def stop(number: int, frame: Any) -> None:
-        raise KeyboardInterrupt
+    def show(state: Mapping[str, Any]) -> None:
+        check()
+        if progress is not None:
+            progress(state)
 
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
+    return show
 
 
 # ---- jobs -----------------------------------------------------------------------------------------------------------
@@ -220,10 +218,11 @@ def resume(
     from synth.jobs.run import resume as go_on
 
     store, found = _find(job, database)
-    with store, _terminated_as_interrupted():
+    with store, heard_again() as check:
         try:
             with batch_display(quiet) as progress:
-                stopped = go_on(store, found.id, _processes(workers), scheduler, progress, tell)
+                shown = _checked(progress, check)
+                stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
             counts = write_outputs(store, found.id, Path(found.folder))
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")

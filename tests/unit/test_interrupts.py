@@ -3,11 +3,12 @@
 import os
 import signal
 import threading
+from contextlib import suppress
 
 import pytest
 
 import synth
-from synth.interrupts import held_back
+from synth.interrupts import heard_again, held_back
 from synth.tables import Catalogs
 
 
@@ -91,5 +92,27 @@ def test_other_threads_and_deaf_processes_are_left_alone():
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         with held_back():
             press_ctrl_c()
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_was_lost_on_its_way_is_heard_when_asked_for_again(number):
+    before = signal.getsignal(number)
+    with heard_again() as check:
+        check()
+        with suppress(KeyboardInterrupt):  # as a library does that drops whatever is raised
+            os.kill(os.getpid(), number)
+        with pytest.raises(KeyboardInterrupt):
+            check()
+    assert signal.getsignal(number) is before
+
+
+def test_who_does_not_want_to_hear_of_ctrl_c_does_not():
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with heard_again() as check:
+            press_ctrl_c()
+            check()
     finally:
         signal.signal(signal.SIGINT, before)
