@@ -213,12 +213,11 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
     if not isinstance(value, str):
         parse_quantity(value, declared, field)
         return float(value)
-    match = NUMBER.match(value)
+    match, said = NUMBER.match(value), whole if isinstance(whole, str) else value
     if match is None or not math.isfinite(float(match.group(1))):
-        raise InputError(field, whole if isinstance(whole, str) else value, f"numbers with one unit, as in {RANGE}")
+        raise InputError(field, said, f"numbers with one unit, as in {RANGE}")
     number, unit = match.groups()
     if re.match(r",\s*[0-9]", unit):
-        said = whole if isinstance(whole, str) else value
         raise InputError(field, said, "a decimal point instead of a decimal comma")
     if unit:
         parse_quantity(f"{number} {unit}", declared, field)
