@@ -7,7 +7,8 @@ intervals are looked into at a time, so that what they ask can be answered toget
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from typing import Any, Protocol
@@ -20,7 +21,7 @@ from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search import Question
 from synth.study import Break, Composition, Step, best_design
-from synth.together import TogetherSearch, different, groups_of
+from synth.together import TogetherSearch, Wider, alike, different, groups_of
 from synth.vary import Steps, Value
 
 WIDTH = 1e-3  # of a value: a break is known to be within this
@@ -146,12 +147,15 @@ class _Oracle:
         self.senses: dict[str, str] = {}
         self.known: dict[_Wanted, _Best] = {}
         self.made: dict[str, Design] = {}  # a design of each composition asked about alone
+        self.places: Iterable[tuple[Value, ...]] = ()  # the values at the steps
         self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
         self.moving = different([q.instance for q in steps.questions])
+        self.wider: dict[Any, Wider] = {}  # by what questions have in common
 
     def breaks(self, pairs: Sequence[tuple[Step, Step]]) -> list[list[Break]]:
         """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
         found: list[list[Break]] = [[] for _ in pairs]
+        self.places = dict.fromkeys(step.values for pair in pairs for step in pair)
         for a, b in pairs:
             self.senses |= _objectives(a.front, b.front)
         under_way = []
@@ -185,21 +189,36 @@ class _Oracle:
             own = [w for w in new if (w.objective, w.values) in position]
             ideas = list(self.ideas.get(own[0].objective, {}).values())
             questions = [posed[places[k]] for k in group]
-            search = TogetherSearch(questions, self.workers, None, self.left(), ideas, self.moving)
+            search = TogetherSearch(questions, self.workers, None, self.left(), ideas, self._wider(questions[0]))
             self._together(search, own, [position[w.objective, w.values] for w in own])
         for w in new:
             if w not in self.known:
-                self._take(w, self._alone(w))
+                front = self._alone(w)
+                proven = front is None or front.certificate.kind == "global"
+                self._take(w, _Best(best_design(front, w.objective), proven))
+
+    def _wider(self, question: Question) -> Wider:
+        """Return what holds for all values between the steps, for questions like one."""
+        common = alike(question)
+        if common not in self.wider:
+            ends = [q for q in self._at_steps(next(iter(question.chosen))) if alike(q) == common]
+            self.wider[common] = Wider([question, *ends], self.moving)
+        return self.wider[common]
+
+    def _at_steps(self, objective: str) -> Iterator[Question]:
+        """Yield the questions for the best design in one objective at the steps."""
+        for values in self.places:
+            # What the family refuses has no design.
+            with suppress(InputError):
+                yield self._question(_Wanted(objective, values))
 
     def _together(self, search: TogetherSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
         """Take what can be answered together."""
         best = [(w, k) for w, k in zip(wanted, positions, strict=True) if not w.alone]
         if best:
-            fronts = search.answers([k for _, k in best], reported=False)
-            for w, k in best:
-                front = fronts[k]
-                if front is not None:
-                    self._take(w, front)
+            for (w, _), (design, proven) in zip(best, search.best([k for _, k in best]), strict=True):
+                if proven:
+                    self._take(w, _Best(design, True))
         alone = [(w, k) for w, k in zip(wanted, positions, strict=True) if w.alone]
         for (w, _), (design, proven) in zip(
             alone, search.best_with([(k, self.made[w.alone]) for w, k in alone]), strict=True
@@ -230,11 +249,10 @@ class _Oracle:
             self.left()
         return front
 
-    def _take(self, w: _Wanted, front: ParetoFront | None) -> None:
-        design = best_design(front, w.objective)
-        self.known[w] = _Best(design, front is None or front.certificate.kind == "global")
-        if design is not None and not w.alone:
-            self.ideas.setdefault(w.objective, {}).setdefault(_words(design), design)
+    def _take(self, w: _Wanted, best: _Best) -> None:
+        self.known[w] = best
+        if best.design is not None and not w.alone:
+            self.ideas.setdefault(w.objective, {}).setdefault(_words(best.design), best.design)
 
 
 Asking = Generator[list[_Wanted], None, Any]  # a search that yields what it wants to know

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -219,17 +220,10 @@ class Formulation:
         self.immovable = self._immovable()
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
-        self.contracted = 0
-        self.workers = 1
-        self.nlp_solves = 0
-        self.work = 0  # of the solver without code of its own: evaluations times nodes of the program
-        self.solved_combinations: set[int] = set()
-        self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
-        self.archive = Archive(range(traded), self.n, len(self.goals))
+        self.traded, self.workers = traded, 1
         self._rows: Rows | None = None
-        self._focused: np.ndarray | None = None
         self.propagation = Propagation(instance, cuts, self.goals, self.bounded, conflict, compiled, alike)
-        self.cells = self.propagation.cells
+        self._begin()
         self.width = self.propagation.width
         carried = np.zeros(self.width - self.n, dtype=bool)
         self._gridded = np.concatenate([self.gridded, carried])
@@ -239,6 +233,30 @@ class Formulation:
         self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
         self._edged = self._has_edges()
         self._prepare_screen()
+
+    def among(self, instance: Instance) -> Formulation | None:
+        """Return the same for some of the questions it was made for, whose numbers lie within those known here.
+
+        As for :meth:`Propagation.among`.
+        """
+        propagation = self.propagation.among(instance)
+        if propagation is None:
+            return None
+        own = copy.copy(self)
+        own.instance, own.propagation = instance, propagation
+        own._begin()
+        return own
+
+    def _begin(self) -> None:
+        """Know no design yet, and count from nothing."""
+        self.cells = self.propagation.cells
+        self.archive = Archive(range(self.traded), self.n, len(self.goals))
+        self.contracted = 0
+        self.nlp_solves = 0
+        self.work = 0  # of the solver without code of its own: evaluations times nodes of the program
+        self.solved_combinations: set[int] = set()
+        self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
+        self._focused: np.ndarray | None = None
 
     def _immovable(self) -> np.ndarray:
         """Return which limits depend on no continuous variable that is free to move."""

@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -95,6 +96,15 @@ class Selection:
     choices: dict[str, np.ndarray] = field(default_factory=dict)
     left_out: list[dict[str, str]] = field(default_factory=list)
     offered: dict[str, int] = field(default_factory=dict)
+
+
+def _present(table: Table, names: Sequence[str]) -> np.ndarray:
+    """Return which rows have a value in one of some columns."""
+    present = np.zeros(len(table), dtype=bool)
+    for name in names:
+        if table.has(name):
+            present |= ~np.isnan(table.number(name))
+    return present
 
 
 def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
@@ -211,7 +221,7 @@ class Instance:
             elif isinstance(r.default, float):
                 values[r.name] = r.default
             else:
-                known = {**{str(model.declaration.requirements[n].sx): v for n, v in values.items()}, **row_values}
+                known = {**{model.requirement_symbols[n]: v for n, v in values.items()}, **row_values}
                 values[r.name] = self._number(r.default, known)
         return values
 
@@ -266,8 +276,8 @@ class Instance:
         return float(function.call([values[name] for name in names])[0])
 
     def _symbol_values(self) -> dict[str, float]:
-        requirements = self.model.declaration.requirements
-        return {**{str(requirements[n].sx): v for n, v in self.requirements.items()}, **self.row_values}
+        symbols = self.model.requirement_symbols
+        return {**{symbols[n]: v for n, v in self.requirements.items()}, **self.row_values}
 
     def _involved(self, expression: Any) -> str:
         used = {str(s) for s in ca.symvar(expanded(expression, self.model.calls))}
@@ -461,7 +471,7 @@ class Instance:
         """Return which rows of the table meet the conditions of the slot."""
         keep = np.ones(len(table), dtype=bool)
         for text in part.where:
-            keep &= Instance._meets(text, table)
+            keep &= table.once(("meets", text), partial(Instance._meets, text, table))
         return keep
 
     @staticmethod
@@ -479,10 +489,7 @@ class Instance:
         for column in part.columns.values():
             if not column.required:
                 continue
-            present = np.zeros(len(table), dtype=bool)
-            for name in column.columns:
-                if table.has(name):
-                    present |= ~np.isnan(table.number(name))
+            present = table.once(("present", column.columns), partial(_present, table, column.columns))
             for row in np.flatnonzero(keep & ~present):
                 self._leave_out(part.slot, table.designations[row], f"no value in column {' or '.join(column.columns)}")
             keep = keep & present

@@ -67,6 +67,8 @@ class Model:
         self.calls = list(calls)
         self.variables = list(declaration.variables.values())
         self.limits = list(declaration.limits.values())
+        requirements = declaration.requirements.values()
+        self.requirement_symbols = {r.name: str(r.sx) for r in requirements if r.sx is not None}
         self.data_inputs = self._data_inputs(declaration)
         self.inputs = [v.sx for v in self.variables] + [i.sx for i in self.data_inputs]
         self.units = {name: unit for name, unit, _ in declaration.quantities()}

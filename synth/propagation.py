@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import casadi as ca
@@ -105,19 +106,23 @@ class Propagation:
         # Objectives that only settle ties would cost time where others are sought.
         wanted = {False: goals[:bounded], True: goals}
         self._contractors = {every: contractor(own, ()) for every, own in wanted.items()}
-        self.factors = self._factors(names, owner)
+        self._read = self._data_read()
+        self.factors = [self._factor(f, name, owner) for f, name in enumerate(names)]
         self._constants = dict[bool, list[float]]()
         self._least = dict[int, float]()
-        per_row = {}
         for every, c in self._contractors.items():
             values = c.constant_values(self._inputs(owner))
             self._constants[every] = [float(np.asarray(v).ravel()[0]) for v in values]
-            per_row[every] = self._values_of_tables(c)
-            for node, v in zip(c.tables, per_row[every], strict=True):
+        places = range(len(names))
+        per_row = {every: [self._values_of_tables(c, f) for f in places] for every, c in self._contractors.items()}
+        for values in per_row.values():
+            for node, v in ((node, v) for own in values for node, v in own.items()):
                 known = v[~np.isnan(v)]
                 self._least[node] = float(known.min()) if len(known) else np.nan
         # Objectives that only settle ties cut nothing off: what holds over the whole question is the same without them.
-        hull = (np.array([np.min(v) for v in per_row[True]]), np.array([np.max(v) for v in per_row[True]]))
+        every_row = {node: v for own in per_row[True] for node, v in own.items()}
+        ordered = [every_row[node] for node in self._contractors[True].tables]
+        hull = (np.array([np.min(v) for v in ordered]), np.array([np.max(v) for v in ordered]))
         self._root = self._contractors[True].root(
             instance.lower, instance.upper, hull, self._constants[True], self.bounds
         )
@@ -132,22 +137,59 @@ class Propagation:
         self.low, self.high = np.array([a for a, _ in ends]), np.array([b for _, b in ends])
         self.positive = self.low > 0
         self.grids = [*instance.grids(), *(np.empty(0) for _ in self.pivots)]
-        self._influence = self._anywhere = self._influences()
-        weights = self._influence.sum(axis=0)
-        trees = [ClusterTree(f, weights[[self.n + i for i in f.inputs]]) for f in self.factors]
-        self.cells = Cells(trees, instance.radix)
-        self._tables = {every: self._tables_of(c, per_row[every]) for every, c in self._contractors.items()}
-        self._spreads = [self._spread(tree) for tree in trees]
+        self._range = np.maximum(self.high - self.low, 1e-300)
+        self._codes: dict[tuple[bool, bool], Code] = {}
         self._bits = bounded if bounded <= MOST_BITS else 0
+        self._anywhere = self._influences()
+        self.cells = Cells([self._tree(f) for f in self.factors], instance.radix)
+        self._tables = {
+            every: [self._tables_of(c, f, per_row[every][f]) for f in places] for every, c in self._contractors.items()
+        }
+        self._begin()
+
+    def among(self, instance: Instance) -> Propagation | None:
+        """Return the same for other rows of the first factor: what holds over all rows here is not sought again.
+
+        Parameters
+        ----------
+        instance : Instance
+            Like that of this propagation but for the first factor.
+
+        Returns
+        -------
+        Propagation, optional
+            None where rows do not lie within those known here.
+        """
+        own = copy.copy(self)
+        own.instance = instance
+        first = own._factor(0, instance.factors()[0], instance.owners())
+        known = self.factors[0].columns
+        if not np.all((first.columns >= known.min(axis=0)) & (first.columns <= known.max(axis=0))):
+            return None
+        own.factors = [first, *self.factors[1:]]
+        own.cells = Cells([own._tree(first), *self.cells.trees[1:]], instance.radix)
+        own._tables = {
+            every: [own._tables_of(c, 0, own._values_of_tables(c, 0)), *self._tables[every][1:]]
+            for every, c in own._contractors.items()
+        }
+        own._begin()
+        return own
+
+    def _begin(self) -> None:
+        """Know nothing yet of where to split but what holds anywhere."""
+        self._influence = self._anywhere
+        self._spreads = [self._spread(tree) for tree in self.cells.trees]
+        self._steep = self._steep_of_moving()
         self._learned = np.zeros((1 << self._bits, len(self.cuts) + len(self.goals)))
         self._lessons = np.zeros(1 << self._bits, dtype=np.int64)
         self._importance = np.zeros(1 << self._bits)
         self.weights = self._weights()
-        self._steep = self._steep_of_moving()
-        self._range = np.maximum(self.high - self.low, 1e-300)
-        self._codes: dict[tuple[bool, bool], Code] = {}
         self._prepared: dict[bool, Prepared] = {}
         self._contracted: Counter[tuple[bool, bool]] = Counter()
+        self._halved: Halves | None = None
+
+    def _tree(self, factor: Factor) -> ClusterTree:
+        return ClusterTree(factor, self._anywhere.sum(axis=0)[[self.n + i for i in factor.inputs]])
 
     def _inputs(self, owner: Sequence[int]) -> list[Any]:
         """Return what the program reads where only requirements are known."""
@@ -186,7 +228,8 @@ class Propagation:
             low, high = max(low, float(root.low[node])), min(high, float(root.high[node]))
         return min(low, high), high
 
-    def _factors(self, names: Sequence[str], owner: Sequence[int]) -> list[Factor]:
+    def _data_read(self) -> set[int]:
+        """Return the numbers of the data inputs that limits, objectives or refusals depend on."""
         instance, model = self.instance, self.model
         wanted = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
         needed = set(model.program.needed(wanted)) if wanted else set()
@@ -194,49 +237,49 @@ class Propagation:
         for refusal in instance.joint_refusals:
             symbols = model.function(("symbols", id(refusal)), partial(_symbols, refusal.when, model.calls))
             read |= {k for k, e in enumerate(model.data_inputs) if str(e.sx) in symbols}
-        result = []
-        for f, name in enumerate(names):
-            inputs = tuple(k for k in range(len(owner)) if owner[k] == f and k in read)
-            columns = np.empty((instance.radix[f], len(inputs)))
-            for position, k in enumerate(inputs):
-                columns[:, position] = instance.column(k)
-            result.append(Factor(name, inputs, columns))
-        return result
+        return read
 
-    def _values_of_tables(self, contractor: Contractor) -> list[np.ndarray]:
-        """Return every tabulated node per row of its factor."""
-        result = []
-        data = self._one_data()
-        by_factor = {}
-        for f, factor in enumerate(self.factors):
-            inputs: list[Any] = [None] * self.n + list(data)
-            for position, k in enumerate(factor.inputs):
-                inputs[self.n + k] = factor.columns[:, position]
-            with np.errstate(all="ignore"):
-                by_factor[f] = contractor.tabulate(inputs)
-        for position, node in enumerate(contractor.tables):
-            f = contractor.factor[node]
-            rows = self.instance.radix[f]
-            result.append(np.broadcast_to(np.asarray(by_factor[f][position], dtype=float), (rows,)))
-        return result
+    def _factor(self, f: int, name: str, owner: Sequence[int]) -> Factor:
+        """Return a factor with the numbers of its rows that anything depends on."""
+        inputs = tuple(k for k, own in enumerate(owner) if own == f and k in self._read)
+        columns = np.empty((self.instance.radix[f], len(inputs)))
+        for position, k in enumerate(inputs):
+            columns[:, position] = self.instance.column(k)
+        return Factor(name, inputs, columns)
+
+    def _values_of_tables(self, contractor: Contractor, f: int) -> dict[int, np.ndarray]:
+        """Return every node that is tabulated by one factor, per row of it."""
+        factor = self.factors[f]
+        inputs: list[Any] = [None] * self.n + self._one_data()
+        for position, k in enumerate(factor.inputs):
+            inputs[self.n + k] = factor.columns[:, position]
+        with np.errstate(all="ignore"):
+            values = contractor.tabulate(inputs)
+        return {
+            node: np.broadcast_to(np.asarray(v, dtype=float), (self.instance.radix[f],))
+            for node, v in zip(contractor.tables, values, strict=True)
+            if contractor.factor[node] == f
+        }
 
     def _tables_of(
-        self, contractor: Contractor, per_row: Sequence[np.ndarray]
-    ) -> list[tuple[int, np.ndarray, np.ndarray]]:
-        """Return, per tabulated node, its factor and its ends per cluster."""
-        root = self._root
-        result: list[tuple[int, np.ndarray, np.ndarray]] = [(-1, np.empty(0), np.empty(0))] * len(contractor.tables)
-        for f, tree in enumerate(self.cells.trees):
-            own = [p for p, node in enumerate(contractor.tables) if contractor.factor[node] == f]
-            if not own:
-                continue
-            low, high = tree.hull(np.stack([per_row[p] for p in own], axis=1))
-            for column, p in enumerate(own):
-                node = contractor.tables[p]
-                # What the whole question excludes is cut off, so that signs settled there hold for every cluster.
-                ends = np.fmax(low[:, column], root.low[node]), np.fmin(high[:, column], root.high[node])
-                result[p] = (f, np.ascontiguousarray(ends[0]), np.ascontiguousarray(ends[1]))
+        self, contractor: Contractor, f: int, per_row: Mapping[int, np.ndarray]
+    ) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+        """Return the ends per cluster of the nodes that are tabulated by one factor."""
+        if not per_row:
+            return {}
+        nodes, root = list(per_row), self._root
+        low, high = self.cells.trees[f].hull(np.stack([per_row[k] for k in nodes], axis=1))
+        result = {}
+        for column, node in enumerate(nodes):
+            # What the whole question excludes is cut off, so that signs settled there hold for every cluster.
+            ends = np.fmax(low[:, column], root.low[node]), np.fmin(high[:, column], root.high[node])
+            result[node] = np.ascontiguousarray(ends[0]), np.ascontiguousarray(ends[1])
         return result
+
+    def _ordered_tables(self, every: bool) -> list[tuple[int, np.ndarray, np.ndarray]]:
+        """Return, per tabulated node in the order of the contractor, its factor and its ends per cluster."""
+        ends = {node: (f, *pair) for f, own in enumerate(self._tables[every]) for node, pair in own.items()}
+        return [ends[node] for node in self._contractors[every].tables]
 
     def _spread(self, tree: ClusterTree) -> np.ndarray:
         """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""
@@ -380,7 +423,7 @@ class Propagation:
         count = len(cell)
         function = self._code(every, caps is not None).function(self._root)
         variables = [(low[:, i], high[:, i]) for i in range(self.width)]
-        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
+        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._ordered_tables(every)]
         root = self._root
         with np.errstate(all="ignore"):
             dead, goals, opens = function(
@@ -471,11 +514,13 @@ class Propagation:
             self._prepared[every] = Prepared(self._contractors[every], self._question(every, margins))
         return self._prepared[every]
 
-    @cached_property
+    @property
     def _halves(self) -> Halves:
-        trees = self.cells.trees
-        ranges = np.concatenate([self.instance.upper - self.instance.lower, np.zeros(len(self.pivots))])
-        return Halves([t.left for t in trees], [t.right for t in trees], ranges)
+        if self._halved is None:
+            trees = self.cells.trees
+            ranges = np.concatenate([self.instance.upper - self.instance.lower, np.zeros(len(self.pivots))])
+            self._halved = Halves([t.left for t in trees], [t.right for t in trees], ranges)
+        return self._halved
 
     @property
     def compiled_at_once(self) -> bool:
@@ -491,7 +536,7 @@ class Propagation:
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
         instance = self.instance
         return Question(
-            tables=self._tables[every],
+            tables=self._ordered_tables(every),
             constants=np.array(self._constants[every]),
             rights=np.array(self.bounds),
             root=self._root,

@@ -17,7 +17,7 @@ import json
 import math
 import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib.metadata import entry_points
@@ -152,6 +152,7 @@ class Table:
         self.labels = tuple(labels)
         self.user_rows = np.array(user_rows, dtype=np.bool_)
         self.user_rows.setflags(write=False)
+        self._made: dict[Any, BoolArray] = {}
         self._data: dict[str, FloatArray | tuple[str, ...]] = {}
         for column, cells in data.items():
             if isinstance(cells, np.ndarray):
@@ -166,6 +167,22 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<Table {self.name}: {len(self)} rows, {len(self.columns)} columns, {self.origin}>"
+
+    def once(self, key: Any, make: Callable[[], BoolArray]) -> BoolArray:
+        """Return a mask of the rows that is made once per table.
+
+        Parameters
+        ----------
+        key : hashable
+            What the mask tells.
+        make : callable
+            Makes it.
+        """
+        if key not in self._made:
+            mask = make()
+            mask.setflags(write=False)
+            self._made[key] = mask
+        return self._made[key]
 
     @cached_property
     def _symbols(self) -> dict[str, str]:

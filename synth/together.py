@@ -276,6 +276,30 @@ class Each:
         return result
 
 
+class Wider:
+    """What holds for many questions, found once for all searches of some of them.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike, each with one objective.
+    moving : collection of str
+        As for :class:`Together`.
+    """
+
+    def __init__(self, questions: Sequence[Question], moving: Collection[str]) -> None:
+        self.moving = moving
+        self._together = Together([q.instance for q in questions], moving)
+        self.goals = with_ties(self._together.model, dict(questions[0].chosen))
+        self._forms: dict[bool, Formulation] = {}
+
+    def among(self, together: Together, conflict: bool) -> Formulation | None:
+        """Return questions prepared for a search; None where their numbers are not among those of these."""
+        if conflict not in self._forms:
+            self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict)
+        return self._forms[conflict].among(together)
+
+
 class TogetherSearch:
     """One search for several questions.
 
@@ -289,8 +313,8 @@ class TogetherSearch:
         Seconds; then ``Stopped`` is raised.
     ideas : list of Design
         Designs of similar questions, where to look first. They prove nothing.
-    moving : collection of str, optional
-        As for :class:`Together`.
+    wider : Wider, optional
+        Of questions that these are among.
     """
 
     def __init__(
@@ -300,57 +324,63 @@ class TogetherSearch:
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
         ideas: Sequence[Design] = (),
-        moving: Collection[str] = (),
+        wider: Wider | None = None,
     ) -> None:
         self.started = time.monotonic()
         self.questions, self.progress, self.ideas = list(questions), progress, ideas
         first = questions[0]
-        self.together = Together([q.instance for q in questions], moving)
+        self.wider, self.workers = wider, workers
+        self.together = Together([q.instance for q in questions], () if wider is None else wider.moving)
         self.gap = float(first.settings["gap"])
         self.goals = with_ties(first.instance.model, dict(first.chosen))
-        self.form = Formulation(self.together, self.goals, 1)
-        self.form.workers = workers
+        self.form = self._prepared()
         self.known = BestOfEach(self.together, 0, self.form.n, len(self.form.goals))
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.rng = np.random.default_rng(first.settings["seed"])
         self.pool = self.form.nothing()
 
-    def answers(self, wanted: Sequence[int] | None = None, reported: bool = True) -> list[ParetoFront | None]:
-        """Return the front of each question; None where it is not proven, or has no design: it is better asked alone.
+    def answers(self) -> list[ParetoFront | None]:
+        """Return the front of each question; None where it is not proven or has no design: better asked alone."""
+        proven = self._search(self._told_apart(), False)
+        chosen = [c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]]
+        if not chosen:
+            return [None] * len(self.questions)
+        solves = self.form.nlp_solves
+        return self._fronts(settle_ties(self.form, self.pool, self._second(chosen), 1), solves)
+
+    def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs of some questions, None where there is none, and whether that is proven.
 
         Parameters
         ----------
-        wanted : list of int, optional
-            Positions of the questions to answer; all unless given.
-        reported : bool
-            With ties settled, equal designs named, and elasticities.
+        wanted : list of int
+            Positions of the questions.
         """
-        nothing: list[ParetoFront | None] = [None] * len(self.questions)
+        asked = self._told_apart() & np.isin(np.arange(len(self.questions)), wanted)
+        proven = self._search(asked, True)
+        designs = self._designs([(c, ()) for c in self.known], priced=False)
+        return [(designs.get(q), bool(proven[q])) for q in wanted]
+
+    def _search(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
+        """Find the best design of each question asked; tell of which it is proven.
+
+        ``excluded``: also where no question has a design that is easily found; then it is proven that there is none.
+        """
         self.pool = self.form.root()
-        asked = self._told_apart()
-        if wanted is not None:
-            asked &= np.isin(np.arange(len(asked)), wanted)
         if not len(self.pool) or not asked.any():
-            return nothing
-        purpose = Each(self.form, self.known, self._slack(0), asked)
-        self._first(purpose)
-        if not len(self.known):
-            return nothing
+            return asked
+        self._first(Each(self.form, self.known, self._slack(0), asked))
         found = np.isfinite(self.known.best())
-        purpose = Each(self.form, self.known, self._slack(0), asked & found)
-        outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, EFFORT * int(found.sum()))
-        unproven = purpose.open_questions(outcome.open) | (asked & ~found)
-        if unproven.any():
+        unproven = asked & ~found
+        if found.any():
+            purpose = Each(self.form, self.known, self._slack(0), asked & found)
+            outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, EFFORT * int(found.sum()))
+            unproven |= purpose.open_questions(outcome.open)
+        if unproven.any() and (excluded or found.any()):
             unproven = self._unproven_in_conflict(unproven)
-        asked &= ~unproven
-        solves = self.form.nlp_solves
-        chosen = [c for c, q in zip(self.known, self.known.questions(), strict=True) if asked[q]]
-        if not chosen:
-            return nothing
-        if not reported:
-            return self._fronts([(c, ()) for c in chosen], False, solves)
-        return self._fronts(settle_ties(self.form, self.pool, self._second(chosen), 1), True, solves)
+        proven: np.ndarray = asked & ~unproven
+        return proven
 
     def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
         """Return the best designs with given parts, counts and choices, and whether each is proven.
@@ -393,8 +423,8 @@ class TogetherSearch:
 
     def _unproven_in_conflict(self, asked: np.ndarray) -> np.ndarray:
         """Try again with boxes that carry what limits share, which helps where limits leave little."""
-        form = Formulation(self.together, self.goals, 1, conflict=True)
-        form.workers, form.work = self.form.workers, self.form.work
+        form = self._prepared(conflict=True)
+        form.work = self.form.work
         form.solved_combinations = self.form.solved_combinations
         form.propagation.taught_by(self.form.propagation.lessons())
         # Designs of other questions would only seem to say that those of these are found.
@@ -408,6 +438,13 @@ class TogetherSearch:
         self.form.contracted += form.contracted
         self.form.nlp_solves += form.nlp_solves
         return purpose.open_questions(outcome.open)
+
+    def _prepared(self, conflict: bool = False) -> Formulation:
+        form = None if self.wider is None else self.wider.among(self.together, conflict)
+        if form is None:
+            form = Formulation(self.together, self.goals, 1, conflict)
+        form.workers = self.workers
+        return form
 
     def _told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
@@ -529,15 +566,13 @@ class TogetherSearch:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _fronts(
-        self, found: Sequence[tuple[Candidate, tuple[str, ...]]], priced: bool, solves: int
-    ) -> list[ParetoFront | None]:
+    def _fronts(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], solves: int) -> list[ParetoFront | None]:
         """Return the front of each question from the best designs, each with what ties with it."""
         form, together = self.form, self.together
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.question(every), minlength=len(together.each))
         fronts: list[ParetoFront | None] = [None] * len(together.each)
-        for number, design in self._designs(found, priced).items():
+        for number, design in self._designs(found, priced=True).items():
             question = self.questions[number]
             total, own = question.instance.combinations, int(solved[number])
             statistics = {

@@ -257,7 +257,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
 
 
 def _joined(fingerprints: Sequence[str]) -> str:
-    """Return one hash of several: of a question, and of those that its ideas come from."""
+    """Return one hash of several."""
     return hashlib.sha256(" ".join(fingerprints).encode()).hexdigest()
 
 
@@ -274,9 +274,10 @@ def _fingerprint(question: Question, weights: bool = True) -> str:
         "family": instance.problem.name,
         "options": {n: o.chosen for n, o in instance.model.declaration.options.items()},
         "requirements": instance.requirements,
-        "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
+        "rows": {s.slot: _joined([s.table.hashes[int(r)] for r in s.rows]) for s in selection.slots},
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
-        "ranges": [instance.lower.tolist(), instance.upper.tolist(), [g.tolist() for g in instance.grids()]],
+        "ranges": [instance.lower.tolist(), instance.upper.tolist()],
+        "grids": [hashlib.sha256(g.tobytes()).hexdigest() for g in instance.grids()],
         "limits": [repr(x) for x in instance.extra],
         "objectives": dict(question.chosen),
         "settings": {k: repr(v) for k, v in settings.items()},

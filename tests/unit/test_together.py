@@ -15,15 +15,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth import propagation
+from synth import contractor, propagation
 from synth.clock import Stopped
 from synth.feasibility import Status
-from synth.formulation import TIE
+from synth.formulation import TIE, Formulation
 from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
 from synth.search import Question, pose
 from synth.tables import Catalogs
-from synth.together import BestOfEach, Each, Together, TogetherSearch, different, groups_of
+from synth.together import BestOfEach, Each, Together, TogetherSearch, Wider, different, groups_of
 from tests.unit.ropes import Made, Ropes, best_ropes, ropes
 from tests.unit.shaft_brake import CATALOGS as PAIRS_TABLE
 from tests.unit.shaft_brake import FACE, PAIRS, ShaftBrake
@@ -285,15 +285,29 @@ def test_ties_are_named() -> None:
         )
 
 
-def test_only_what_is_wanted_is_answered() -> None:
+def test_the_best_of_some_questions_is_as_answered() -> None:
     questions = asked(FREE, loads(5, 12, 25, 40))
-    answers = TogetherSearch(questions).answers([1, 3])
-    assert [front is not None for front in answers] == [False, True, False, True]
-    bare = TogetherSearch(questions).answers([1, 3], reported=False)
-    for front, short in zip(answers, bare, strict=True):
-        if front is not None and short is not None:
-            assert short.designs[0].elasticity == {}
-            assert short.designs[0].values["cost"] == pytest.approx(front.designs[0].values["cost"], rel=GAP)
+    answers = TogetherSearch(questions).answers()
+    for (design, proven), k in zip(TogetherSearch(questions).best([1, 3]), (1, 3), strict=True):
+        front = answers[k]
+        assert front is not None
+        assert design is not None
+        assert proven
+        assert design.elasticity == {}
+        assert design.values["cost"] == pytest.approx(front.designs[0].values["cost"], rel=GAP)
+
+
+@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
+@pytest.mark.parametrize("at", [(10, 29, 31, 89, 91, 300), (91, 300), (300, 350, 400)])
+def test_that_there_is_no_design_is_proven(problem: DesignProblem, at: tuple[int, ...]) -> None:
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    questions = asked(problem, loads(*at), catalogs=weak)
+    for (design, proven), question in zip(TogetherSearch(questions).best(range(len(at))), questions, strict=True):
+        true = best_ropes(problem, question.instance.requirements, weak)
+        assert proven
+        assert (design is None) == (true is None)
+        if design is not None and true is not None:
+            assert design.values["cost"] == pytest.approx(true.cost, abs=sure_of(true.cost))
 
 
 def test_ideas_prove_nothing() -> None:
@@ -556,11 +570,41 @@ def test_what_may_move_belongs_to_the_question() -> None:
     assert plain.owners()[names["load"]] == moving.owners()[names["load"]] == 0
     assert (plain.owners()[names["share"]], moving.owners()[names["share"]]) == (-1, 0)
     assert moving.column(names["share"]).tolist() == [1.0, 1.0]
-    answers = [TogetherSearch(asked(FREE, loads(5, 6)), moving=m).answers() for m in ((), ("share", "income"))]
+    own = asked(FREE, loads(5, 6))
+    answers = [TogetherSearch(own, wider=w).answers() for w in (None, Wider(own, ("load", "share", "income")))]
     for one, other in zip(*answers, strict=True):
         assert one is not None
         assert other is not None
         assert other.designs[0].values == pytest.approx(one.designs[0].values, rel=1e-6)
+
+
+@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
+@pytest.mark.parametrize("conflict", [False, True])
+def test_what_holds_for_many_questions_is_found_once(
+    problem: DesignProblem, conflict: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wider = Wider(asked(problem, loads(2, 7, 60)), ("load",))
+    roots = []
+    root = contractor.Contractor.root
+    monkeypatch.setattr(contractor.Contractor, "root", lambda *a: roots.append(1) or root(*a))
+    for own in (loads(2, 60), loads(2.5, 6.9, 7, 33), loads(59)):
+        questions = asked(problem, own)
+        together = Together([q.instance for q in questions], ("load",))
+        form = wider.among(together, conflict)
+        assert form is not None
+        # Its clusters and tables are those of questions that are prepared alone.
+        alone = Formulation(together, wider.goals, 1, conflict)
+        roots.pop()
+        for one, other in zip(form.cells.trees, alone.cells.trees, strict=True):
+            assert np.array_equal(one.factor.columns, other.factor.columns)
+        for tree in form.cells.trees:
+            assert len(tree.order) == len(tree.factor.columns)
+    assert len(roots) == 1
+    # What the wider questions do not speak of is prepared anew.
+    beyond = asked(problem, loads(5, 61))
+    assert wider.among(Together([q.instance for q in beyond], ("load",)), conflict) is None
+    answers = [TogetherSearch(beyond, wider=w).answers() for w in (None, wider)]
+    assert [f.designs for f in answers[0] if f] == [f.designs for f in answers[1] if f]
 
 
 # ---- the best of each question --------------------------------------------------------------------------------------
