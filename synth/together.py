@@ -33,7 +33,8 @@ from synth.seeker import Seeker
 from synth.settle import settle_ties
 
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
-EFFORT, EFFORT_IN_CONFLICT = 10_000, 30_000  # boxes per question; what needs more is easier alone
+# Boxes per question; what needs more is easier alone. Where no design is known there may be none to be found.
+EFFORT, EFFORT_IN_CONFLICT, EFFORT_IN_DOUBT = 20_000, 100_000, 20_000
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
 TIE_EFFORT = 200  # boxes per question
 ROUNDS = 6
@@ -433,7 +434,9 @@ class TogetherSearch:
         known.add(self.known.combination[rows], self.known.variables[rows], self.known.phi[rows])
         form.archive = known
         purpose, pool = Each(form, known, self._slack(0), asked), form.root()
-        outcome = cover(form, pool, purpose, self.clock, self.rng, EFFORT_IN_CONFLICT * int(asked.sum()))
+        sure = int((asked & np.isfinite(known.best())).sum())
+        effort = EFFORT_IN_CONFLICT * sure + EFFORT_IN_DOUBT * (int(asked.sum()) - sure)
+        outcome = cover(form, pool, purpose, self.clock, self.rng, effort)
         self.known.add(known.combination, known.variables, known.phi)
         self.form.contracted += form.contracted
         self.form.nlp_solves += form.nlp_solves
