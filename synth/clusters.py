@@ -23,12 +23,15 @@ class Factor:
     inputs : list of int
         Which data inputs of the model the columns are.
     columns : array (rows, columns)
-        SI values; not-a-number where a row has none.
+        SI values; not-a-number where a row has none. First those of the inputs, then caps of objectives.
+    capped : list of int
+        Numbers of the objectives that rows cap.
     """
 
     name: str
     inputs: tuple[int, ...]
     columns: np.ndarray
+    capped: tuple[int, ...] = ()
 
 
 class ClusterTree:

@@ -591,6 +591,10 @@ class Instance:
         names = self.factors()
         return tuple(names.index(e.name) if e.name in names else -1 for e in self.model.data_inputs)
 
+    def caps(self, f: int) -> dict[int, np.ndarray]:
+        """Return what the alternatives of a factor allow objectives to be, by the number of the objective."""
+        return {}
+
     def of(self, combination: int) -> Instance:
         """Return the question that a combination belongs to."""
         return self

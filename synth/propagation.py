@@ -163,8 +163,8 @@ class Propagation:
         own = copy.copy(self)
         own.instance = instance
         first = own._factor(0, instance.factors()[0], instance.owners())
-        known = self.factors[0].columns
-        if not np.all((first.columns >= known.min(axis=0)) & (first.columns <= known.max(axis=0))):
+        read, known = first.columns[:, : len(first.inputs)], self.factors[0].columns
+        if not np.all((read >= known.min(axis=0)) & (read <= known.max(axis=0))):
             return None
         own.factors = [first, *self.factors[1:]]
         own.cells = Cells([own._tree(first), *self.cells.trees[1:]], instance.radix)
@@ -189,7 +189,8 @@ class Propagation:
         self._halved: Halves | None = None
 
     def _tree(self, factor: Factor) -> ClusterTree:
-        return ClusterTree(factor, self._anywhere.sum(axis=0)[[self.n + i for i in factor.inputs]])
+        weights = self._anywhere.sum(axis=0)[[self.n + i for i in factor.inputs]]
+        return ClusterTree(factor, np.concatenate([weights, np.ones(len(factor.capped))]))
 
     def _inputs(self, owner: Sequence[int]) -> list[Any]:
         """Return what the program reads where only requirements are known."""
@@ -241,11 +242,12 @@ class Propagation:
 
     def _factor(self, f: int, name: str, owner: Sequence[int]) -> Factor:
         """Return a factor with the numbers of its rows that anything depends on."""
-        inputs = tuple(k for k, own in enumerate(owner) if own == f and k in self._read)
-        columns = np.empty((self.instance.radix[f], len(inputs)))
-        for position, k in enumerate(inputs):
-            columns[:, position] = self.instance.column(k)
-        return Factor(name, inputs, columns)
+        instance = self.instance
+        inputs, caps = tuple(k for k, own in enumerate(owner) if own == f and k in self._read), instance.caps(f)
+        columns = np.empty((instance.radix[f], len(inputs) + len(caps)))
+        for position, column in enumerate([*(instance.column(k) for k in inputs), *caps.values()]):
+            columns[:, position] = column
+        return Factor(name, inputs, columns, tuple(caps))
 
     def _values_of_tables(self, contractor: Contractor, f: int) -> dict[int, np.ndarray]:
         """Return every node that is tabulated by one factor, per row of it."""
@@ -283,11 +285,14 @@ class Propagation:
 
     def _spread(self, tree: ClusterTree) -> np.ndarray:
         """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""
-        low, high = tree.hull(tree.factor.columns) if tree.factor.inputs else (np.zeros((len(tree), 0)),) * 2
+        factor = tree.factor
+        low, high = tree.hull(factor.columns) if factor.columns.size else (np.zeros((len(tree), 0)),) * 2
         with np.errstate(all="ignore"):
             width = np.where(low > 0, np.log(high / low), high - low)
         width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], width)
-        own = self._influence[:, [self.n + i for i in tree.factor.inputs]]
+        # A cap is as far off as the objective that it caps.
+        capped = np.eye(len(self._influence))[:, [len(self.cuts) + g for g in factor.capped]]
+        own = np.concatenate([self._influence[:, [self.n + i for i in factor.inputs]], capped], axis=1)
         result: np.ndarray = (PARTS_FIRST * width @ own.T).astype(np.float32)
         # Rows that differ only in what has no influence are still different rows.
         result += np.where(tree.leaf, 0.0, self._floor)[:, None].astype(np.float32)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from synth.native_tree import CapTables
 from synth.pareto import rank
 from synth.purposes import reaches_beyond
 from synth.recall import combination_like
-from synth.results import Certificate, Design, ParetoFront
+from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.search import SMALLEST_SIZE, Question
 from synth.seeker import Seeker
 from synth.settle import settle_ties
@@ -35,6 +36,7 @@ from synth.settle import settle_ties
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 # Boxes per question; what needs more is easier alone. Where no design is known there may be none to be found.
 EFFORT, EFFORT_IN_CONFLICT, EFFORT_IN_DOUBT = 20_000, 100_000, 20_000
+MOST_EFFORT = 6_000_000  # boxes of all questions: a quarter of them may have to be kept at a time
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
 TIE_EFFORT = 200  # boxes per question
 ROUNDS = 6
@@ -53,11 +55,16 @@ class Together(Instance):
         That are alike, as :func:`alike` tells.
     moving : collection of str, optional
         Requirements that may differ although they do not here, so that code is compiled once for several searches.
+    caps : mapping, optional
+        Number of an objective -> the most that it may be in each question, as a value with its sign: it tells
+        questions apart.
     """
 
-    def __init__(self, each: Sequence[Instance], moving: Collection[str] = ()) -> None:
+    def __init__(
+        self, each: Sequence[Instance], moving: Collection[str] = (), caps: Mapping[int, np.ndarray] | None = None
+    ) -> None:
         self.__dict__.update(each[0].__dict__)
-        self.each = list(each)
+        self.each, self._caps = list(each), dict(caps or {})
         self.size = each[0].combinations
         names = {*moving, *different(each)}
         self.moving = {n: np.array([i.requirements[n] for i in each]) for n in self.requirements if n in names}
@@ -73,6 +80,10 @@ class Together(Instance):
         """Return, per data input of the model, the number of the factor it belongs to."""
         inputs = zip(super().owners(), self.model.data_inputs, strict=True)
         return tuple(0 if self._moves(entry) else own for own, entry in inputs)
+
+    def caps(self, f: int) -> dict[int, np.ndarray]:
+        """Return what each question allows objectives to be, by the number of the objective."""
+        return self._caps if f == 0 else {}
 
     def of(self, combination: int) -> Instance:
         """Return the question that a combination belongs to."""
@@ -283,15 +294,19 @@ class Wider:
     Parameters
     ----------
     questions : list of Question
-        Alike, each with one objective.
+        Alike.
     moving : collection of str
         As for :class:`Together`.
+    first : str, optional
+        Of several chosen objectives that which comes first; the others settle ties.
     """
 
-    def __init__(self, questions: Sequence[Question], moving: Collection[str]) -> None:
+    def __init__(self, questions: Sequence[Question], moving: Collection[str], first: str | None = None) -> None:
         self.moving = moving
         self._together = Together([q.instance for q in questions], moving)
-        self.goals = with_ties(self._together.model, dict(questions[0].chosen))
+        chosen = dict(questions[0].chosen)
+        in_order = {first: chosen[first], **chosen} if first is not None else chosen
+        self.goals = with_ties(self._together.model, in_order)
         self._forms: dict[bool, Formulation] = {}
 
     def among(self, together: Together, conflict: bool) -> Formulation | None:
@@ -316,6 +331,10 @@ class TogetherSearch:
         Designs of similar questions, where to look first. They prove nothing.
     wider : Wider, optional
         Of questions that these are among.
+    sought : int
+        Number of the objective that is sought.
+    caps : mapping, optional
+        As for :class:`Together`.
     """
 
     def __init__(
@@ -326,29 +345,51 @@ class TogetherSearch:
         time_limit: float | None = None,
         ideas: Sequence[Design] = (),
         wider: Wider | None = None,
+        sought: int = 0,
+        caps: Mapping[int, np.ndarray] | None = None,
     ) -> None:
         self.started = time.monotonic()
-        self.questions, self.progress, self.ideas = list(questions), progress, ideas
+        self.questions, self.progress = list(questions), progress
         first = questions[0]
-        self.wider, self.workers = wider, workers
-        self.together = Together([q.instance for q in questions], () if wider is None else wider.moving)
+        self.wider, self.workers, self.sought = wider or Wider(questions, ()), workers, sought
+        self.together = Together([q.instance for q in questions], self.wider.moving, caps)
         self.gap = float(first.settings["gap"])
-        self.goals = with_ties(first.instance.model, dict(first.chosen))
+        self.goals = self.wider.goals
         self.form = self._prepared()
-        self.known = BestOfEach(self.together, 0, self.form.n, len(self.form.goals))
+        self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
+        for k, values in (caps or {}).items():
+            self.plain[:, k] = self.form.phi_of(np.tile(values[:, None], k + 1))[:, k]
+        self.known = self._none_known()
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.rng = np.random.default_rng(first.settings["seed"])
         self.pool = self.form.nothing()
+        # Where to look first: the variables of known designs, by the combination that each has in any question.
+        self.starts = self._starts(ideas)
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has no design: better asked alone."""
-        proven = self._search(self._told_apart(), False)
-        chosen = [c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]]
-        if not chosen:
-            return [None] * len(self.questions)
-        solves = self.form.nlp_solves
-        return self._fronts(settle_ties(self.form, self.pool, self._second(chosen), 1), solves)
+        chosen = self.optima(self.told_apart())
+        return self.fronts(chosen, 1, self.form.nlp_solves)
+
+    def optima(self, asked: np.ndarray) -> list[Candidate]:
+        """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
+
+        Parameters
+        ----------
+        asked : array of bool (questions,)
+        """
+        proven = self._search(asked, False)
+        return self._second([c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]])
+
+    def glimpse(self) -> list[Candidate]:
+        """Return good designs of the questions, of which nothing is proven."""
+        self.pool = self.form.root()
+        if len(self.pool):
+            purpose = Each(self.form, self.known, self._slack(self.sought), self.told_apart())
+            self._recalled(purpose)
+            self._improve(purpose)
+        return list(self.known)
 
     def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
         """Return the best designs of some questions, None where there is none, and whether that is proven.
@@ -358,10 +399,10 @@ class TogetherSearch:
         wanted : list of int
             Positions of the questions.
         """
-        asked = self._told_apart() & np.isin(np.arange(len(self.questions)), wanted)
+        asked = self.told_apart() & np.isin(np.arange(len(self.questions)), wanted)
         proven = self._search(asked, True)
-        designs = self._designs([(c, ()) for c in self.known], priced=False)
-        return [(designs.get(q), bool(proven[q])) for q in wanted]
+        designs = self._designs([(c, ()) for c in self.known], 0)
+        return [(designs.get(q, [None])[0], bool(proven[q])) for q in wanted]
 
     def _search(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
         """Find the best design of each question asked; tell of which it is proven.
@@ -371,12 +412,13 @@ class TogetherSearch:
         self.pool = self.form.root()
         if not len(self.pool) or not asked.any():
             return asked
-        self._first(Each(self.form, self.known, self._slack(0), asked))
+        self._first(Each(self.form, self.known, self._slack(self.sought), asked))
         found = np.isfinite(self.known.best())
         unproven = asked & ~found
         if found.any():
-            purpose = Each(self.form, self.known, self._slack(0), asked & found)
-            outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, EFFORT * int(found.sum()))
+            purpose = Each(self.form, self.known, self._slack(self.sought), asked & found)
+            effort = min(EFFORT * int(found.sum()), MOST_EFFORT)
+            outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
             unproven |= purpose.open_questions(outcome.open)
         if unproven.any() and (excluded or found.any()):
             unproven = self._unproven_in_conflict(unproven)
@@ -403,22 +445,21 @@ class TogetherSearch:
 
     def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
         form, together = self.form, self.together
-        known = BestOfEach(together, 0, form.n, len(form.goals))
-        form.archive = known
+        form.archive = known = self._none_known()
         like = [(q, combination_like(together.each[q], design), design) for q, design in wanted]
         result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
         rows = [(q, q * together.size + c, design) for q, c, design in like if c is not None]
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
-        asked &= self._told_apart()
-        purpose = Each(form, known, self._slack(0), asked)
+        asked &= self.told_apart()
+        purpose = Each(form, known, self._slack(self.sought), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self._tried(purpose, combinations, self._points([design for _, _, design in rows]))
         outcome = cover(form, form.leaves(combinations), purpose, self.clock, self.rng, EFFORT * len(rows))
         left = purpose.open_questions(outcome.open)
-        designs = self._designs([(c, ()) for c in known], priced=False)
+        designs = self._designs([(c, ()) for c in known], 0)
         for q, _, _ in rows:
-            result[q] = designs.get(q), bool(asked[q] and not left[q])
+            result[q] = designs.get(q, [None])[0], bool(asked[q] and not left[q])
         form.archive = self.known
         return result
 
@@ -429,27 +470,30 @@ class TogetherSearch:
         form.solved_combinations = self.form.solved_combinations
         form.propagation.taught_by(self.form.propagation.lessons())
         # Designs of other questions would only seem to say that those of these are found.
-        known = BestOfEach(self.together, 0, form.n, len(form.goals))
+        known = self._none_known()
         rows = asked[self.known.questions()]
         known.add(self.known.combination[rows], self.known.variables[rows], self.known.phi[rows])
         form.archive = known
-        purpose, pool = Each(form, known, self._slack(0), asked), form.root()
+        purpose, pool = Each(form, known, self._slack(self.sought), asked), form.root()
         sure = int((asked & np.isfinite(known.best())).sum())
         effort = EFFORT_IN_CONFLICT * sure + EFFORT_IN_DOUBT * (int(asked.sum()) - sure)
-        outcome = cover(form, pool, purpose, self.clock, self.rng, effort)
+        outcome = cover(form, pool, purpose, self.clock, self.rng, min(effort, MOST_EFFORT))
         self.known.add(known.combination, known.variables, known.phi)
         self.form.contracted += form.contracted
         self.form.nlp_solves += form.nlp_solves
         return purpose.open_questions(outcome.open)
 
+    def _none_known(self) -> BestOfEach:
+        return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain)
+
     def _prepared(self, conflict: bool = False) -> Formulation:
-        form = None if self.wider is None else self.wider.among(self.together, conflict)
+        form = self.wider.among(self.together, conflict)
         if form is None:
             form = Formulation(self.together, self.goals, 1, conflict)
         form.workers = self.workers
         return form
 
-    def _told_apart(self) -> np.ndarray:
+    def told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
         tree = self.form.cells.trees[0]
         result = np.zeros(len(self.questions), dtype=bool)
@@ -483,15 +527,18 @@ class TogetherSearch:
         self._improve(purpose)
 
     def _recalled(self, purpose: Each) -> None:
-        """Try the designs of similar questions in every question."""
-        first = self.together.each[0]
-        rows = [(c, d) for d in self.ideas if (c := combination_like(first, d)) is not None]
-        points = self._points([d for _, d in rows])
-        questions = np.repeat(np.flatnonzero(purpose.asked), len(rows))
-        own = np.tile(np.arange(len(rows)), len(questions) // max(len(rows), 1))
-        combinations = np.array([c for c, _ in rows], dtype=np.int64)
-        if len(rows):
+        """Try the designs to begin with in every question."""
+        combinations, points = np.array(list(self.starts), dtype=np.int64), np.array(list(self.starts.values()))
+        questions = np.repeat(np.flatnonzero(purpose.asked), len(combinations))
+        own = np.tile(np.arange(len(combinations)), len(questions) // max(len(combinations), 1))
+        if len(combinations):
             self._tried(purpose, questions * self.together.size + combinations[own], points[own])
+
+    def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
+        """Return where to look first, from designs of similar questions."""
+        first = self.together.each[0]
+        like = [combination_like(first, d) for d in designs]
+        return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}
 
     def _points(self, designs: Sequence[Design]) -> np.ndarray:
         """Return the variables of designs, moved into their ranges."""
@@ -569,13 +616,24 @@ class TogetherSearch:
 
     # -- the report ----------------------------------------------------------------------------
 
-    def _fronts(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], solves: int) -> list[ParetoFront | None]:
-        """Return the front of each question from the best designs, each with what ties with it."""
+    def fronts(self, chosen: Sequence[Candidate], traded: int, solves: int) -> list[ParetoFront | None]:
+        """Return the front of each question that has designs, ties settled.
+
+        Parameters
+        ----------
+        chosen : list of Candidate
+            Proven designs, those of a question together.
+        traded : int
+            How many objectives, from the first, are traded off.
+        solves : int
+            Continuous problems that were solved to find them.
+        """
         form, together = self.form, self.together
+        fronts: list[ParetoFront | None] = [None] * len(together.each)
+        found = settle_ties(form, self.pool, chosen, traded) if chosen else []
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.question(every), minlength=len(together.each))
-        fronts: list[ParetoFront | None] = [None] * len(together.each)
-        for number, design in self._designs(found, priced=True).items():
+        for number, designs in self._designs(found, traded).items():
             question = self.questions[number]
             total, own = question.instance.combinations, int(solved[number])
             statistics = {
@@ -589,10 +647,10 @@ class TogetherSearch:
                 "seconds": {"total": time.monotonic() - self.started},
             }
             fronts[number] = ParetoFront(
-                frame=design.frame,
-                designs=[design],
+                frame=designs[0].frame,
+                designs=designs,
                 status=Status.OPTIMAL,
-                complete=True,
+                complete=traded == 1,
                 statistics=statistics,
                 certificate=Certificate("global", self.gap, total, total - own, own, 0),
                 explanation=None,
@@ -602,66 +660,80 @@ class TogetherSearch:
             )
         return fronts
 
-    def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], priced: bool) -> dict[int, Design]:
-        """Return the design of each question that has one, from the best ones with what ties with each."""
+    def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
+        """Return the designs of each question in order of rank, from candidates with what ties with each.
+
+        ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
+        """
         form, together = self.form, self.together
         if not found:
             return {}
-        designs = [c for c, _ in found]
-        costs = self._prices(designs) if priced else [{}] * len(designs)
-        combinations, points, _ = rows_of(designs)
-        result = form.evaluate(points.reshape(len(designs), form.n), combinations)
+        candidates = [c for c, _ in found]
+        costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
+        combinations, points, _ = rows_of(candidates)
+        result = form.evaluate(points.reshape(len(candidates), form.n), combinations)
         numbers = together.question(combinations).tolist()
-        # A design that stands alone ranks as any other that does.
-        first = self.questions[numbers[0]]
-        values = np.array([[result.values[name][0] for name in first.chosen]])
-        ranking = rank(first.chosen, values, list(first.weights.values()))
-        frames, more = [], []
-        for number, (_, ties), cost in zip(numbers, found, costs, strict=True):
-            question = self.questions[number]
-            frames.append(make_frame(question.instance, question.chosen))
-            more.append({
-                "status": Status.OPTIMAL, "gap": self.gap, "rank": 1, "score": float(ranking.scores[0]),
-                "note": ranking.notes[0], "alternatives": ties, "elasticity": cost,
-            })  # fmt: skip
-        return dict(zip(numbers, found_designs(form, frames, designs, result, more), strict=True))
+        frames: list[Frame] = []
+        more: list[dict[str, Any]] = []
+        for number, group in groupby(range(len(numbers)), key=numbers.__getitem__):
+            own, question = list(group), self.questions[number]
+            values = np.stack([result.values[name][own] for name in question.chosen], axis=1)
+            ranking = rank(question.chosen, values, list(question.weights.values()))
+            places = np.argsort(ranking.order)
+            frames += [make_frame(question.instance, question.chosen)] * len(own)
+            more += [
+                {
+                    "status": Status.OPTIMAL, "gap": self.gap, "rank": int(places[k]) + 1,
+                    "score": float(ranking.scores[k]), "note": ranking.notes[k],
+                    "alternatives": found[j][1], "elasticity": costs[j],
+                }
+                for k, j in enumerate(own)
+            ]  # fmt: skip
+        designs: dict[int, list[Design]] = {}
+        for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
+            designs.setdefault(number, []).append(design)
+        return {number: sorted(own, key=lambda d: d.rank or 0) for number, own in designs.items()}
 
-    def _prices(self, designs: Sequence[Candidate]) -> list[dict[str, dict[str, float]]]:
+    def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
         """Return the elasticities of each design, as its question alone would tell them."""
-        if self.form.log_goals[0]:
-            return elasticities(self.form, designs, 1)
+        if self.form.log_goals[:traded].all():
+            return elasticities(self.form, designs, traded)
         # The objective may be positive in some questions although it is not in all.
         result = []
         for c in designs:
             question, own = divmod(c.combination, self.together.size)
             form, number = Formulation(self.together.each[question], self.goals, 1), np.array([own])
             _, phi = form.feasible_rows(c.variables[None, :], number)
-            result += elasticities(form, [Candidate(own, c.variables, phi[0])], 1)
+            result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
 
     def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
         """Return designs that are as good in the objective and better in the next one, over all parts."""
-        form = self.form
-        if len(form.goals) < 2:
+        form, sought = self.form, self.sought
+        if len(form.goals) < 2 or not chosen:
             return list(chosen)
+        following = 1 if sought == 0 else 0
         questions = self.together.question(np.array([c.combination for c in chosen]))
-        plain = np.full((len(self.questions), len(form.goals)), np.inf)
-        plain[questions, 0] = np.array([c.phi[0] for c in chosen]) + TIE
-        known = BestOfEach(self.together, 1, form.n, len(form.goals), plain)
+        plain = self.plain.copy()
+        plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + TIE
+        known = BestOfEach(self.together, following, form.n, len(form.goals), plain)
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
         known.add(*rows_of(chosen))
-        purpose = Each(form, known, self._slack(1), asked)
+        purpose = Each(form, known, self._slack(following), asked)
         self._improve(purpose)
         cover(form, self.pool, purpose, self.clock, self.rng, TIE_EFFORT * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]
 
 
-def groups_of(questions: Sequence[Question], least: int = 2) -> list[list[int]]:
-    """Return the positions of questions that can be answered together: so many or more, with one objective, alike."""
+def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1) -> list[list[int]]:
+    """Return the positions of questions that can be answered together: so many or more, alike.
+
+    ``objectives``: how many each must have.
+    """
     groups: dict[Any, list[int]] = {}
     for k, question in enumerate(questions):
-        if len(question.chosen) == 1:
+        if len(question.chosen) == objectives:
             groups.setdefault(alike(question), []).append(k)
     return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations]

@@ -25,7 +25,7 @@ from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
-from synth.together import TogetherSearch, groups_of
+from synth.together_fronts import joint_answers, joint_groups
 from synth.vary import Steps, steps_of
 
 FORMAT = 1
@@ -39,7 +39,7 @@ def whatif(
     requirements: Mapping[str, Any],
     vary: Mapping[str, Any],
     objectives: Any = None,
-    points: int = 30,
+    points: int = 3,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,
@@ -58,8 +58,11 @@ def whatif(
 
     Parameters
     ----------
-    p, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, workers, seed : optional
+    p, requirements, objectives, catalogs, parts, limits, fix, weights, gap, grid, workers, seed : optional
         As for ``synth.synthesize``, for every step.
+    points : int
+        At most so many designs of every step: the best in each objective and, of two, one between unless more are
+        asked for.
     vary : mapping
         One or two of: a requirement (``"load_torque"``), a limit on a quantity (``"mass <="``), ``"weights.mass"``,
         ``"parts.friction_pair"``, ``"options.lubrication"``. Values are a text (``"200:300:10 mm"`` from:to:step, or
@@ -148,7 +151,7 @@ class _Run:
 
     def _search_together(self) -> None:
         """Answer steps that are alike at once, where any of them is not kept; what is left is searched step by step."""
-        groups = groups_of(self.questions)
+        groups = joint_groups(self.questions)
         marks = dict[int, str]()
         for group in groups:
             marks |= dict.fromkeys(group, _joined([self.alone[k] for k in group]))
@@ -161,8 +164,8 @@ class _Run:
             missing = [k for k in group if self.stored[k] is None]
             if missing:
                 shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
-                search = TogetherSearch([self.questions[k] for k in group], self.workers, shown, self._left())
-                found = dict(zip(group, search.answers(), strict=True))
+                answers = joint_answers([self.questions[k] for k in group], self.workers, shown, self._left())
+                found = dict(zip(group, answers, strict=True))
                 self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
 
     def _answer(self, position: int) -> Step:

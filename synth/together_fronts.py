@@ -1,0 +1,175 @@
+"""Fronts of few designs in two objectives, of several questions at once.
+
+What is best in each objective is sought for all questions together. Between these two ends the first objective is
+capped at some levels, and the least of the second is sought under each cap, for all questions and levels together: a
+question with a cap is one more question. Where the levels lie is told by a rough picture of some of the fronts, so that
+the designs spread as those of a question asked alone do.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from synth.formulation import Candidate, rows_of
+from synth.pareto import spread_subset
+from synth.results import ParetoFront
+from synth.search import Question, distinct
+from synth.together import TogetherSearch, Wider, different, groups_of
+
+MOST_POINTS = 8  # designs of a front; where there are more, questions are answered sooner one by one
+PLACES = 8  # questions of which a rough picture is made
+LEVELS = 12  # caps of that picture
+
+
+def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
+    """Return the positions of questions that are answered sooner together, by groups that are alike."""
+    groups = groups_of(questions)
+    for group in groups_of(questions, objectives=2):
+        sizes: dict[int, list[int]] = {}
+        for k in group:
+            sizes.setdefault(int(questions[k].settings["points"]), []).append(k)
+        groups += [own for points, own in sizes.items() if 2 <= points <= MOST_POINTS and len(own) > 1]
+    return groups
+
+
+def joint_answers(
+    questions: Sequence[Question],
+    workers: int = 1,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+) -> list[ParetoFront | None]:
+    """Return the front of each question of a group; None where a question is better asked alone.
+
+    Parameters
+    ----------
+    questions : list of Question
+        A group of :func:`joint_groups`.
+    workers : int
+    progress : callable, optional
+    time_limit : float, optional
+        Seconds; then ``Stopped`` is raised.
+    """
+    search = TogetherSearch if len(questions[0].chosen) == 1 else FrontsSearch
+    return search(questions, workers, progress, time_limit).answers()
+
+
+class FrontsSearch:
+    """One search for the fronts of several questions.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike, each with two objectives.
+    workers : int
+    progress : callable, optional
+    time_limit : float, optional
+        Seconds; then ``Stopped`` is raised.
+    """
+
+    def __init__(
+        self,
+        questions: Sequence[Question],
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+    ) -> None:
+        self.questions, self.workers, self.progress = list(questions), workers, progress
+        self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
+        self.between = int(questions[0].settings["points"]) - 2
+        moving = different([q.instance for q in questions])
+        self.wider, reverse = (Wider(questions, moving, first) for first in questions[0].chosen)
+        self.first, self.second = self._search(self.questions, self.wider), self._search(self.questions, reverse)
+
+    def answers(self) -> list[ParetoFront | None]:
+        """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
+        first, second = self.first, self.second
+        if not first.form.log_goals[:2].all():
+            # The gap of what may be zero is measured against the range of a front, which is not known before.
+            return [None] * len(self.questions)
+        ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
+        searches, found = [second], {q: list(pair) for q, pair in ends.items()}
+        if ends and self.between:
+            numbers = list(ends)
+            level = self._at_levels(numbers, *self._levels(ends))
+            searches.append(level)
+            for c in level.optima(level.told_apart()):
+                row, own = divmod(c.combination, first.together.size)
+                question = numbers[row // self.between]
+                found[question].append(Candidate(question * first.together.size + own, c.variables, c.phi))
+        solves = first.form.nlp_solves + sum(s.form.nlp_solves for s in searches)
+        first.form.contracted += sum(s.form.contracted for s in searches)
+        fronts = [distinct(own, 2) for own in found.values()]
+        return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
+
+    def _search(self, questions: Sequence[Question], wider: Wider, **more: Any) -> TogetherSearch:
+        left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
+        return TogetherSearch(questions, self.workers, self.progress, left, wider=wider, **more)
+
+    # -- the ends ------------------------------------------------------------------------------
+
+    def _turned(self, designs: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs of the search for the second objective as that for the first one has them."""
+        if not designs:
+            return []
+        combinations, points, _ = rows_of(designs)
+        rows, phi = self.first.form.feasible_rows(points, combinations, exact=True)
+        return [Candidate(designs[k].combination, designs[k].variables, phi[k]) for k in rows]
+
+    def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
+        """Return the designs that are best in the first and in the second objective, where they differ."""
+        size = self.first.together.size
+        others = {c.combination // size: c for c in least}
+        pairs = {
+            c.combination // size: (c, others[c.combination // size]) for c in best if c.combination // size in others
+        }
+        return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2)) == 2}
+
+    # -- designs between -----------------------------------------------------------------------
+
+    def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> TogetherSearch:
+        """Return the search for the least second objective, the first one being capped.
+
+        Parameters
+        ----------
+        numbers : list of int
+            Positions of the questions.
+        levels : array (questions, levels)
+            phi of the first objective.
+        known : list of Candidate
+            Where to look first.
+        """
+        questions = [self.questions[q] for q in numbers for _ in range(levels.shape[1])]
+        caps = {0: self.first.form.signed(0, levels.ravel())}
+        search = self._search(questions, self.wider, sought=1, caps=caps)
+        search.starts = {c.combination % self.first.together.size: c.variables for c in known}
+        return search
+
+    def _levels(self, ends: Mapping[int, tuple[Candidate, Candidate]]) -> tuple[np.ndarray, list[Candidate]]:
+        """Return where to cap the first objective of each question, and designs that are good between the ends."""
+        numbers = list(ends)
+        low, high = (np.array([pair[k].phi[0] for pair in ends.values()]) for k in range(2))
+        places = np.unique(np.linspace(0, len(numbers) - 1, PLACES).round().astype(int))
+        even = np.arange(1, LEVELS + 1) / (LEVELS + 1)
+        at = low[places, None] + even * (high - low)[places, None]
+        known = [c for k in places for c in ends[numbers[k]]]
+        picture = self._at_levels([numbers[k] for k in places], at, known)
+        drawn: dict[int, list[Candidate]] = {}
+        for c in picture.glimpse():
+            drawn.setdefault(int(picture.together.question(np.array([c.combination]))[0]) // LEVELS, []).append(c)
+        shares, good = [], list[Candidate]()
+        for row, k in enumerate(places):
+            every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2)
+            phi = np.array([c.phi[:2] for c in every])
+            chosen = spread_subset(phi, 2 + self.between)
+            inner = np.sort((phi[chosen, 0] - low[k]) / (high[k] - low[k]))[1:-1]
+            if len(inner) < self.between:
+                inner = np.arange(1, self.between + 1) / (self.between + 1)
+            shares.append(inner)
+            good += [every[int(j)] for j in chosen]
+        nearest = np.abs(np.arange(len(numbers))[:, None] - places[None, :]).argmin(axis=1)
+        return low[:, None] + np.array(shares)[nearest] * (high - low)[:, None], good
