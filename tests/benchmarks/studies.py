@@ -35,6 +35,10 @@ STUDIES = (
     Varied("load_torque", "400:645:5 N*m", ("actuation_force",)),
     Varied("jerk_limit", "12:24.25:0.25 rad/s3", ("friction_work",)),
     Varied("load_torque", "400:645:5 N*m", breaks=True),
+    Varied("load_torque", "400:645:5 N*m", ("mass", "actuation_force"), 3),
+    Varied("outer_diameter_limit", "200:298:2 mm", ("mass", "actuation_force"), 3),
+    Varied("jerk_limit", "12:24.25:0.25 rad/s3", ("mass", "actuation_force"), 3),
+    Varied("load_torque", "400:645:5 N*m", ("mass", "friction_work"), 3),
     Varied("load_torque", "400:645:5 N*m", ("mass", "actuation_force"), 30),
 )
 
