@@ -6,6 +6,7 @@ A failing id names structure and seed; ``pytest tests/certificates -k "waves-3]"
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -15,7 +16,11 @@ import pytest
 
 import synth
 from synth import search
+from synth.search import pose
 from synth.steps import cover_by_steps
+from synth.tables import Catalogs
+from synth.together import alike
+from synth.together_fronts import FrontsSearch
 from tests.certificates.reference import TOLERANCE, Points, Reference
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
 
@@ -314,6 +319,44 @@ def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(ste
     assert a.proven or a.front.interrupted == "time limit"
     wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
     assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])
+
+
+# -- fronts of several questions together ---------------------------------------------------------
+
+
+def together(case: Case) -> synth.ParetoFront | None:
+    """Return the front of a case that was searched together with others, whose requirements are a little larger."""
+    problem = RandomProblem(structure=case.structure, seed=str(case.seed))
+    more = {k: v for k, v in case.question().items() if k != "time_limit"}
+    catalogs = Catalogs(more.pop("catalogs")) if "catalogs" in more else None
+    questions = []
+    for factor in (1.0, 1.02, 1.1):
+        with suppress(synth.InputError):
+            moved = {name: factor * value for name, value in case.requirements.items()}
+            questions.append(pose(problem, moved, catalogs=catalogs, **more))
+    first = alike(questions[0])
+    return FrontsSearch([q for q in questions if alike(q) == first], time_limit=PATIENT).answers()[0]
+
+
+JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(INSTANCES[structure])]
+
+
+@pytest.mark.parametrize("points", [2, 3, 6])
+@pytest.mark.parametrize(("structure", "seed"), JOINT)
+def test_a_front_searched_with_others_claims_nothing_that_is_wrong(points, structure, seed):
+    case = of_two(structure, seed, points)
+    front = together(case) if len(case.objectives) == 2 else None
+    if front is not None:
+        a = Answer(case, front, Reference(case))
+        wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+        assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+        assert a.proven
+
+
+def test_there_are_enough_fronts_searched_with_others():
+    cases = [of_two(structure, seed, 3) for structure, seed in JOINT]
+    answered = [together(case) is not None for case in cases if len(case.objectives) == 2]
+    assert sum(answered) >= 20, f"{sum(answered)} of {len(answered)}"
 
 
 def test_there_are_enough_instances_of_every_kind():
