@@ -20,6 +20,7 @@ class Factor:
     Parameters
     ----------
     name : str
+        Empty for questions that are answered together.
     inputs : list of int
         Which data inputs of the model the columns are.
     columns : array (rows, columns)

@@ -32,6 +32,7 @@ SOME = 1e-3  # share of the multipliers of all objectives from which one counts 
 ENOUGH = 8  # problems solved before their own weights are believed
 # Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
 PARTS_FIRST = 3.0
+QUESTIONS_FIRST = 6.0  # questions that are answered together even more so: each has a best value of its own
 ANYWHERE = 0.1  # what influences anywhere count beside those at the designs known
 PIVOT_OF = 2  # variables that an inner node depends on to be worth carrying
 MOST_PIVOTS = 1
@@ -293,7 +294,8 @@ class Propagation:
         # A cap is as far off as the objective that it caps.
         capped = np.eye(len(self._influence))[:, [len(self.cuts) + g for g in factor.capped]]
         own = np.concatenate([self._influence[:, [self.n + i for i in factor.inputs]], capped], axis=1)
-        result: np.ndarray = (PARTS_FIRST * width @ own.T).astype(np.float32)
+        first = PARTS_FIRST if factor.name else QUESTIONS_FIRST
+        result: np.ndarray = (first * width @ own.T).astype(np.float32)
         # Rows that differ only in what has no influence are still different rows.
         result += np.where(tree.leaf, 0.0, self._floor)[:, None].astype(np.float32)
         return result
