@@ -132,6 +132,13 @@ def test_a_study_without_any_feasible_step_ends_with_three(folder: Path) -> None
     assert not (out / "whatif.svg").exists()
 
 
+def test_where_a_range_ends_before_its_end_is_told(folder: Path) -> None:
+    command = ["whatif", folder / "spec.yaml", "--vary", "load_torque=500:620:50 N*m", "-o", folder / "short"]
+    told = "load_torque: the steps end at 600 N*m: 620 N*m is no whole number of steps of 50 N*m from 500 N*m"
+    assert told in " ".join(at_once(*command, "--time-limit", "1e-9").stdout.split())
+    assert at_once(*command, "--time-limit", "1e-9", "--quiet").stdout == ""
+
+
 @pytest.mark.parametrize(
     ("vary", "words"),
     [

@@ -133,6 +133,24 @@ def test_a_range_ends_where_its_end_is_met(first: int, count: int, step: str) ->
         assert [varied.shown(v) for v in varied.values] == [f"{v:.12g}" for v in values]
 
 
+@pytest.mark.parametrize(
+    ("name", "values", "remark"),
+    [
+        ("load", "5:11:3 kN", ""),
+        ("load", "1:2:0.1", ""),
+        ("load", "5, 8, 12 kN", ""),
+        ("load", ("5 kN", "12 kN", 3), ""),
+        ("load", "5:12:3 kN", "the steps end at 11 kN: 12 kN is no whole number of steps of 3 kN from 5 kN"),
+        ("load", "12:5:-3", "the steps end at 6 kN: 5 kN is no whole number of steps of 3 kN from 12 kN"),
+        ("weights.cost", "1:4:2", "the steps end at 3: 4 is no whole number of steps of 2 from 1"),
+        ("cost <=", "50:60:4", "the steps end at 58: 60 is no whole number of steps of 4 from 50"),
+        ("parts.rope", "rope a, rate > 1", ""),
+    ],
+)
+def test_an_end_that_no_step_meets_is_told(name: str, values: Any, remark: str) -> None:
+    assert one(name, values).remark == remark
+
+
 # ---- what else may be varied ----------------------------------------------------------------------------------------
 
 
