@@ -23,6 +23,7 @@ DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
 TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
 NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one comma, without a blank, in digits alone
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
 
@@ -173,6 +174,7 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
         elif len(pieces) > 1:
             raise InputError(field, values, f"three numbers from:to:step, as in {RANGE}")
         else:
+            _refuse_decimal_comma(field, values)
             found = [_number(field, x, declared, seen, values) for x in values.split(",")]
     elif isinstance(values, tuple) and len(values) == 3 and _whole(values[2]):
         first, last, count = values
@@ -218,6 +220,20 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
             raise InputError(field, whole, f"one unit for all values, here {seen[0]} and {unit}")
         seen[:] = [unit]
     return float(number)
+
+
+def _refuse_decimal_comma(field: str, text: str) -> None:
+    """Refuse what looks like one number with a decimal comma; two values so close together lead upwards."""
+    match = COMMA.match(text)
+    if match is None or int(match.group(2)) >= int(match.group(1)):
+        return
+    whole, decimals, unit = match.group(1), match.group(2), match.group(3) or ""
+    raise InputError(
+        field,
+        text,
+        f"a decimal point for one number ({whole}.{decimals}{unit}), a blank after the comma for two values "
+        f"({whole}, {decimals}{unit})",
+    )
 
 
 def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
