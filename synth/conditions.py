@@ -373,6 +373,17 @@ class _Parser:
         raise self.wrong("a number or a text in quotes")
 
 
+def may_be_condition(text: str) -> bool:
+    """Tell a text that may be meant as a condition from a single word: every condition compares, or asks ``in``.
+
+    Examples
+    --------
+    >>> may_be_condition("mu_dynamic>0.1"), may_be_condition("'oil' in lubrication"), may_be_condition("cork_wet")
+    (True, True, False)
+    """
+    return re.search(r"[\s<>=]", text) is not None
+
+
 def parse_condition(text: str) -> Condition:
     """Read a condition.
 

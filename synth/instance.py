@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.conditions import parse_condition
+from synth.conditions import may_be_condition, parse_condition
 from synth.declaration import Part
 from synth.errors import InputError
 from synth.model import part_column_value
@@ -477,7 +477,7 @@ class Instance:
     @staticmethod
     def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
         keep = np.zeros(len(table), dtype=bool)
-        if isinstance(rule, str) and rule not in table.designations:
+        if isinstance(rule, str) and rule not in table.designations and may_be_condition(rule):
             return parse_condition(rule).mask(table)
         if not isinstance(rule, (str, Sequence)):
             raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")

@@ -63,9 +63,11 @@ def whatif(
     if not quiet:
         from synth.console import output
         from synth.study_console import print_study
+        from synth.what_if import STEPS
 
         print_study(study, output())
-        print(f"written to {folder}: {', '.join(sorted(study.files()))}, steps/")
+        kept = [f"{STEPS}/"] if (folder / STEPS).is_dir() else []  # not before the first step is finished
+        print(f"written to {folder}: {', '.join([*sorted(study.files()), *kept])}")
     if study.interrupted:
         raise typer.Exit(STOPPED)
     if not study.feasible:

@@ -23,6 +23,9 @@ def print_study(study: Study, console: Console) -> None:
     title = study.fronts[0].frame.title if study.fronts else ""
     varied = " and ".join(x.label for x in study.varied)
     console.print(f"{title}{': ' if title else ''}{varied}, {len(study.steps)} steps")
+    for x in study.varied:
+        if x.remark:
+            console.print(f"{x.label}: {x.remark}")
     console.print()
     names = list(study.objectives())
     heads = [*(x.label for x in study.varied), "designs", *(f"best {n}" for n in names), "of the leading design"]

@@ -565,8 +565,8 @@ def check_number(text: str, name: str) -> str:
     return number
 
 
-def _split_number(text: str, value: object, name: str) -> tuple[str, str]:
-    """Split a quantity written as text into its number and the rest."""
+def _split_number(text: str, value: object, name: str, declared: str = "-") -> tuple[str, str]:
+    """Split a quantity written as text into its number and the rest; the declared unit serves as an example."""
     plain = text.translate(_SPACES).strip()
     if not plain:
         raise InputError(name, value, "a number, not an empty text")
@@ -582,8 +582,10 @@ def _split_number(text: str, value: object, name: str) -> tuple[str, str]:
             raise InputError(name, value, "no blank between the sign and the number")
         if _is_unit(plain):
             raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
+        if declared == "-":
+            raise InputError(name, value, "a number, for example 30")
         raise InputError(
-            name, value, "a number, with a unit if it is not in the declared one, for example 600 or 600 N*m"
+            name, value, f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
         )
     number, rest = match[0], plain[match.end() :]
     if len(number) > _LONGEST:
@@ -644,7 +646,7 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
     if value is None:
         raise InputError(field, None, f"a number in {unit.text}" if unit.text != "-" else "a number")
     if isinstance(value, str):
-        number, rest = _split_number(value, value, field)
+        number, rest = _split_number(value, value, field, unit.text)
         if rest:
             try:
                 unit = _resolve(rest, unit.kind)

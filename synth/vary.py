@@ -23,6 +23,7 @@ DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
 TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
 NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
+COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one comma, without a blank, in digits alone
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
 
@@ -35,7 +36,7 @@ class Varied:
 
     ``kind`` is requirement, limit, weight, part or option, ``name`` the public name of what is varied, ``sign`` that of
     a limit. ``values`` are numbers in ``unit``; of parts and options designations, conditions (or several
-    designations) and words.
+    designations) and words. ``remark`` tells what a reader of the values might not expect.
     """
 
     kind: str
@@ -43,6 +44,7 @@ class Varied:
     sign: str
     unit: str
     values: tuple[Value, ...]
+    remark: str = ""
 
     @property
     def numeric(self) -> bool:
@@ -59,10 +61,7 @@ class Varied:
         """Return a value as it stands in a spec."""
         if not isinstance(value, float):
             return value if isinstance(value, str) else list(value)
-        number = f"{value:.{DIGITS}g}"
-        if self.kind == "weight":
-            return float(number)
-        return number if self.unit == "-" else f"{number} {self.unit}"
+        return float(f"{value:.{DIGITS}g}") if self.kind == "weight" else _written(value, self.unit)
 
     def shown(self, value: Value) -> str:
         """Return a value for people."""
@@ -133,7 +132,8 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
     d = model.declaration
     if place == "weights":
         name = model.name_of(word, "vary", list(chosen), "a chosen objective")
-        return Varied("weight", name, "", "-", _numbers(key, values, "-"))
+        _, numbers, remark = _numbers(key, values, "-")
+        return Varied("weight", name, "", "-", numbers, remark)
     if place == "parts":
         name = model.name_of(word, "vary", list(d.slots), "a slot")
         return Varied("part", name, "", "", _words(key, values, several=True))
@@ -147,7 +147,7 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
     if sign:
         name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity")
         unit = model.units[name]
-        return Varied("limit", name, SIGN.get(sign, sign), *_with_unit(key, values, unit))
+        return Varied("limit", name, SIGN.get(sign, sign), *_numbers(key, values, unit))
     spelled = d.names().get(word)
     if spelled in model.quantity_sx:
         kind = model.kind_of(str(spelled))
@@ -156,30 +156,25 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
         if spelled in members:
             raise InputError("vary", key, f"{kind}.{word}")
     name = model.name_of(word, "vary", list(d.requirements), "a requirement")
-    return Varied("requirement", name, "", *_with_unit(key, values, d.requirements[name].unit))
+    return Varied("requirement", name, "", *_numbers(key, values, d.requirements[name].unit))
 
 
 # ---- values ---------------------------------------------------------------------------------------------------------
 
 
-def _with_unit(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ...]]:
-    """Return the unit in which values are given, and their numbers."""
-    units: list[str] = []
-    numbers = _numbers(key, values, declared, units)
-    return (units[0] if units else declared), numbers
-
-
-def _numbers(key: str, values: Any, declared: str, units: list[str] | None = None) -> tuple[Value, ...]:
-    """Return the numbers that a range or list stands for; the one unit that they have is left in ``units``."""
-    field = f"vary {key}"
-    seen = [] if units is None else units
+def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ...], str]:
+    """Return the unit in which a range or list is given, the numbers that it stands for, and a remark on them."""
+    field, seen, remark = f"vary {key}", list[str](), ""
     if isinstance(values, str):
         pieces = values.split(":")
         if len(pieces) == 3:
-            found = _steps(field, values, [_number(field, x, declared, seen, values) for x in pieces])
+            ends = [_number(field, x, declared, seen, values) for x in pieces]
+            found = _steps(field, values, ends)
+            remark = _end_missed(ends, found[-1], seen[0] if seen else declared)
         elif len(pieces) > 1:
             raise InputError(field, values, f"three numbers from:to:step, as in {RANGE}")
         else:
+            _refuse_decimal_comma(field, values)
             found = [_number(field, x, declared, seen, values) for x in values.split(",")]
     elif isinstance(values, tuple) and len(values) == 3 and _whole(values[2]):
         first, last, count = values
@@ -201,7 +196,7 @@ def _numbers(key: str, values: Any, declared: str, units: list[str] | None = Non
         raise InputError(field, values, "each value once")
     for number in found:
         parse_quantity(f"{number:.{DIGITS}g} {seen[0]}" if seen else number, declared, field)
-    return tuple(found)
+    return (seen[0] if seen else declared), tuple(found), remark
 
 
 def _whole(value: Any) -> bool:
@@ -227,6 +222,20 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
     return float(number)
 
 
+def _refuse_decimal_comma(field: str, text: str) -> None:
+    """Refuse what looks like one number with a decimal comma; two values so close together lead upwards."""
+    match = COMMA.match(text)
+    if match is None or int(match.group(2)) >= int(match.group(1)):
+        return
+    whole, decimals, unit = match.group(1), match.group(2), match.group(3) or ""
+    raise InputError(
+        field,
+        text,
+        f"a decimal point for one number ({whole}.{decimals}{unit}), a blank after the comma for two values "
+        f"({whole}, {decimals}{unit})",
+    )
+
+
 def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     """Return what from:to:step stands for; the end belongs to it where a step meets it."""
     first, last, step = numbers
@@ -238,6 +247,21 @@ def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     if count > MOST_STEPS:
         raise InputError(field, text, f"at most {MOST_STEPS} steps")
     return [float(f"{first + k * step:.{DIGITS}g}") for k in range(count)]
+
+
+def _end_missed(numbers: Sequence[float], reached: float, unit: str) -> str:
+    """Return where the steps of from:to:step end, if that is before its end; nothing where they meet it."""
+    first, last, step = numbers
+    if (last - reached) / step < 1e-6:  # a float's rounding, not a step that is missing
+        return ""
+    begin, end, size, stop = (_written(x, unit) for x in (first, last, abs(step), reached))
+    return f"the steps end at {stop}: {end} is no whole number of steps of {size} from {begin}"
+
+
+def _written(number: float, unit: str) -> str:
+    """Return a number with its unit as it stands in a spec."""
+    text = f"{number:.{DIGITS}g}"
+    return text if unit == "-" else f"{text} {unit}"
 
 
 def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:

@@ -43,6 +43,7 @@ def test_tables_and_pictures_are_written(saved: tuple[Path, str]) -> None:
     out, shown = saved
     assert sorted(p.name for p in out.iterdir()) == ["breaks.csv", "steps", "study.json", "whatif.csv", "whatif.svg"]
     assert "load_torque, 3 steps" in shown
+    assert shown.endswith(f"written to {out}: breaks.csv, whatif.csv, whatif.svg, steps/\n")
     assert "proven: every step" in shown
     table = rows(out / "whatif.csv")
     assert [row["load_torque [N*m]"] for row in table] == ["500.0", "550.0", "600.0"]
@@ -115,7 +116,8 @@ def test_out_of_time_ends_with_four_and_goes_on(folder: Path, saved: tuple[Path,
     assert done.returncode == 4
     assert "0 of 3 steps are kept, run again to go on" in done.stdout
     assert {row["reason"] for row in rows(folder / "late" / "whatif.csv")} == {"not reached: time limit"}
-    assert not (folder / "late" / "whatif.svg").exists()
+    assert done.stdout.endswith(f"written to {folder / 'late'}: breaks.csv, whatif.csv\n")
+    assert sorted(p.name for p in (folder / "late").iterdir()) == ["breaks.csv", "whatif.csv"]
     assert at_once(*command, "--quiet").returncode == 0
     for name in ("whatif.csv", "breaks.csv", "whatif.svg"):
         assert (folder / "late" / name).read_bytes() == (saved[0] / name).read_bytes()
@@ -130,6 +132,13 @@ def test_a_study_without_any_feasible_step_ends_with_three(folder: Path) -> None
     assert all("misses" in row["reason"] or "no design" in row["reason"] for row in table)
     assert rows(out / "breaks.csv") == []
     assert not (out / "whatif.svg").exists()
+
+
+def test_where_a_range_ends_before_its_end_is_told(folder: Path) -> None:
+    command = ["whatif", folder / "spec.yaml", "--vary", "load_torque=500:620:50 N*m", "-o", folder / "short"]
+    told = "load_torque: the steps end at 600 N*m: 620 N*m is no whole number of steps of 50 N*m from 500 N*m"
+    assert told in " ".join(at_once(*command, "--time-limit", "1e-9").stdout.split())
+    assert at_once(*command, "--time-limit", "1e-9", "--quiet").stdout == ""
 
 
 @pytest.mark.parametrize(
@@ -147,7 +156,9 @@ def test_a_study_without_any_feasible_step_ends_with_three(folder: Path) -> None
         (["load_torque=500 N*m", "mass <= 5 kg", "driver_speed=20 rad/s"], ["one or two"]),
         (["mass=5,6 kg"], ["mass <="]),
         (["weights.actuation_force=1,2"], ["actuation_force", "a chosen objective"]),
-        (["parts.pair=cork_wet,felt"], ["felt"]),
+        (["parts.pair=cork_wet,felt"], ["felt", "a designation of this table"]),
+        (["parts.pair=corck_wet,paper_wet"], ["parts.friction_pair = corck_wet", "perhaps cork_wet"]),
+        (["parts.pair=cork_wet,mu_dynamic >"], ["condition"]),
         (["options.guide_model=cz,cx"], ["cx", "series, cz"]),
         (["load_torque=500,-600 N*m"], ["load_torque = -600 N*m"]),
         ([], ["--vary"]),

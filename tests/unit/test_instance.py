@@ -210,6 +210,7 @@ def test_parts_narrow_a_slot(rule, expected):
         ),
         ({"plate": "thicknes > 1"}, "perhaps thickness"),
         ({"plate": "thickness >"}, "condition"),
+        ({"material": "sofft"}, "table rods: got 'sofft'; expected a designation of this table, perhaps soft"),
         ({"plate": 5}, "a list of designations, or a condition on columns"),
         ({"plate": None}, "a list of designations, or a condition on columns"),
         ({"width": "core 2"}, "width is a variable"),

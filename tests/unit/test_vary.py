@@ -68,6 +68,11 @@ def test_a_text_that_says_nothing_is_refused(text: str) -> None:
         ("1:2:0.1", "kN", (1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2)),
         ("7:7:1 kN", "kN", (7,)),
         ("7, 5, 6 kN", "kN", (7, 5, 6)),
+        ("7,5,6 kN", "kN", (7, 5, 6)),
+        ("7, 5 kN", "kN", (7, 5)),
+        ("5,7 kN", "kN", (5, 7)),
+        ("7.5,6 kN", "kN", (7.5, 6)),
+        ("7 kN,5 kN", "kN", (7, 5)),
         ("7", "kN", (7,)),
         ("1e1, 2.5e+1 kN", "kN", (10, 25)),
         ([7, 5.5], "kN", (7, 5.5)),
@@ -104,6 +109,9 @@ def test_values_of_a_requirement(values: Any, unit: str, numbers: Sequence[float
         ("5,, 6 kN", ["numbers with one unit"]),
         ("", ["numbers with one unit"]),
         ("5, 6, 5.0 kN", ["each value once"]),
+        ("60,5 kN", ["a decimal point for one number (60.5 kN)", "a blank", "for two values (60, 5 kN)"]),
+        ("60,25", ["(60.25)", "(60, 25)"]),
+        ("60,05kN", ["(60.05kN)", "(60, 05kN)"]),
         ("nan kN", ["numbers"]),
         ([], ["at least one value"]),
         ([True], ["True"]),
@@ -131,6 +139,24 @@ def test_a_range_ends_where_its_end_is_met(first: int, count: int, step: str) ->
         varied = one("weights.cost" if first >= 0 else "gain >=", f"{first}:{last!r}:{step}")
         assert varied.values == pytest.approx(values, abs=1e-9)
         assert [varied.shown(v) for v in varied.values] == [f"{v:.12g}" for v in values]
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "remark"),
+    [
+        ("load", "5:11:3 kN", ""),
+        ("load", "1:2:0.1", ""),
+        ("load", "5, 8, 12 kN", ""),
+        ("load", ("5 kN", "12 kN", 3), ""),
+        ("load", "5:12:3 kN", "the steps end at 11 kN: 12 kN is no whole number of steps of 3 kN from 5 kN"),
+        ("load", "12:5:-3", "the steps end at 6 kN: 5 kN is no whole number of steps of 3 kN from 12 kN"),
+        ("weights.cost", "1:4:2", "the steps end at 3: 4 is no whole number of steps of 2 from 1"),
+        ("cost <=", "50:60:4", "the steps end at 58: 60 is no whole number of steps of 4 from 50"),
+        ("parts.rope", "rope a, rate > 1", ""),
+    ],
+)
+def test_an_end_that_no_step_meets_is_told(name: str, values: Any, remark: str) -> None:
+    assert one(name, values).remark == remark
 
 
 # ---- what else may be varied ----------------------------------------------------------------------------------------
