@@ -1,9 +1,10 @@
 """A frame of a family's hooks as a figure: what to draw stands in ``frame.attrs``, nothing is computed again.
 
 The keys of ``attrs``, all optional but the title: ``title``, ``x`` (column, by default the first), ``panels`` (each
-with ``label``, ``columns``, ``log``, ``points``, ``height`` over that of an ordinary panel), ``marks`` (vertical lines:
-``x``, ``label``), ``spans`` (``from``, ``to``, ``label``), ``lines`` (horizontal lines: ``panel``, ``y``, ``label``),
-``source`` (footer).
+with ``label``, ``columns``, ``log``, ``points``, ``stairs``: ``post`` or ``pre`` as values hold up to the next row or
+from the row before, ``height`` over that of an ordinary panel), ``marks`` (vertical lines: ``x``, ``label``), ``spans``
+(``from``, ``to``, ``label``, ``shaded``: by default every second one), ``lines`` (horizontal lines: ``panel``, ``y``,
+``label``), ``source`` (footer).
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#5
 DASHES: tuple[Any, ...] = (
     "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
 )  # fmt: skip
+STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
 STYLE: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib, so that the figure is the same everywhere
@@ -116,9 +118,7 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     x = _column(frame, attrs.get("x", frame.columns[0]))
     panels = attrs.get("panels") or _panels_by_unit(frame, x)
     marks, spans = list(attrs.get("marks", ())), list(attrs.get("spans", ()))
-    low, high = float(frame[x].min()), float(frame[x].max())
-    margin = 0.0 if spans else 0.02 * (high - low)
-    limits = (low - margin, high + margin) if high > low else (low - 0.5, high + 0.5)
+    limits = _limits(float(frame[x].min()), float(frame[x].max()), spans)
 
     left, right, bottom = 0.78, 1.75, 0.5
     axis_width = WIDTH - left - right
@@ -158,6 +158,16 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     for k, text in enumerate(reversed(footer)):
         figure.text(left / WIDTH, (0.06 + 0.15 * k) / height, text, ha="left", va="bottom", fontsize=7, color="#555555")
     return figure
+
+
+def _limits(low: float, high: float, spans: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
+    """Return the ends of the horizontal axis: a little beyond the data, but where a span reaches them."""
+    if high <= low:
+        return low - 0.5, high + 0.5
+    margin, near = 0.02 * (high - low), 1e-6 * (high - low)
+    begins = any(float(span["from"]) <= low + near for span in spans)
+    ends = any(float(span["to"]) >= high - near for span in spans)
+    return low - (0.0 if begins else margin), high + (0.0 if ends else margin)
 
 
 def _column(frame: pd.DataFrame, name: str) -> str:
@@ -219,6 +229,7 @@ def _draw_panel(
             color=COLOURS[k % len(COLOURS)],
             linestyle=DASHES[k % len(DASHES)],
             marker=MARKERS[k % len(MARKERS)] if panel.get("points") else "",
+            drawstyle=STAIRS[panel.get("stairs")],
             markersize=3.5,
             label=textwrap.fill(_legend(column, name), 26),
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
@@ -275,7 +286,7 @@ def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, i
 
 def _draw_spans(axis: Axes, spans: Sequence[Mapping[str, Any]], marks: Sequence[Mapping[str, Any]]) -> None:
     for k, span in enumerate(spans):
-        if k % 2:
+        if span.get("shaded", k % 2):
             axis.axvspan(float(span["from"]), float(span["to"]), color="#f1f1f1", linewidth=0, zorder=0)
     for mark in marks:
         axis.axvline(float(mark["x"]), color="#777777", linewidth=0.8, linestyle=(0, (3, 2)), zorder=1)

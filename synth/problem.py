@@ -74,10 +74,11 @@ class DesignProblem:
 
         Every column is headed ``name [unit]``, in units that people read. ``DataFrame.attrs`` says how to draw a frame:
         ``title``; ``x``, a column, by default the first; ``panels``, each with ``label`` (``torque [N*m]``),
-        ``columns``, ``log``, ``points`` (True marks every row) and ``height`` (over an ordinary panel); ``marks``
-        (vertical lines: ``x``, ``label``); ``spans`` (``from``, ``to``, ``label``); ``lines`` (horizontal lines:
-        ``panel``, ``y``, ``label``); ``source``. Only the title is needed. Lines are drawn in row order, and
-        not-a-number breaks them. pandas is imported inside, as it is costly.
+        ``columns``, ``log``, ``points`` (True marks every row), ``stairs`` (``post`` or ``pre``: a value holds up to
+        the next row, or from the row before) and ``height`` (over an ordinary panel); ``marks`` (vertical lines:
+        ``x``, ``label``); ``spans`` (``from``, ``to``, ``label``, ``shaded``: by default every second one); ``lines``
+        (horizontal lines: ``panel``, ``y``, ``label``); ``source``. Only the title is needed. Lines are drawn in row
+        order, and not-a-number breaks them. pandas is imported inside, as it is costly.
 
         Parameters
         ----------

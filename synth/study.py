@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 BINDING = 0.999  # a limit used more than this binds
 MOST_LINES = 7  # a drawing with more is not read
 MOST_LABELS = 8
+NO_DESIGN = "no design"
 
 
 @dataclass(frozen=True)
@@ -252,16 +253,18 @@ class Study:
         numeric = self.along is not None
         x = self._headers()[k] if numeric else header("step", "-")
         groups = [()] if len(self.varied) == 1 else list(dict.fromkeys(_without(s.values, k) for s in self.steps))
-        places = sorted({float(s.values[k]) for s in self.steps}) if numeric else [float(s.number) for s in self.steps]  # type: ignore[arg-type]
+        along = [float(s.values[k]) if numeric else float(s.number) for s in self.steps]  # type: ignore[arg-type]
+        places = sorted(set(along))
         data: dict[str, list[float]] = {x: places}
         panels: list[dict[str, Any]] = []
         for name, unit in self.objectives().items():
             columns = []
             for group in _spread(groups, MOST_LINES):
-                steps = [
-                    s for s in self.steps if not numeric or _without(s.values, k) == group or len(self.varied) == 1
-                ]
-                at = {float(s.values[k]) if numeric else float(s.number): s for s in steps}  # type: ignore[arg-type]
+                at = {
+                    place: s
+                    for place, s in zip(along, self.steps, strict=True)
+                    if not numeric or _without(s.values, k) == group or len(self.varied) == 1
+                }
                 lines = _lines(len(groups) == 1, [at.get(p) for p in places], name)
                 for label, values in lines.items():
                     words = "" if len(groups) == 1 else f" at {self._words(k, group)}"
@@ -273,14 +276,36 @@ class Study:
         marks: list[dict[str, Any]] = [{"x": b.value} for b in self.breaks] if numeric else []
         if len(marks) <= MOST_LABELS:
             marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
+        spans = self._without_design(along)
         frame.attrs.update(
             title=f"{self._title()} over {varied.label.replace('_', ' ')}" if numeric else self._title(),
             x=x,
             panels=panels,
             marks=marks,
-            source=self._footer(bool(marks)),
+            spans=spans,
+            source=self._footer(bool(marks), bool(spans)),
         )
         return frame
+
+    def _without_design(self, along: Sequence[float]) -> list[dict[str, Any]]:
+        """Return the spans where no step has a design, up to the next break point or half the way to the next step.
+
+        ``along`` has the place of each step; one that was not reached says nothing of its place.
+        """
+        places = sorted(set(along))
+        empty = {*places} - {x for x, s in zip(along, self.steps, strict=True) if s.front is None or s.front.designs}
+        ends = [b.value for b in self.breaks if b.before is None or b.after is None]
+        spans: list[dict[str, Any]] = []
+        for k, place in enumerate(places):
+            if place not in empty:
+                continue
+            if k and places[k - 1] in empty:
+                spans[-1]["to"] = _edge(places, k, 1, ends)
+            else:
+                spans.append({"from": _edge(places, k, -1, ends), "to": _edge(places, k, 1, ends), "shaded": True})
+        if len(spans) <= MOST_LABELS:
+            spans = [{**span, "label": NO_DESIGN} for span in spans]
+        return spans
 
     def _front_curves(self) -> pd.DataFrame | None:
         """Return the fronts of some steps in the first two objectives; None where there are not two."""
@@ -310,10 +335,16 @@ class Study:
                     data[x][-1] = _in_unit(d.values[first], unit)
                     data[label][-1] = _in_unit(d.values[second], other)
         frame = pd.DataFrame(data)
-        panel = {"label": header(second, other), "columns": labels, "points": True}
+        # Straight lines between few designs would promise what lies between: fronts would seem to cross better ones.
+        assert steps[0].front is not None
+        stairs = "post" if steps[0].front.frame.objectives[first] == "min" else "pre"
+        panel = {"label": header(second, other), "columns": labels, "points": True, "stairs": stairs}
         names = " and ".join(v.label.replace("_", " ") for v in self.varied)
         frame.attrs.update(
-            title=f"{self._title()}: the front for {names}", x=x, panels=[panel], source=self._footer(False)
+            title=f"{self._title()}: the front for {names}",
+            x=x,
+            panels=[panel],
+            source=f"{self._footer(False)}; lines: what the designs reach at least",
         )
         return frame
 
@@ -324,10 +355,12 @@ class Study:
     def _title(self) -> str:
         return self.fronts[0].frame.title if self.fronts else "What if"
 
-    def _footer(self, breaks: bool) -> str:
+    def _footer(self, breaks: bool, shaded: bool = False) -> str:
         solved = [f.certificate.kind for f in self.fronts]
         answered = f"{len(solved)} of {len(self.steps)} steps answered, {solved.count('global')} of them proven"
-        return answered + ("; vertical lines: break points" if breaks else "")
+        return (
+            answered + ("; vertical lines: break points" if breaks else "") + (f"; grey: {NO_DESIGN}" if shaded else "")
+        )
 
     # -- files ---------------------------------------------------------------------------------
 
@@ -383,6 +416,15 @@ def _lines(single: bool, steps: Sequence[Step | None], name: str) -> dict[str, l
     ]
     leading = [math.nan if f is None else f.designs[0].values[name] for f in fronts]
     return {"best": best, "leading design": leading, "other end of the front": worst}
+
+
+def _edge(places: Sequence[float], k: int, way: int, ends: Sequence[float]) -> float:
+    """Return how far, upwards (1) or downwards (-1), what holds at a place is shown: to the next end on the way."""
+    place, beyond = places[k], k + way
+    if not 0 <= beyond < len(places):
+        return place
+    between = [x for x in ends if 0 <= way * (x - place) <= way * (places[beyond] - place)]
+    return min(between, key=lambda x: abs(x - place), default=0.5 * (place + places[beyond]))
 
 
 def _brief(b: Break) -> str:

@@ -149,6 +149,26 @@ def test_axes_are_logarithmic_points_marked_and_panels_high_where_asked() -> Non
     assert heights[0] > 1.8 * heights[1]
 
 
+@pytest.mark.parametrize(("stairs", "style"), [("post", "steps-post"), ("pre", "steps-pre"), (None, "default")])
+def test_values_hold_up_to_the_next_row_where_asked(stairs: str | None, style: str) -> None:
+    first, *rest = sample().attrs["panels"]
+    axes = make_figure(sample(panels=[{**first, "stairs": stairs}, *rest])).axes
+    assert [axis.get_lines()[0].get_drawstyle() for axis in axes] == [style, "default", "default"]
+
+
+def test_spans_are_shaded_in_turn_or_where_asked() -> None:
+    ends = [{"from": float(k), "to": k + 1.0} for k in range(3)]
+    for spans, shaded in (
+        (ends, [1.0]),
+        ([{**span, "shaded": True} for span in ends], [0.0, 1.0, 2.0]),
+        ([{**ends[0], "shaded": True}, {**ends[1], "shaded": False}], [0.0]),
+    ):
+        (axis,) = make_figure(sample(spans=spans, panels=sample().attrs["panels"][:1])).axes
+        assert [patch.get_extents().transformed(axis.transData.inverted()).x0 for patch in axis.patches] == (
+            pytest.approx(shaded)
+        )
+
+
 def test_the_same_name_is_the_same_line_in_every_panel() -> None:
     frame = sample()
     frame["driven_power [W]"] = frame["time [s]"]

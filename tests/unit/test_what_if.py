@@ -359,3 +359,37 @@ def test_progress_is_told_of_every_step() -> None:
     assert alone == [f"step {k} of 6, share = {s}, load = {f} kN" for k, (s, f) in enumerate(places, 1)]
     for k, done in enumerate(told[name] for name in alone):
         assert k / 6 - 1e-9 <= min(done) <= max(done) <= (k + 1) / 6 + 1e-9
+
+
+# ---- drawings -------------------------------------------------------------------------------------------------------
+
+
+def test_a_drawing_says_where_there_is_no_design() -> None:
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    drawn = {
+        breaks: study({"load": "20, 40, 80, 100, 120 kN"}, GIVEN, catalogs=weak, breaks=breaks).curves()["whatif"].attrs
+        for breaks in (False, True)
+    }
+    # Three strands bear 90 kN. Without breaks half the way between two steps is a guess.
+    assert drawn[False]["spans"] == [{"from": 90.0, "to": 120.0, "shaded": True, "label": "no design"}]
+    (span,) = drawn[True]["spans"]
+    assert span["from"] == pytest.approx(90, rel=1e-3)
+    assert span["to"] == 120
+    assert "grey: no design" in drawn[True]["source"]
+    everywhere = study({"load": "20, 40 kN"}, GIVEN, catalogs=weak).curves()["whatif"].attrs
+    assert everywhere["spans"] == []
+    assert "grey" not in everywhere["source"]
+
+
+def test_steps_that_were_not_reached_do_not_count_as_without_design() -> None:
+    found = study({"load": "20, 40 kN"}, GIVEN, time_limit=1e-6)
+    assert found.interrupted
+    assert found.curves()["whatif"].attrs["spans"] == []
+
+
+@pytest.mark.parametrize(("sense", "stairs"), [({"cost": "min"}, "post"), ({"gain": "max"}, "pre")])
+def test_fronts_are_drawn_as_what_their_designs_reach(sense: dict[str, str], stairs: str) -> None:
+    found = synth.whatif(GIVEN, {"load": "10 kN"}, {"load": "4, 19 kN"}, {**sense, "bulk": "min"}, 6, FOUR)
+    frame = found.curves()["fronts"]
+    assert [panel["stairs"] for panel in frame.attrs["panels"]] == [stairs]
+    assert "what the designs reach" in frame.attrs["source"]
