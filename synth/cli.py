@@ -13,7 +13,7 @@ import typer
 from synth import choice_commands, robust_commands
 from synth import study_commands as studies
 from synth.errors import InputError
-from synth.given import given_design, must_be_a_design, must_be_one_family
+from synth.given import given_design, must_be_a_design, must_be_a_question, must_be_one_family
 from synth.jobs import commands as batches
 from synth.terminal import (
     BAD_INPUT,
@@ -185,7 +185,7 @@ def run(
         points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
         objectives=objectives(objective or []),
     )  # fmt: skip
-    _must_be_a_question(asked)
+    must_be_a_question(asked)
     check_output(folder)
     if asked.compares:
         choice_commands.compare_families(asked, folder, every, quiet)
@@ -217,7 +217,7 @@ def explain(
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(time_limit=time_limit)
-    _must_be_a_question(asked)
+    must_be_a_question(asked)
     must_be_one_family(asked)
     if folder is not None:
         check_output(folder)
@@ -365,16 +365,6 @@ def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
     from synth.problem import load
 
     return load(family, **options)
-
-
-def _must_be_a_question(asked: Spec) -> None:
-    """Refuse a spec with values."""
-    if asked.values is not None:
-        raise InputError(
-            f"{asked.file}: values",
-            ", ".join(asked.values),
-            "a question without values; clutchsynth check reads a given design",
-        )
 
 
 def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:

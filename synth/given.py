@@ -1,4 +1,4 @@
-"""A given design, read from a DESIGN.yaml and evaluated, for the commands that take one."""
+"""What a spec gives: a question, or a design that is evaluated, for the commands that take the one or the other."""
 
 from __future__ import annotations
 
@@ -17,6 +17,16 @@ def must_be_one_family(asked: Spec) -> None:
     """Refuse a spec of several families."""
     if asked.compares:
         raise InputError(f"{asked.file}: family", "several", "one family (clutchsynth run compares several)")
+
+
+def must_be_a_question(asked: Spec) -> None:
+    """Refuse a spec with values."""
+    if asked.values is not None:
+        raise InputError(
+            f"{asked.file}: values",
+            ", ".join(asked.values),
+            "a question without values; clutchsynth check reads a given design",
+        )
 
 
 def must_be_a_design(asked: Spec) -> None:

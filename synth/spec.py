@@ -15,6 +15,7 @@ from typing import Any
 import yaml
 
 from synth.errors import InputError
+from synth.gap import EXPECTED, is_gap
 
 LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
 
@@ -257,8 +258,8 @@ def _whole(least: int) -> Callable[[str, Any], int | None]:
 def _gap(where: str, value: Any) -> float | None:
     if value is None:
         return None
-    if not _is_number(value) or not 1e-6 <= value <= 0.5:
-        raise InputError(where, _kind(value), "a fraction from 1e-6 to 0.5, for example 0.001")
+    if not is_gap(value):
+        raise InputError(where, _kind(value), EXPECTED)
     return float(value)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from synth.errors import InputError
-from synth.given import must_be_one_family
+from synth.given import must_be_a_question, must_be_one_family
 from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, objectives, tell
 from synth.terminal_options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
 
@@ -54,8 +54,7 @@ def whatif(
         points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
         objectives=objectives(objective or []),
     )  # fmt: skip
-    if asked.values is not None:
-        raise InputError(f"{asked.file}: values", ", ".join(asked.values), "a question without values")
+    must_be_a_question(asked)
     must_be_one_family(asked)
     check_output(folder)
     study = _study(asked, vary, folder, breaks, quiet)
