@@ -30,6 +30,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#5
 DASHES: tuple[Any, ...] = (
     "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
 )  # fmt: skip
+BESIDE = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
 STYLE: dict[str, Any] = {
@@ -268,7 +269,10 @@ def _prefix(
 
 
 def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, in_legend: int) -> None:
-    """Name horizontal lines at the right of the panel, below the legend and none on top of another."""
+    """Name horizontal lines at the right of the panel, below the legend and none on top of another.
+
+    A name that had to give way is joined to its line.
+    """
     height = axis.get_position().height * axis.get_figure(root=True).get_figheight()  # type: ignore[union-attr]
     transform = axis.yaxis.get_transform()
     bottom, top = transform.transform(list(axis.get_ylim()))
@@ -279,9 +283,12 @@ def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, i
         middle = min(level, ceiling - 0.07 * len(texts))
         ceiling = middle - 0.07 * len(texts)
         axis.text(
-            1.012, middle / height, "\n".join(texts),
+            1.016, middle / height, "\n".join(texts),
             transform=axis.transAxes, va="center", fontsize=7.5, color="#333333",
         )  # fmt: skip
+        if level - middle > BESIDE:
+            joined = {"arrowstyle": "-", "shrinkA": 0, "shrinkB": 0, "color": "#777777", "lw": 0.6}
+            axis.annotate("", (1.0, level / height), (1.014, middle / height), "axes fraction", arrowprops=joined)
 
 
 def _draw_spans(axis: Axes, spans: Sequence[Mapping[str, Any]], marks: Sequence[Mapping[str, Any]]) -> None:
