@@ -82,8 +82,11 @@ class FrontsSearch:
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
         self.between = int(questions[0].settings["points"]) - 2
         moving = different([q.instance for q in questions])
+        self.others: list[tuple[TogetherSearch, np.ndarray]] = []  # with the positions of the questions that each asks
         self.wider, reverse = (Wider(questions, moving, first) for first in questions[0].chosen)
-        self.first, self.second = self._search(self.questions, self.wider), self._search(self.questions, reverse)
+        every = np.arange(len(self.questions))
+        self.first, self.second = self._search(every, self.wider), self._search(every, reverse)
+        self.others.append((self.second, every))
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
@@ -92,23 +95,32 @@ class FrontsSearch:
             # The gap of what may be zero is measured against the range of a front, which is not known before.
             return [None] * len(self.questions)
         ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
-        searches, found = [second], {q: list(pair) for q, pair in ends.items()}
+        found = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
             numbers = list(ends)
             level = self._at_levels(numbers, *self._levels(ends))
-            searches.append(level)
             for c in level.optima(level.told_apart()):
                 row, own = divmod(c.combination, first.together.size)
                 question = numbers[row // self.between]
                 found[question].append(Candidate(question * first.together.size + own, c.variables, c.phi))
-        solves = first.form.nlp_solves + sum(s.form.nlp_solves for s in searches)
-        first.form.contracted += sum(s.form.contracted for s in searches)
+        solves = self._work_counted()
         fronts = [distinct(own, 2) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
-    def _search(self, questions: Sequence[Question], wider: Wider, **more: Any) -> TogetherSearch:
+    def _search(self, positions: np.ndarray, wider: Wider, **more: Any) -> TogetherSearch:
         left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
+        questions = [self.questions[q] for q in positions]
         return TogetherSearch(questions, self.workers, self.progress, left, wider=wider, **more)
+
+    def _work_counted(self) -> int:
+        """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
+        form, size = self.first.form, self.first.together.size
+        for search, positions in self.others:
+            form.contracted += search.form.contracted
+            form.nlp_solves += search.form.nlp_solves
+            row, own = np.divmod(np.array(list(search.form.solved_combinations), dtype=np.int64), size)
+            form.solved_combinations.update((positions[row] * size + own).tolist())
+        return form.nlp_solves
 
     # -- the ends ------------------------------------------------------------------------------
 
@@ -143,9 +155,10 @@ class FrontsSearch:
         known : list of Candidate
             Where to look first.
         """
-        questions = [self.questions[q] for q in numbers for _ in range(levels.shape[1])]
+        positions = np.repeat(numbers, levels.shape[1])
         caps = {0: self.first.form.signed(0, levels.ravel())}
-        search = self._search(questions, self.wider, sought=1, caps=caps)
+        search = self._search(positions, self.wider, sought=1, caps=caps)
+        self.others.append((search, positions))
         search.starts = {c.combination % self.first.together.size: c.variables for c in known}
         return search
 

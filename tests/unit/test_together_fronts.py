@@ -63,7 +63,10 @@ def check_front(question: Question, front: ParetoFront) -> None:
     assert len(front.designs) == points
     assert (front.status, front.complete, front.certificate.kind) == (Status.OPTIMAL, False, "global")
     assert front.certificate.gap == question.settings["gap"]
-    assert front.certificate.combinations == question.instance.combinations
+    certificate, statistics = front.certificate, front.statistics
+    assert certificate.combinations == question.instance.combinations
+    assert certificate.excluded_by_bound + certificate.solved == certificate.combinations
+    assert statistics["nlp_solves_to_find"] <= statistics["nlp_solves"]
     assert [d.rank for d in front.designs] == list(range(1, points + 1))
     assert sorted(d.score for d in front.designs) == [d.score for d in front.designs]
     assert {f"smallest {n}" for n in names} <= {w for d in front.designs for w in d.note.split("; ")}
