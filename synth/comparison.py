@@ -511,7 +511,7 @@ class _Comparing:
                 format_quantity(float(rows[:, k].min() * self.senses[k]), member.front.frame.units[name], 4)
                 for rows in (own, all_of_them)
             )
-            words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} (of all {least})")
+            words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {least}")
         if best < 0 or not beats[best]:
             return None, f"everywhere, by designs between those listed: {', '.join(words)}"
         by = f"by #{designs[best].rank} ({owners[best]})"
