@@ -500,24 +500,31 @@ class _Comparing:
         owners: Sequence[str],
         every: Sequence[tuple[_Member, Design]],
     ) -> tuple[Design | None, str]:
-        """Say by which design a family is beaten in most of its own, and how its best values compare."""
+        """Say by which design a family is beaten in most of its own, and how its best values compare with that one's.
+
+        Where no listed design beats any, they are compared with the best values of all.
+        """
         own = self._signed(member.designs)
-        all_of_them = self._signed([d for _, d in every])
         beats = [int(_beaten(own, row, of_others=True).sum()) for row in self._signed(designs)]
         best = int(np.argmax(beats)) if beats else -1
-        words = []
-        for k, (name, sense) in enumerate(self.objectives.items()):
-            mine, least = (
-                format_quantity(float(rows[:, k].min() * self.senses[k]), member.front.frame.units[name], 4)
-                for rows in (own, all_of_them)
-            )
-            words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {least}")
         if best < 0 or not beats[best]:
-            return None, f"everywhere, by designs between those listed: {', '.join(words)}"
+            words = self._against(member, own, self._signed([d for _, d in every]))
+            return None, f"everywhere, by designs between those listed: {words}"
         by = f"by #{designs[best].rank} ({owners[best]})"
         if len(own) > 1:
             by = f"in {'all' if beats[best] == len(own) else f'{beats[best]} of {len(own)}'} of its designs {by}"
-        return designs[best], f"everywhere, {by}: {', '.join(words)}"
+        return designs[best], f"everywhere, {by}: {self._against(member, own, self._signed([designs[best]]))}"
+
+    def _against(self, member: _Member, own: np.ndarray, others: np.ndarray) -> str:
+        """Return the best values of a family's designs beside those of others."""
+        words = []
+        for k, (name, sense) in enumerate(self.objectives.items()):
+            mine, theirs = (
+                format_quantity(float(rows[:, k].min() * self.senses[k]), member.front.frame.units[name], 4)
+                for rows in (own, others)
+            )
+            words.append(f"{'least' if sense == 'min' else 'largest'} {name} {mine} against {theirs}")
+        return ", ".join(words)
 
 
 def _beaten(signed: np.ndarray, own: np.ndarray, of_others: bool = False) -> np.ndarray:

@@ -13,6 +13,7 @@ from synth.results import Status
 from synth.search import FrontSearch
 from synth.sheet import applicants, common_objectives, sheet_of
 from synth.tables import Catalogs
+from synth.units import format_quantity
 
 METALS = pd.DataFrame({
     "designation": ["plain", "strong"], "yield_Re [N/mm2]": [200.0, 500.0], "density [kg/m3]": [7850.0, 7900.0],
@@ -149,7 +150,13 @@ def test_every_family_that_lost_is_told_why(found):
     assert padded.outcome == "beaten"
     winner = padded.beaten_by
     assert f"by #{winner.rank} ({winner.frame.family})" in padded.sentence
-    assert "least mass" in padded.sentence
+    least = {n: min(d.objectives[n] for d in padded.front.designs) for n in ("mass", "sag")}
+    mass, sag = (
+        f"least {n} {format_quantity(least[n], unit, 4)} against {format_quantity(winner.objectives[n], unit, 4)}"
+        for n, unit in (("mass", "kg"), ("sag", "mm"))
+    )
+    assert padded.sentence.endswith(f": {mass}, {sag}")
+    assert winner.objectives["mass"] > min(d.objectives["mass"] for d in found.designs)  # not the best of all
     for design in padded.front.designs:
         assert any(all(d.objectives[n] <= design.objectives[n] for n in found.objectives) for d in found.designs)
     weak = outcome(found, "weak")
