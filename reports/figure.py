@@ -30,6 +30,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#5
 DASHES: tuple[Any, ...] = (
     "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
 )  # fmt: skip
+LEGEND_LETTERS = 21  # of a line beside the panels
 BESIDE = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
@@ -232,7 +233,7 @@ def _draw_panel(
             marker=MARKERS[k % len(MARKERS)] if panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
             markersize=3.5,
-            label=textwrap.fill(_legend(column, name), 26),
+            label=textwrap.fill(_legend(column, name), LEGEND_LETTERS),
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )
     for line in lines:

@@ -267,8 +267,8 @@ class Study:
                 }
                 lines = _lines(len(groups) == 1, [at.get(p) for p in places], name)
                 for label, values in lines.items():
-                    words = "" if len(groups) == 1 else f" at {self._words(k, group)}"
-                    column = header(f"{label} {name}{words}", unit)
+                    words = "" if len(groups) == 1 else f"{self._words(k, group)}: "
+                    column = header(f"{words}{label} {name}", unit)
                     data[column] = [_in_unit(v, unit) for v in values]
                     columns.append(column)
             panels.append({"label": header(name, unit), "columns": columns, "points": True})

@@ -26,6 +26,7 @@ from matplotlib.text import Text
 import synth
 from reports.figure import STYLE, figure_png, figure_svg, make_figure
 from synth.errors import InputError
+from tests.unit.ropes import Ropes, ropes
 
 ROOT = Path(__file__).parents[2]
 
@@ -119,6 +120,21 @@ def test_the_figures_of_a_design_can_be_read(motor: str | None) -> None:
         assert_readable(frame)
     for frame in synth.curves(problem, design["requirements"]).values():
         assert_readable(frame)
+
+
+@pytest.mark.parametrize("vary", [{"load": "20, 40, 120 kN"}, {"load": "20, 40 kN", "share": "1, 2.5, 3"}])
+def test_the_figures_of_a_study_can_be_read(vary: dict[str, str]) -> None:
+    problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
+    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min", "bulk": "min"}, 6, table)
+    frames = study.curves()
+    assert list(frames) == ["whatif", "fronts"]
+    for frame in frames.values():
+        assert_readable(frame)
+    panels = make_figure(frames["whatif"]).axes
+    first, second = ([(line.get_label(), line.get_color()) for line in axis.get_lines()] for axis in panels)
+    named = [pair for pair in first if not str(pair[0]).startswith("_")]
+    assert len(named) == 3
+    assert named == [pair for pair in second if not str(pair[0]).startswith("_")]
 
 
 def test_a_frame_with_a_title_only_gets_a_panel_per_unit() -> None:
