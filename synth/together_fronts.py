@@ -19,7 +19,7 @@ from synth.formulation import Candidate, rows_of
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search import Question, distinct
-from synth.together import TogetherSearch, Wider, different, groups_of
+from synth.together import LARGEST, TogetherSearch, Wider, different, groups_of
 
 MOST_POINTS = 8  # designs of a front; where there are more, questions are answered sooner one by one
 PLACES = 8  # questions of which a rough picture is made
@@ -33,7 +33,10 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
         sizes: dict[int, list[int]] = {}
         for k in group:
             sizes.setdefault(int(questions[k].settings["points"]), []).append(k)
-        groups += [own for points, own in sizes.items() if 2 <= points <= MOST_POINTS and len(own) > 1]
+        # Every level of every question has combinations of its own, which must be numbered.
+        most = LARGEST // (LEVELS * questions[group[0]].instance.combinations)
+        few = (own for points, own in sizes.items() if 2 <= points <= MOST_POINTS)
+        groups += [own for own in few if len(own) > 1 and max(len(own), PLACES) <= most]
     return groups
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import synth
+from synth import together_fronts
 from synth.clock import Stopped
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront
@@ -196,6 +197,15 @@ def test_few_designs_of_two_objectives_are_searched_together() -> None:
     assert groups(*struts(3, 10, 20, objectives=(*BOTH, "width"))) == []
     assert groups(*struts(3, 10), *struts(4, 20), *struts(3, 30), *one) == [[3, 4], [0, 2]]
     assert groups(*struts(3, 10), *struts(3, 20, gap=0.01)) == []
+
+
+def test_there_are_numbers_for_every_level_of_every_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    questions = struts(3, 10, 20)
+    numbers = together_fronts.PLACES * together_fronts.LEVELS * questions[0].instance.combinations
+    monkeypatch.setattr(together_fronts, "LARGEST", numbers)
+    assert joint_groups(questions) == [[0, 1]]
+    monkeypatch.setattr(together_fronts, "LARGEST", numbers - 1)
+    assert joint_groups(questions) == []
 
 
 def test_answers_are_those_of_the_kind_of_question() -> None:
