@@ -33,7 +33,9 @@ def whatif(
         ),
     ],
     folder: Folder,
-    points: Annotated[int | None, typer.Option(help="At most this many designs per step.")] = None,
+    points: Annotated[
+        int | None, typer.Option(help="At most this many designs per step; 3 unless the spec says otherwise.")
+    ] = None,
     gap: Gap = None,
     grid: Grid[bool | None] = None,
     seed: Seed[int | None] = None,
