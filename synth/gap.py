@@ -7,7 +7,7 @@ from numbers import Real
 from typing import Any
 
 LEAST, MOST = 1e-6, 0.5
-EXPECTED = "a fraction from 1e-6 to 0.5, for example 0.001"
+GAP_EXPECTED = "a fraction from 1e-6 to 0.5, for example 0.001"
 
 
 def is_gap(value: Any) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections import Counter
+from collections import ChainMap, Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -116,13 +116,13 @@ class Propagation:
             self._constants[every] = [float(np.asarray(v).ravel()[0]) for v in values]
         places = range(len(names))
         per_row = {every: [self._values_of_tables(c, f) for f in places] for every, c in self._contractors.items()}
-        for values in per_row.values():
-            for node, v in ((node, v) for own in values for node, v in own.items()):
+        every_row = {every: ChainMap(*own) for every, own in per_row.items()}
+        for rows in every_row.values():
+            for node, v in rows.items():
                 known = v[~np.isnan(v)]
                 self._least[node] = float(known.min()) if len(known) else np.nan
         # Objectives that only settle ties cut nothing off: what holds over the whole question is the same without them.
-        every_row = {node: v for own in per_row[True] for node, v in own.items()}
-        ordered = [every_row[node] for node in self._contractors[True].tables]
+        ordered = [every_row[True][node] for node in self._contractors[True].tables]
         hull = (np.array([np.min(v) for v in ordered]), np.array([np.max(v) for v in ordered]))
         self._root = self._contractors[True].root(
             instance.lower, instance.upper, hull, self._constants[True], self.bounds
@@ -143,7 +143,7 @@ class Propagation:
         self._bits = bounded if bounded <= MOST_BITS else 0
         self._anywhere = self._influences()
         self.cells = Cells([self._tree(f) for f in self.factors], instance.radix)
-        self._tables = {
+        self._ends_of = {
             every: [self._tables_of(c, f, per_row[every][f]) for f in places] for every, c in self._contractors.items()
         }
         self._begin()
@@ -159,18 +159,20 @@ class Propagation:
         Returns
         -------
         Propagation, optional
-            None where rows do not lie within those known here.
+            None where rows do not lie within those known here, or where something else is not the same.
         """
-        own = copy.copy(self)
+        own, owner = copy.copy(self), instance.owners()
         own.instance = instance
-        first = own._factor(0, instance.factors()[0], instance.owners())
+        if owner != self.instance.owners() or not np.array_equal(own._fixed(owner), self._fixed(owner), equal_nan=True):
+            return None
+        first = own._factor(0, instance.factors()[0], owner)
         read, known = first.columns[:, : len(first.inputs)], self.factors[0].columns
         if not np.all((read >= known.min(axis=0)) & (read <= known.max(axis=0))):
             return None
         own.factors = [first, *self.factors[1:]]
         own.cells = Cells([own._tree(first), *self.cells.trees[1:]], instance.radix)
-        own._tables = {
-            every: [own._tables_of(c, 0, own._values_of_tables(c, 0)), *self._tables[every][1:]]
+        own._ends_of = {
+            every: [own._tables_of(c, 0, own._values_of_tables(c, 0)), *self._ends_of[every][1:]]
             for every, c in own._contractors.items()
         }
         own._begin()
@@ -178,6 +180,7 @@ class Propagation:
 
     def _begin(self) -> None:
         """Know nothing yet of where to split but what holds anywhere."""
+        self._tables = {every: self._in_order(every) for every in self._contractors}
         self._influence = self._anywhere
         self._spreads = [self._spread(tree) for tree in self.cells.trees]
         self._steep = self._steep_of_moving()
@@ -192,6 +195,10 @@ class Propagation:
     def _tree(self, factor: Factor) -> ClusterTree:
         weights = self._anywhere.sum(axis=0)[[self.n + i for i in factor.inputs]]
         return ClusterTree(factor, np.concatenate([weights, np.ones(len(factor.capped))]))
+
+    def _fixed(self, owner: Sequence[int]) -> list[float]:
+        """Return the data that belong to no factor."""
+        return [v for v, own in zip(self._one_data(), owner, strict=True) if own < 0]
 
     def _inputs(self, owner: Sequence[int]) -> list[Any]:
         """Return what the program reads where only requirements are known."""
@@ -279,9 +286,9 @@ class Propagation:
             result[node] = np.ascontiguousarray(ends[0]), np.ascontiguousarray(ends[1])
         return result
 
-    def _ordered_tables(self, every: bool) -> list[tuple[int, np.ndarray, np.ndarray]]:
+    def _in_order(self, every: bool) -> list[tuple[int, np.ndarray, np.ndarray]]:
         """Return, per tabulated node in the order of the contractor, its factor and its ends per cluster."""
-        ends = {node: (f, *pair) for f, own in enumerate(self._tables[every]) for node, pair in own.items()}
+        ends = {node: (f, *pair) for f, own in enumerate(self._ends_of[every]) for node, pair in own.items()}
         return [ends[node] for node in self._contractors[every].tables]
 
     def _spread(self, tree: ClusterTree) -> np.ndarray:
@@ -430,7 +437,7 @@ class Propagation:
         count = len(cell)
         function = self._code(every, caps is not None).function(self._root)
         variables = [(low[:, i], high[:, i]) for i in range(self.width)]
-        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._ordered_tables(every)]
+        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self._tables[every]]
         root = self._root
         with np.errstate(all="ignore"):
             dead, goals, opens = function(
@@ -543,7 +550,7 @@ class Propagation:
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
         instance = self.instance
         return Question(
-            tables=self._ordered_tables(every),
+            tables=self._tables[every],
             constants=np.array(self._constants[every]),
             rights=np.array(self.bounds),
             root=self._root,

@@ -19,7 +19,7 @@ from synth.elasticity import elasticities
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
-from synth.gap import EXPECTED, is_gap
+from synth.gap import GAP_EXPECTED, is_gap
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
@@ -271,7 +271,7 @@ def check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, pr
     if not whole(points) or points < 1:
         raise InputError("points", points, "a whole number of designs, at least 1")
     if not is_gap(gap):
-        raise InputError("gap", gap, EXPECTED)
+        raise InputError("gap", gap, GAP_EXPECTED)
     if not isinstance(grid, (bool, np.bool_)):
         raise InputError("grid", grid, "true or false")
     if progress is not None and not callable(progress):

@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from synth.errors import InputError
-from synth.gap import EXPECTED, is_gap
+from synth.gap import GAP_EXPECTED, is_gap
 
 LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
 
@@ -259,7 +259,7 @@ def _gap(where: str, value: Any) -> float | None:
     if value is None:
         return None
     if not is_gap(value):
-        raise InputError(where, _kind(value), EXPECTED)
+        raise InputError(where, _kind(value), GAP_EXPECTED)
     return float(value)
 
 

@@ -277,13 +277,15 @@ class Study:
         if len(marks) <= MOST_LABELS:
             marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
         spans = self._without_design(along)
+        legend = ["vertical lines: break points"] if marks else []
+        legend += [f"grey: {NO_DESIGN}"] if spans else []
         frame.attrs.update(
             title=f"{self._title()} over {varied.label.replace('_', ' ')}" if numeric else self._title(),
             x=x,
             panels=panels,
             marks=marks,
             spans=spans,
-            source=self._footer(bool(marks), bool(spans)),
+            source=self._footer(*legend),
         )
         return frame
 
@@ -344,7 +346,7 @@ class Study:
             title=f"{self._title()}: the front for {names}",
             x=x,
             panels=[panel],
-            source=f"{self._footer(False)}; lines: what the designs reach at least",
+            source=self._footer("lines: what the designs reach at least"),
         )
         return frame
 
@@ -355,12 +357,11 @@ class Study:
     def _title(self) -> str:
         return self.fronts[0].frame.title if self.fronts else "What if"
 
-    def _footer(self, breaks: bool, shaded: bool = False) -> str:
+    def _footer(self, *legend: str) -> str:
+        """Return how far the steps are answered, and what stands for what."""
         solved = [f.certificate.kind for f in self.fronts]
         answered = f"{len(solved)} of {len(self.steps)} steps answered, {solved.count('global')} of them proven"
-        return (
-            answered + ("; vertical lines: break points" if breaks else "") + (f"; grey: {NO_DESIGN}" if shaded else "")
-        )
+        return "; ".join([answered, *legend])
 
     # -- files ---------------------------------------------------------------------------------
 

@@ -351,10 +351,10 @@ class TogetherSearch:
         self.started = time.monotonic()
         self.questions, self.progress = list(questions), progress
         first = questions[0]
-        self.wider, self.workers, self.sought = wider or Wider(questions, ()), workers, sought
-        self.together = Together([q.instance for q in questions], self.wider.moving, caps)
+        self.wider, self.workers, self.sought = wider, workers, sought
+        self.together = Together([q.instance for q in questions], () if wider is None else wider.moving, caps)
         self.gap = float(first.settings["gap"])
-        self.goals = self.wider.goals
+        self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
         self.form = self._prepared()
         self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
         for k, values in (caps or {}).items():
@@ -487,7 +487,7 @@ class TogetherSearch:
         return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain)
 
     def _prepared(self, conflict: bool = False) -> Formulation:
-        form = self.wider.among(self.together, conflict)
+        form = None if self.wider is None else self.wider.among(self.together, conflict)
         if form is None:
             form = Formulation(self.together, self.goals, 1, conflict)
         form.workers = self.workers

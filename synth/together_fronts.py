@@ -86,17 +86,17 @@ class FrontsSearch:
         self.between = int(questions[0].settings["points"]) - 2
         moving = different([q.instance for q in questions])
         self.others: list[tuple[TogetherSearch, np.ndarray]] = []  # with the positions of the questions that each asks
-        self.wider, reverse = (Wider(questions, moving, first) for first in questions[0].chosen)
-        every = np.arange(len(self.questions))
-        self.first, self.second = self._search(every, self.wider), self._search(every, reverse)
-        self.others.append((self.second, every))
+        self.wider, self.reverse = (Wider(questions, moving, first) for first in questions[0].chosen)
+        self.first = self._search(np.arange(len(self.questions)), self.wider)
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
-        first, second = self.first, self.second
+        first, every = self.first, np.arange(len(self.questions))
         if not first.form.log_goals[:2].all():
             # The gap of what may be zero is measured against the range of a front, which is not known before.
             return [None] * len(self.questions)
+        second = self._search(every, self.reverse)
+        self.others.append((second, every))
         ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
         found = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
@@ -137,11 +137,8 @@ class FrontsSearch:
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
         """Return the designs that are best in the first and in the second objective, where they differ."""
-        size = self.first.together.size
-        others = {c.combination // size: c for c in least}
-        pairs = {
-            c.combination // size: (c, others[c.combination // size]) for c in best if c.combination // size in others
-        }
+        first, second = ({c.combination // self.first.together.size: c for c in own} for own in (best, least))
+        pairs = {q: (c, second[q]) for q, c in first.items() if q in second}
         return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2)) == 2}
 
     # -- designs between -----------------------------------------------------------------------
@@ -176,7 +173,7 @@ class FrontsSearch:
         picture = self._at_levels([numbers[k] for k in places], at, known)
         drawn: dict[int, list[Candidate]] = {}
         for c in picture.glimpse():
-            drawn.setdefault(int(picture.together.question(np.array([c.combination]))[0]) // LEVELS, []).append(c)
+            drawn.setdefault(c.combination // picture.together.size // LEVELS, []).append(c)
         shares, good = [], list[Candidate]()
         for row, k in enumerate(places):
             every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2)

@@ -31,6 +31,7 @@ from tests.unit.strut import RODS, Strut
 
 GAP = 1e-3
 FOUR = ropes((10, 2), (20, 1), (35, 0.5), (5, 4), most=[100, 200, 400, 20])
+MOVING = ("load", "jolt")  # what the load decides
 FREE, MAKEABLE, GIVEN = Ropes(), Ropes(thick="makeable"), Ropes(thick="given")
 
 
@@ -583,13 +584,13 @@ def test_what_may_move_belongs_to_the_question() -> None:
 def test_what_holds_for_many_questions_is_found_once(
     problem: DesignProblem, conflict: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wider = Wider(asked(problem, loads(2, 7, 60)), ("load",))
+    wider = Wider(asked(problem, loads(2, 7, 60)), MOVING)
     roots = []
     root = contractor.Contractor.root
     monkeypatch.setattr(contractor.Contractor, "root", lambda *a: roots.append(1) or root(*a))
     for own in (loads(2, 60), loads(2.5, 6.9, 7, 33), loads(59)):
         questions = asked(problem, own)
-        together = Together([q.instance for q in questions], ("load",))
+        together = Together([q.instance for q in questions], MOVING)
         form = wider.among(together, conflict)
         assert form is not None
         # Its clusters and tables are those of questions that are prepared alone.
@@ -602,9 +603,20 @@ def test_what_holds_for_many_questions_is_found_once(
     assert len(roots) == 1
     # What the wider questions do not speak of is prepared anew.
     beyond = asked(problem, loads(5, 61))
-    assert wider.among(Together([q.instance for q in beyond], ("load",)), conflict) is None
+    assert wider.among(Together([q.instance for q in beyond], MOVING), conflict) is None
     answers = [TogetherSearch(beyond, wider=w).answers() for w in (None, wider)]
     assert [f.designs for f in answers[0] if f] == [f.designs for f in answers[1] if f]
+
+
+@pytest.mark.parametrize("conflict", [False, True])
+def test_questions_that_differ_in_anything_else_are_prepared_anew(conflict: bool) -> None:
+    wider = Wider(asked(FREE, loads(2, 60)), MOVING)
+    instances = [q.instance for q in asked(FREE, loads(7))]
+    assert wider.among(Together(instances, MOVING), conflict) is not None
+    # The jolt is made of the load: of one question it would seem to be fixed.
+    assert wider.among(Together(instances, ("load",)), conflict) is None
+    dearer = [q.instance for q in asked(FREE, loads(7, share=2))]
+    assert wider.among(Together(dearer, MOVING), conflict) is None
 
 
 # ---- the best of each question --------------------------------------------------------------------------------------
