@@ -61,6 +61,12 @@ class Tasks:
     elastic: float = 0.0
     moved: np.ndarray | None = None
 
+    def take(self, rows: np.ndarray) -> Tasks:
+        """Return some of the problems, by positions."""
+        moved = None if self.moved is None else self.moved[rows]
+        own = self.weights[rows], self.slopes[rows], self.caps[rows]
+        return Tasks(*own, self.goal_scales, self.t_weight, self.elastic, moved)
+
 
 @dataclass(frozen=True)
 class Solutions:

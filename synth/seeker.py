@@ -156,15 +156,17 @@ class Seeker:
             boxes = replace(boxes, low=np.where(form.gridded, middle, low), high=np.where(form.gridded, middle, high))
         if form.gridded.any() or not single:
             boxes = self._tightened(boxes)
-        return self._keep(boxes)
+        return self._keep(boxes)[0]
 
-    def _keep(self, boxes: Boxes) -> int:
-        """Evaluate two points of each box; return how many were new."""
-        found, thin = 0, self._thin(boxes)
+    def _keep(self, boxes: Boxes) -> tuple[int, np.ndarray]:
+        """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
+        found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
         for share in (EDGE, 0.5) if len(boxes) else ():
             points = self.form.makeable(self.form.inside(boxes, share))
-            found += self.offer(points, self.form.combination(boxes), thin)
-        return found
+            new, rows = self._offered(points, self.form.combination(boxes), thin)
+            hit[rows] = True
+            found += new
+        return found, hit
 
     def _thin(self, boxes: Boxes) -> np.ndarray:
         """Tell in which boxes limits that all but exclude each other leave a variable no choice.
@@ -178,13 +180,19 @@ class Seeker:
 
     def offer(self, points: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False) -> int:
         """Take what is feasible; return how many designs no known one covered."""
+        return self._offered(points, combinations, exact)[0]
+
+    def _offered(
+        self, points: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False
+    ) -> tuple[int, np.ndarray]:
+        """Do the same; return also the rows that are feasible."""
         form = self.form
         rows, phi = form.feasible_rows(points, combinations, exact)
         if not len(rows):
-            return 0
+            return 0, rows
         used = self.purpose.take(combinations[rows], points[rows], phi[rows])
         form.archive.add(combinations[rows], points[rows], phi[rows])
-        return used
+        return used, rows
 
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
         """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
@@ -290,7 +298,9 @@ class Seeker:
         cell = form.cell_of(combinations[good])
         space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], ROUNDED_OFF)]
-        return self.round_off(form.leaves(combinations[good]), found.variables[good]) if len(good) else 0
+        if not len(good):
+            return 0
+        return self.round_off(form.leaves(combinations[good]), found.variables[good], tasks.take(good))
 
     def _upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
@@ -328,16 +338,33 @@ class Seeker:
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
         rest = np.flatnonzero(~whole)
-        return found + (self.round_off(boxes.take(rest), answer.variables[rest]) if len(rest) else 0)
+        if not len(rest):
+            return found
+        return found + self.round_off(boxes.take(rest), answer.variables[rest], tasks.take(rest))
 
-    def round_off(self, boxes: Boxes, variables: np.ndarray) -> int:
-        """Try the makeable points around continuous optima."""
+    def round_off(self, boxes: Boxes, variables: np.ndarray, tasks: Tasks) -> int:
+        """Try the makeable points around continuous optima, of which ``tasks`` are the problems.
+
+        Where what limits leave is so narrow that no point hits it, what is not gridded is solved for again.
+        """
         form = self.form
         low, high, source = roundings(form, variables)
-        around = replace(
-            boxes.take(source), low=low, high=high, bounds=np.full((len(low), boxes.bounds.shape[1]), -np.inf)
-        )
-        return self._keep(self._tightened(around))
+        bounds = np.full((len(low), boxes.bounds.shape[1]), -np.inf)
+        around = self._tightened(replace(boxes.take(source), low=low, high=high, bounds=bounds, tag=source))
+        found, hit = self._keep(around)
+        if form.gridded.all():
+            return found
+        missed = np.ones(len(variables), dtype=bool)
+        missed[around.tag[hit]] = False
+        narrow = around.take(missed[around.tag])
+        narrow = narrow.take(self.purpose.room(form.phi_of(narrow.bounds), narrow.cell) > 0)
+        if not len(narrow):
+            return found
+        low, high = form.ends(narrow)
+        low, high = np.where(form.gridded, low, form.lower), np.where(form.gridded, high, form.upper)
+        combinations = form.combination(narrow)
+        answer = form.solve_many(tasks.take(narrow.tag), combinations, form.inside(narrow, 0.5), low, high)
+        return found + self.offer(answer.variables, combinations)
 
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

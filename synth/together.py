@@ -34,14 +34,17 @@ from synth.seeker import Seeker
 from synth.settle import settle_ties
 
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
-# Boxes per question; what needs more is easier alone. Where no design is known there may be none to be found.
-EFFORT, EFFORT_IN_CONFLICT, EFFORT_IN_DOUBT = 20_000, 100_000, 20_000
-MOST_EFFORT = 6_000_000  # boxes of all questions: a quarter of them may have to be kept at a time
+# Boxes per question; what needs more is easier alone. By turns: with plain boxes; in conflict; and there, where no
+# design is known, as there may be none to be found.
+TURNS = ((5_000, 5_000, 5_000), (5_000, 20_000, 10_000), (5_000, 250_000, 20_000))
+EFFORT = 20_000  # with given parts
+MOST_EFFORT = 12_000_000  # boxes of all questions: a quarter of them may have to be kept at a time
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
 TIE_EFFORT = 200  # boxes per question
+SETTLING_EFFORT = 100  # boxes per combination that may hold a better design than is made of it
 ROUNDS = 6
 MOST_KNOWN = 32  # combinations that are tried for every question
-PLACES = 8  # among the questions, at which the neighbours of parts are tried
+PLACES, FAR_PLACES = 8, 4  # among the questions, at which one part is exchanged, or two at a time
 MOST_SOLVED = 16_384  # continuous problems of a round
 ROUNDED_OFF = 10  # of them, per question
 
@@ -316,6 +319,31 @@ class Wider:
         return self._forms[conflict].among(together)
 
 
+class _Attempt:
+    """One way of bounding what questions may have, which goes on where it stopped."""
+
+    def __init__(self, search: TogetherSearch, form: Formulation, known: BestOfEach, boxes: Boxes) -> None:
+        self.search, self.form, self.known, self.left = search, form, known, boxes
+
+    def open_questions(self, asked: np.ndarray, effort: float) -> np.ndarray:
+        """Go on with so much effort; tell of which of the questions asked it is not proven what is best."""
+        search, form = self.search, self.form
+        if not asked.any():
+            return asked
+        if self.known is not search.known:
+            # Designs of other questions would only seem to say that those of these are found.
+            rows = asked[search.known.questions()]
+            self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
+        before = form.contracted, form.nlp_solves
+        purpose = Each(form, self.known, search._slack(search.sought), asked)
+        self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, MOST_EFFORT)).open
+        if self.known is not search.known:
+            search.known.add(self.known.combination, self.known.variables, self.known.phi)
+            search.form.contracted += form.contracted - before[0]
+            search.form.nlp_solves += form.nlp_solves - before[1]
+        return purpose.open_questions(self.left)
+
+
 class TogetherSearch:
     """One search for several questions.
 
@@ -364,6 +392,8 @@ class TogetherSearch:
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.rng = np.random.default_rng(first.settings["seed"])
         self.pool = self.form.nothing()
+        # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
+        self.thorough = bool(caps)
         # Where to look first: the variables of known designs, by the combination that each has in any question.
         self.starts = self._starts(ideas)
 
@@ -413,15 +443,23 @@ class TogetherSearch:
         if not len(self.pool) or not asked.any():
             return asked
         self._first(Each(self.form, self.known, self._slack(self.sought), asked))
-        found = np.isfinite(self.known.best())
-        unproven = asked & ~found
-        if found.any():
-            purpose = Each(self.form, self.known, self._slack(self.sought), asked & found)
-            effort = min(EFFORT * int(found.sum()), MOST_EFFORT)
-            outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
-            unproven |= purpose.open_questions(outcome.open)
-        if unproven.any() and (excluded or found.any()):
-            unproven = self._unproven_in_conflict(unproven)
+        found, unproven = np.isfinite(self.known.best()), asked.copy()
+        if not found.any() and not excluded:
+            return np.zeros_like(asked)
+        plain = _Attempt(self, self.form, self.known, self.pool)
+        conflict: _Attempt | None = None
+        # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
+        for plainly, surely, doubtfully in TURNS:
+            now = unproven & found
+            unproven &= ~found | plain.open_questions(now, plainly * int(now.sum()))
+            if not unproven.any():
+                break
+            self.thorough = True
+            self._improve(Each(self.form, self.known, self._slack(self.sought), unproven))
+            conflict = self._in_conflict() if conflict is None else conflict
+            sure = int((unproven & np.isfinite(self.known.best())).sum())
+            effort = surely * sure + doubtfully * (int(unproven.sum()) - sure)
+            unproven &= conflict.open_questions(unproven, effort)
         proven: np.ndarray = asked & ~unproven
         return proven
 
@@ -463,25 +501,14 @@ class TogetherSearch:
         form.archive = self.known
         return result
 
-    def _unproven_in_conflict(self, asked: np.ndarray) -> np.ndarray:
-        """Try again with boxes that carry what limits share, which helps where limits leave little."""
+    def _in_conflict(self) -> _Attempt:
+        """Return what tries with boxes that carry what limits share, which helps where limits leave little."""
         form = self._prepared(conflict=True)
         form.work = self.form.work
         form.solved_combinations = self.form.solved_combinations
         form.propagation.taught_by(self.form.propagation.lessons())
-        # Designs of other questions would only seem to say that those of these are found.
-        known = self._none_known()
-        rows = asked[self.known.questions()]
-        known.add(self.known.combination[rows], self.known.variables[rows], self.known.phi[rows])
-        form.archive = known
-        purpose, pool = Each(form, known, self._slack(self.sought), asked), form.root()
-        sure = int((asked & np.isfinite(known.best())).sum())
-        effort = EFFORT_IN_CONFLICT * sure + EFFORT_IN_DOUBT * (int(asked.sum()) - sure)
-        outcome = cover(form, pool, purpose, self.clock, self.rng, min(effort, MOST_EFFORT))
-        self.known.add(known.combination, known.variables, known.phi)
-        self.form.contracted += form.contracted
-        self.form.nlp_solves += form.nlp_solves
-        return purpose.open_questions(outcome.open)
+        form.archive = known = self._none_known()
+        return _Attempt(self, form, known, form.root())
 
     def _none_known(self) -> BestOfEach:
         return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain)
@@ -525,6 +552,8 @@ class TogetherSearch:
             if not len(purpose.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
         self._improve(purpose)
+        if self.thorough and self._further_away(purpose):
+            self._improve(purpose)
 
     def _recalled(self, purpose: Each) -> None:
         """Try the designs to begin with in every question."""
@@ -549,24 +578,29 @@ class TogetherSearch:
 
     def _improve(self, purpose: Each) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
-        elsewhere, expanded = set[int](), set[tuple[int, int]]()
+        elsewhere, made, expanded = set[bytes](), set[bytes](), set[tuple[int, int]]()
         for _ in range(ROUNDS if len(purpose.known) else 0):
-            own = purpose.known.combination % self.together.size
-            fresh = list(dict.fromkeys(int(c) for c in own if int(c) not in elsewhere))[:MOST_KNOWN]
-            elsewhere.update(fresh)
-            found = self._everywhere(purpose, fresh)
+            found = self._everywhere(purpose, elsewhere)
+            found += self._everywhere(purpose, made, True) if self.thorough and self.form.gridded.any() else 0
             found += self._beside(purpose, expanded) if self.form.n else 0
             if not found:
                 return
 
-    def _everywhere(self, purpose: Each, combinations: Sequence[int]) -> int:
-        """Try combinations in every question; return how many designs are of use."""
-        questions, size = np.flatnonzero(purpose.asked), self.together.size
-        own = purpose.known.combination % size
-        place = np.array([int(np.flatnonzero(own == c)[0]) for c in combinations], dtype=np.int64)
+    def _everywhere(self, purpose: Each, tried: set[bytes], as_made: bool = False) -> int:
+        """Try known combinations in every question; return how many designs are of use.
+
+        ``tried`` are those of earlier rounds. ``as_made``: with the makeable values that they have.
+        """
+        questions, size, known = np.flatnonzero(purpose.asked), self.together.size, purpose.known
+        own = known.combination % size
+        made = np.where(self.form.gridded & as_made, known.variables, 0.0)
+        marks = [bytes(np.append(made[k], float(own[k]))) for k in range(len(known))]
+        first = {mark: k for k, mark in reversed(list(enumerate(marks))) if mark not in tried}
+        place = np.array(sorted(first.values())[:MOST_KNOWN], dtype=np.int64)
+        tried.update(marks[k] for k in place)
         rows = np.tile(place, len(questions))
         every = np.repeat(questions, len(place)) * size + own[rows]
-        return self._tried(purpose, every, purpose.known.variables[rows])
+        return self._tried(purpose, every, known.variables[rows], as_made)
 
     def _beside(self, purpose: Each, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
@@ -585,20 +619,35 @@ class TogetherSearch:
             every, start = every[chosen], start[chosen]
         return self._tried(purpose, every, start)
 
-    def _tried(self, purpose: Each, combinations: np.ndarray, start: np.ndarray) -> int:
-        """Solve continuous problems and round off the best of each question; return how many designs are of use."""
+    def _further_away(self, purpose: Each) -> int:
+        """Exchange two parts at a time of the best design of a few questions; return how many designs are of use."""
+        known, every, start = purpose.known, [np.empty(0, dtype=np.int64)], [np.empty((0, self.form.n))]
+        for k in np.unique(np.linspace(0, len(known) - 1, FAR_PLACES).round().astype(int)) if len(known) else ():
+            beside = self.together.neighbours(known.combination[k])
+            away = np.unique(self.together.neighbours(beside))
+            every.append(self.rng.choice(away, min(len(away), MOST_SOLVED // FAR_PLACES), replace=False))
+            start.append(np.tile(known.variables[k], (len(every[-1]), 1)))
+        return self._tried(purpose, np.concatenate(every), np.concatenate(start))
+
+    def _tried(self, purpose: Each, combinations: np.ndarray, start: np.ndarray, as_made: bool = False) -> int:
+        """Solve continuous problems and round off the best of each question; return how many designs are of use.
+
+        ``as_made``: makeable values stay what they are to begin with.
+        """
         form, size, k, known = purpose.form, self.together.size, purpose.columns[0], purpose.known
         seeker = Seeker(form, purpose, self.rng, False)
         keep = form.not_refused(combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
+        held = form.gridded & as_made
+        low, high = np.where(held, start, form.lower), np.where(held, start, form.upper)
         if not form.n or not len(combinations):
             return seeker.offer(start, combinations)
         weights = np.zeros((len(combinations), len(form.goals)))
         weights[:, k] = 1.0
         caps = known.plain[combinations // size]
         tasks = Tasks(weights, np.zeros_like(weights), caps, form.goal_scales, 0.0)
-        found = form.solve_many(tasks, combinations, start)
+        found = form.solve_many(tasks, combinations, start, low, high)
         form.learn(tasks, found, np.ones(len(combinations)))
         better = found.phi[:, k] < purpose.needed()[combinations // size]
         good = np.flatnonzero((found.violation <= MISSED) & better)
@@ -607,11 +656,17 @@ class TogetherSearch:
         best = order[np.arange(len(order)) - np.searchsorted(question, question) < ROUNDED_OFF]
         if not len(best):
             return 0
-        if form.gridded.any():
-            new = seeker.round_off(form.leaves(combinations[best]), found.variables[best])
+        if form.gridded.any() and not as_made:
+            new = seeker.round_off(form.leaves(combinations[best]), found.variables[best], tasks.take(best))
         else:
             new = seeker.offer(found.variables[best], combinations[best])
         seeker.settle_best(k, range(k + 1))
+        if self.thorough and not as_made:
+            # What a combination leaves of the grid may lie far from where it is best without one.
+            left = best[found.phi[best, k] < purpose.needed()[combinations[best] // size]]
+            if len(left):
+                cover(form, form.leaves(combinations[left]), purpose, self.clock, self.rng, SETTLING_EFFORT * len(left))
+                seeker.settle_best(k, range(k + 1))
         return new
 
     # -- the report ----------------------------------------------------------------------------

@@ -183,6 +183,6 @@ class FrontsSearch:
             if len(inner) < self.between:
                 inner = np.arange(1, self.between + 1) / (self.between + 1)
             shares.append(inner)
-            good += [every[int(j)] for j in chosen]
+            good += every
         nearest = np.abs(np.arange(len(numbers))[:, None] - places[None, :]).argmin(axis=1)
         return low[:, None] + np.array(shares)[nearest] * (high - low)[:, None], good
