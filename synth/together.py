@@ -37,12 +37,14 @@ LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 # Boxes per question; what needs more is easier alone. By turns: with plain boxes; in conflict; and there, where no
 # design is known, as there may be none to be found.
 TURNS = ((5_000, 5_000, 5_000), (5_000, 20_000, 10_000), (5_000, 250_000, 20_000))
+NEARLY_CLOSED = 0.1  # of the effort: if fewer boxes are open, as much again is worth it
 EFFORT = 20_000  # with given parts
 MOST_EFFORT = 12_000_000  # boxes of all questions: a quarter of them may have to be kept at a time
 FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
 TIE_EFFORT = 200  # boxes per question
 SETTLING_EFFORT = 100  # boxes per combination that may hold a better design than is made of it
 ROUNDS = 6
+ANYWHERE = 512  # combinations at random
 MOST_KNOWN = 32  # combinations that are tried for every question
 PLACES, FAR_PLACES = 8, 4  # among the questions, at which one part is exchanged, or two at a time
 MOST_SOLVED = 16_384  # continuous problems of a round
@@ -336,7 +338,10 @@ class _Attempt:
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.contracted, form.nlp_solves
         purpose = Each(form, self.known, search._slack(search.sought), asked)
-        self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, MOST_EFFORT)).open
+        for _ in range(2):
+            self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, MOST_EFFORT)).open
+            if not 0 < len(self.left) < NEARLY_CLOSED * effort:
+                break
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
             search.form.contracted += form.contracted - before[0]
@@ -414,7 +419,7 @@ class TogetherSearch:
 
     def glimpse(self) -> list[Candidate]:
         """Return good designs of the questions, of which nothing is proven."""
-        self.pool = self.form.root()
+        self.pool, self.thorough = self.form.root(), False
         if len(self.pool):
             purpose = Each(self.form, self.known, self._slack(self.sought), self.told_apart())
             self._recalled(purpose)
@@ -548,6 +553,8 @@ class TogetherSearch:
     def _first(self, purpose: Each) -> None:
         """Look for good designs of every question: beside the best of each, and with what is good in any other."""
         self._recalled(purpose)
+        if not len(purpose.known):
+            self._anywhere(purpose)
         for effort in FIRST_EFFORTS:
             if not len(purpose.known):
                 cover(self.form, self.pool, purpose, self.clock, self.rng, effort)
@@ -562,6 +569,13 @@ class TogetherSearch:
         own = np.tile(np.arange(len(combinations)), len(questions) // max(len(combinations), 1))
         if len(combinations):
             self._tried(purpose, questions * self.together.size + combinations[own], points[own])
+
+    def _anywhere(self, purpose: Each) -> None:
+        """Try combinations at random, some of each question: where designs are many, one is found soon."""
+        questions = np.flatnonzero(purpose.asked)
+        every = questions[np.arange(ANYWHERE) % len(questions)] * self.together.size
+        every = np.unique(every + self.rng.integers(self.together.size, size=ANYWHERE))
+        self._tried(purpose, every, self.form.inside(self.form.leaves(every), 0.5))
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
         """Return where to look first, from designs of similar questions."""
