@@ -10,6 +10,7 @@ import pytest
 from strut import NEEDED, RODS, Strut
 
 import synth
+from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
@@ -118,6 +119,32 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     boxes = form.root()
     seeker(form).look(boxes)
     assert form.propagation._lessons.sum() > 0
+
+
+class Narrow(synth.DesignProblem):
+    """A size in whole numbers, for which force and time are left a sliver that is curved."""
+
+    name, title = "narrow", "Narrow"
+
+    def declare(self, d):
+        size = d.variable("size", "-", 1, 100, grid=1)
+        force, time = d.variable("force", "-", 1, 100), d.variable("time", "-", 1, 3.2)
+        d.at_least("torque", force * size, 100, "-")
+        d.at_most("jerk", force, time**2, "-")
+        d.objective("size")
+
+
+def test_what_no_point_hits_is_solved_for():
+    form = Formulation(Instance(Narrow(), {}, catalogs_for(Narrow(), {})), {"size": "min"}, 1)
+    sliver, combination = np.array([0.02, 0.5]), np.zeros(1, dtype=np.int64)
+    force, time = 10 + sliver * (3.2**2 - 10), 10**0.5 + sliver * (3.2 - 10**0.5)
+    assert not len(form.feasible_rows(np.stack([[10.0, 10.0], force, time], axis=1), np.zeros(2, dtype=int))[0])
+    tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.goal_scales, 0.0)
+    optimum = form.solve_many(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
+    assert optimum.variables[0, 0] == pytest.approx(100 / 3.2**2, rel=1e-6)
+    assert seeker(form).round_off(form.leaves(combination), optimum.variables, tasks) > 0
+    assert form.archive.variables[0, 0] == 10
+    assert len(form.feasible_rows(form.archive.variables, form.archive.combination)[0]) == 1
 
 
 class Lidded(synth.DesignProblem):

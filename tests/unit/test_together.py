@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import synth
 from synth import contractor, propagation
+from synth import together as together_module
 from synth.clock import Stopped
 from synth.feasibility import Status
 from synth.formulation import TIE, Formulation
@@ -370,6 +371,24 @@ def test_struts(grid: bool, at_once: bool, monkeypatch: pytest.MonkeyPatch) -> N
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in loaded]
     whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
     check_each(whole, lambda k: lightest(whole[k]))
+
+
+@pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
+def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked_of: list[tuple[bool, int]] = []
+    proceed = together_module._Attempt.open_questions
+
+    def noted(attempt: Any, questions: np.ndarray, effort: float) -> np.ndarray:
+        asked_of.append((attempt.form.conflict, int(questions.sum())))
+        return proceed(attempt, questions, effort)
+
+    monkeypatch.setattr(together_module._Attempt, "open_questions", noted)
+    monkeypatch.setattr(together_module, "TURNS", ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000)))
+    monkeypatch.setattr(together_module, "NEARLY_CLOSED", 0)
+    varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
+    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
+    check_each(whole, lambda k: lightest(whole[k]))
+    assert asked_of[:3] == [(False, 4), (True, 4), (False, 4)]
 
 
 def test_brakes_whose_limits_are_not_monotone() -> None:
