@@ -21,7 +21,8 @@ from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search import Question
 from synth.study import Break, Composition, Step, best_design
-from synth.together import TogetherSearch, Wider, alike, different, groups_of
+from synth.together import alike, different, groups_of
+from synth.together_search import TogetherSearch, Wider
 from synth.vary import Steps, Value
 
 WIDTH = 1e-3  # of a value: a break is known to be within this

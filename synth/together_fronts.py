@@ -19,7 +19,8 @@ from synth.formulation import Candidate, rows_of
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search import Question, distinct
-from synth.together import LARGEST, TogetherSearch, Wider, different, groups_of
+from synth.together import LARGEST, different, groups_of
+from synth.together_search import TogetherSearch, Wider
 
 MOST_POINTS = 8  # designs of a front; where there are more, questions are answered sooner one by one
 PLACES = 8  # questions of which a rough picture is made
@@ -159,7 +160,7 @@ class FrontsSearch:
         caps = {0: self.first.form.signed(0, levels.ravel())}
         search = self._search(positions, self.wider, sought=1, caps=caps)
         self.others.append((search, positions))
-        search.starts = {c.combination % self.first.together.size: c.variables for c in known}
+        search.look.starts = {c.combination % self.first.together.size: c.variables for c in known}
         return search
 
     def _levels(self, ends: Mapping[int, tuple[Candidate, Candidate]]) -> tuple[np.ndarray, list[Candidate]]:

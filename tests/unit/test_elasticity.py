@@ -7,7 +7,7 @@ import pytest
 import synth
 from synth.elasticity import elasticities
 from synth.search import pose
-from synth.together import TogetherSearch
+from synth.together_search import TogetherSearch
 from tests.unit.strut import RODS, Strut
 
 STEP = 1e-3

@@ -8,7 +8,7 @@ from synth import DesignProblem
 from synth.formulation import TIE, Candidate
 from synth.search import pose
 from synth.settle import MOST_MOVES, settle_discrete
-from synth.together import TogetherSearch
+from synth.together_search import TogetherSearch
 from tests.unit.strut import RODS, Strut
 
 

@@ -15,8 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth import contractor, propagation
-from synth import together as together_module
+from synth import contractor, propagation, together_search
 from synth.clock import Stopped
 from synth.feasibility import Status
 from synth.formulation import TIE, Formulation
@@ -24,7 +23,8 @@ from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
 from synth.search import Question, pose
 from synth.tables import Catalogs
-from synth.together import BestOfEach, Each, Together, TogetherSearch, Wider, different, groups_of
+from synth.together import BestOfEach, Each, Together, different, groups_of
+from synth.together_search import TogetherSearch, Wider
 from tests.unit.ropes import Made, Ropes, best_ropes, ropes
 from tests.unit.shaft_brake import CATALOGS as PAIRS_TABLE
 from tests.unit.shaft_brake import FACE, PAIRS, ShaftBrake
@@ -376,15 +376,15 @@ def test_struts(grid: bool, at_once: bool, monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
 def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     asked_of: list[tuple[bool, int]] = []
-    proceed = together_module._Attempt.open_questions
+    proceed = together_search._Attempt.open_questions
 
     def noted(attempt: Any, questions: np.ndarray, effort: float) -> np.ndarray:
         asked_of.append((attempt.form.conflict, int(questions.sum())))
         return proceed(attempt, questions, effort)
 
-    monkeypatch.setattr(together_module._Attempt, "open_questions", noted)
-    monkeypatch.setattr(together_module, "TURNS", ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000)))
-    monkeypatch.setattr(together_module, "NEARLY_CLOSED", 0)
+    monkeypatch.setattr(together_search._Attempt, "open_questions", noted)
+    monkeypatch.setattr(together_search, "TURNS", ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000)))
+    monkeypatch.setattr(together_search, "NEARLY_CLOSED", 0)
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
     whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
     check_each(whole, lambda k: lightest(whole[k]))

@@ -16,8 +16,8 @@ from synth.feasibility import Status
 from synth.results import Design, ParetoFront
 from synth.search import Question, pose
 from synth.tables import Catalogs
-from synth.together import TogetherSearch
 from synth.together_fronts import MOST_POINTS, FrontsSearch, joint_answers, joint_groups
+from synth.together_search import TogetherSearch
 from tests.unit.ropes import Ropes, ropes
 from tests.unit.strut import RODS, Strut
 
