@@ -35,6 +35,7 @@ GUESSES = 4  # where a break lies, before its interval is simply halved
 FINEST = 1e-6  # of the step: how narrow the range of a break at zero gets
 LONGEST = 60.0  # seconds of one search
 UNPROVEN = "the search on one side did not finish"
+NOT_ROBUST = "the design on one side does not keep all limits over the whole range"
 INTERRUPTED = "interrupted"
 
 Left = Callable[[], float | None]
@@ -278,9 +279,12 @@ class _Between:
             low, high = yield from self._break(holder, place)
             before, after = yield from self._sides(holder, low, high)
             proven = self._best(low).proven and self._best(high).proven
+            remark = "" if proven else UNPROVEN
+            if not (self._stands(before, low) and self._stands(after, high)):
+                proven, remark = False, NOT_ROBUST
             old, new = (None if d is None else Composition.of(d, self.objective) for d in (before, after))
             others = _others(self.one, self.oracle.along)
-            found.append(Break(self.objective, others, low, high, old, new, proven, "" if proven else UNPROVEN))
+            found.append(Break(self.objective, others, low, high, old, new, proven, remark))
             place, holder, count = high, after, count + 1
 
     def _break(self, holder: Design | None, low: float) -> Asking:
@@ -332,6 +336,9 @@ class _Between:
             self.oracle.made.setdefault(words, alone)
         values = tuple(value if k == along else v for k, v in enumerate(self.one.values))
         return _Wanted(self.objective, values, words)
+
+    def _stands(self, design: Design | None, value: float) -> bool:
+        return design is None or self.oracle.steps.stands(self._wanted(value).values, design)
 
     def _best(self, value: float) -> _Best:
         return self.oracle.known[self._wanted(value)]

@@ -17,8 +17,8 @@ from synth.feasibility import Status
 from synth.files import csv_text, save_files
 from synth.instance import Instance, catalogs_for
 from synth.pareto import rank
-from synth.posed import nominal, posed
-from synth.problem import DesignProblem, load
+from synth.posed import nominal
+from synth.problem import load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, design_columns, design_row
@@ -102,6 +102,12 @@ def told_of(designs: Sequence[Design], samples: int) -> str:
     return f"{len(holding)} of {of} {keeps} all limits over the whole range ({how})"
 
 
+def taken_off(count: int) -> str:
+    """Return in words how many designs are missing because they do not stand the range."""
+    designs = "1 design was" if count == 1 else f"{count} designs were"
+    return f"{designs} taken off: not all limits hold over the whole range"
+
+
 def rate(
     source: ParetoFront | Design | Sequence[Design],
     robust: Any = None,
@@ -181,12 +187,13 @@ class Asks(Protocol):
 
 
 def robust_front(
-    pose: Callable[[DesignProblem], Asks],
+    pose: Callable[[Asked], Asks],
     rater: Rater,
-    limits: Mapping[str, Any] | None,
     workers: int = 1,
     progress: Progress | None = None,
     time_limit: float | None = None,
+    known: Sequence[Design] = (),
+    first: ParetoFront | None = None,
 ) -> ParetoFront:
     """Search designs and rate them; where limits are to hold over the range, until they do.
 
@@ -197,26 +204,29 @@ def robust_front(
     Parameters
     ----------
     pose : callable
-        Returns the question of a problem.
+        Returns the question with the limits posed that a block asks for.
     rater : Rater
         Rates designs of the nominal problem.
-    limits : mapping or None
-        The user's own limits.
     workers, progress, time_limit
         As for ``synthesize``.
+    known : list of Design
+        Where to look first.
+    first : ParetoFront, optional
+        The answer to the first question, where it is known.
     """
     deadline = math.inf if time_limit is None else time.monotonic() + time_limit
 
-    def ask(asked: Asked, known: Sequence[Design]) -> _Answer:
-        question = pose(posed(rater.instance.problem, asked, limits))
-        left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
-        front = question.answer(workers, progress, left, known)
+    def ask(asked: Asked, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
+        question = pose(asked)
+        if front is None:
+            left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
+            front = question.answer(workers, progress, left, known)
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         more = len(question.instance.model.limits) - len(rater.model.limits)
         return _Answer(asked, front, ratings, front.interrupted or stopped, more)
 
-    got, searches = ask(rater.asked, ()), 1
+    got, searches = ask(rater.asked, known, first), 1
     while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < SEARCHES:
         try:
             better = ask(got.asked.with_scenarios(got.scenarios()), got.front.designs)

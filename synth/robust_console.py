@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from synth.console import plain_table
 from synth.rated import shown_at
 from synth.results import Design
-from synth.robust import told_of
+from synth.robust import taken_off, told_of
 from synth.scatter import LIMITS
 
 if TYPE_CHECKING:
@@ -43,8 +43,7 @@ def print_robust(front: ParetoFront, console: Console) -> None:
         console.print()
         console.print(told_of(front.designs, told["samples"]))
     if gone:
-        designs = "1 design was" if gone == 1 else f"{gone} designs were"
-        console.print(f"{designs} taken off: not all limits hold over the whole range")
+        console.print(taken_off(gone))
     if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
         console.print("what is proven below counts for all designs that keep their limits over the whole range")
 

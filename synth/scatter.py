@@ -131,6 +131,11 @@ class Asked:
     confidence: float = CONFIDENCE
     scenarios: Mapping[str, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Return what scatters, as the block names it, in the order of the positions of scenarios."""
+        return (*self.ranges, *self.tolerance)
+
     def block(self) -> dict[str, Any]:
         """Return the block again, as it may stand in a spec."""
         block: dict[str, Any] = dict(self.ranges)

@@ -23,6 +23,7 @@ from synth.gap import GAP_EXPECTED, is_gap
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
+from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.propagation import Lessons
 from synth.purposes import Cover, Staircase, proven_slack
@@ -131,7 +132,7 @@ def synthesize(
     problem, block = load(p), read_block(robust)
     catalogs = catalogs_for(problem, catalogs)
     rater = Rater(problem, requirements, catalogs, limits, block)
-    return robust_front(asked, rater, limits, workers, progress, time_limit)
+    return robust_front(lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, time_limit)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
 from synth.files import csv_text
+from synth.rated import COLUMNS, rating_row
 from synth.results import Design, Frame, ParetoFront
 from synth.terminal import report, write_all
 from synth.units import from_si, header
@@ -46,6 +47,8 @@ class Step:
             return f"not reached: {self.stopped}" if self.stopped else "not reached"
         if self.front.designs:
             return ""
+        if self.front.status is Status.NOT_SOLVED:
+            return "no design was found that keeps its limits over the whole range"
         conflicts = (self.front.explanation or {}).get("conflicts") or []
         missed = [f"{c['limit']} by {100 * c['missed_by']:.3g} %" for c in conflicts]
         return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
@@ -195,7 +198,8 @@ class Study:
         columns += [header(n, objectives[n]) for n in objectives] + ["binding", *slots, *choices]
         columns += [header(n, units[n]) for n in searched]
         columns += [f"elasticity: {objective} by {name}" for objective, name in prices]
-        columns += ["certificate", "gap", "reason"]
+        rated = any(d.robust for d in designs)
+        columns += [*(COLUMNS if rated else ()), "certificate", "gap", "reason"]
         rows = []
         for step in self.steps:
             front, start = step.front, [step.number, *self._cells(step.values)]
@@ -212,6 +216,7 @@ class Study:
                 row += [d.choices.get(c) for c in choices]
                 row += [_shown(d.values.get(n), units[n]) for n in searched]
                 row += [d.elasticity.get(objective, {}).get(name) for objective, name in prices]
+                row += rating_row(d) if rated else []
                 rows.append([*row, kind, front.certificate.gap, ""])
         return columns, rows
 

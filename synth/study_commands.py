@@ -28,7 +28,7 @@ def whatif(
         list[str],
         typer.Option(
             help="What to vary: 'load_torque=500:700:50 N*m', 'mass <= 40,50,60 kg', 'weights.mass=1:4:1', "
-            "'parts.SLOT=a,b' or 'options.NAME=a,b'; give it once or twice.",
+            "'parts.SLOT=a,b', 'options.NAME=a,b' or 'robust.friction=+-5 %, +-10 %'; give it once or twice.",
             metavar="TEXT",
         ),
     ],
@@ -95,7 +95,7 @@ def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool
             try:
                 return answer(
                     problem, asked.requirements, wanted, catalogs=catalogs, progress=progress, breaks=breaks,
-                    folder=folder, **asked.search_settings(),
+                    folder=folder, **asked.search_settings(robust=True),
                 )  # fmt: skip
             except KeyboardInterrupt:
                 tell("stopped before the first step was begun; nothing is written")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.console import plain_table
+from synth.robust import taken_off, told_of
 from synth.study import Break, Composition, Step, best_design
 from synth.units import format_quantity
 
@@ -42,6 +43,8 @@ def print_study(study: Study, console: Console) -> None:
     if study.interrupted:
         done = sum(s.front is not None for s in study.steps)
         console.print(f"stopped: {study.interrupted}; {done} of {len(study.steps)} steps are kept, run again to go on")
+    for line in _robust(study):
+        console.print(line)
     console.print(_proven(study))
 
 
@@ -79,6 +82,19 @@ def _told(b: Break, along: Varied) -> list[str]:
         b.change,
         "yes" if b.proven else f"no{': ' if b.remark else ''}{b.remark}",
     ]
+
+
+def _robust(study: Study) -> list[str]:
+    """Return how the designs of all steps stand what scatters, where anything does."""
+    blocks = [f.settings["robust"] for f in study.fronts if "robust" in f.settings]
+    if not blocks:
+        return []
+    designs = [d for f in study.fronts for d in f.designs]
+    lines = [told_of(designs, blocks[0]["samples"])] if designs else []
+    gone = sum(f.statistics["robust"].get("taken_off", 0) for f in study.fronts if "robust" in f.settings)
+    if gone:
+        lines.append(taken_off(gone))
+    return lines
 
 
 def _proven(study: Study) -> str:

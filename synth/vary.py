@@ -1,4 +1,4 @@
-"""What a study varies: requirements, limits, weights, parts and options, one or two at a time, checked beforehand."""
+"""What a study varies: requirements, limits, weights, parts, options, scatter; one or two, checked beforehand."""
 
 from __future__ import annotations
 
@@ -9,23 +9,29 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+from synth import scatter
 from synth.analysis import chosen_objectives
 from synth.errors import InputError
 from synth.instance import SENSES, catalogs_for
 from synth.model import Model
+from synth.posed import posed
 from synth.problem import DesignProblem, load
+from synth.rating import Rater
+from synth.results import Design
 from synth.search import Question, pose
 from synth.tables import Catalogs
 from synth.units import parse_quantity
 
 MOST_STEPS = 1000
 DIGITS = 12
-KEY = re.compile(r"^\s*(?:(weights|parts|options)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
+KEY = re.compile(r"^\s*(?:(weights|parts|options|robust)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
 TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
 NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one comma, without a blank, in digits alone
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
+PLACES = {"weight": "weights.", "part": "parts.", "option": "options.", "scatter": "robust."}
+NO_SCATTER = "none"
 
 Value = float | str | tuple[str, ...]
 
@@ -34,9 +40,10 @@ Value = float | str | tuple[str, ...]
 class Varied:
     """One thing that a study varies.
 
-    ``kind`` is requirement, limit, weight, part or option, ``name`` the public name of what is varied, ``sign`` that of
-    a limit. ``values`` are numbers in ``unit``; of parts and options designations, conditions (or several
-    designations) and words. ``remark`` tells what a reader of the values might not expect.
+    ``kind`` is requirement, limit, weight, part, option or scatter, ``name`` the public name of what is varied,
+    ``sign`` that of a limit. ``values`` are numbers in ``unit``; of parts and options designations, conditions (or
+    several designations) and words, of what scatters ranges or "none". ``remark`` tells what a reader of the values
+    might not expect.
     """
 
     kind: str
@@ -49,13 +56,12 @@ class Varied:
     @property
     def numeric(self) -> bool:
         """Tell whether there is something between two values."""
-        return self.kind not in ("part", "option")
+        return self.kind in ("requirement", "limit", "weight")
 
     @property
     def label(self) -> str:
         """Return what a column of its values is called, without the unit."""
-        places = {"weight": "weights.", "part": "parts.", "option": "options."}
-        return f"{places.get(self.kind, '')}{self.name}{self.sign and ' ' + self.sign}"
+        return f"{PLACES.get(self.kind, '')}{self.name}{self.sign and ' ' + self.sign}"
 
     def asked(self, value: Value) -> Any:
         """Return a value as it stands in a spec."""
@@ -124,7 +130,9 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
     match = KEY.match(key)
     if match is None:
         raise InputError(
-            "vary", key, "a requirement, a limit such as 'mass <=', weights.NAME, parts.SLOT or options.NAME"
+            "vary",
+            key,
+            "a requirement, a limit such as 'mass <=', weights.NAME, parts.SLOT, options.NAME or robust.NAME",
         )
     place, word, sign = match.group(1), match.group(2), match.group(3) or ""
     if place is not None and sign:
@@ -144,6 +152,10 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
             if label not in d.options[name].choices:
                 raise InputError(f"vary {key}", label, "one of " + ", ".join(d.options[name].choices))
         return Varied("option", name, "", "", words)
+    if place == "robust":
+        if word in scatter.KEYS[2:]:
+            raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
+        return Varied("scatter", d.names().get(word, word), "", "", _ranges(key, values))
     if sign:
         name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity")
         unit = model.units[name]
@@ -283,6 +295,26 @@ def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
     return tuple(found)
 
 
+def _ranges(key: str, values: Any) -> tuple[Value, ...]:
+    """Return ranges as a ``robust`` block takes them, or "none"; ``+-5:20:5 %`` stands for four of them."""
+    found = list[str]()
+    for word in _words(key, values, several=False):
+        around = scatter.AROUND.match(str(word))
+        pieces = around.group(1).split(":") if around else []
+        if len(pieces) != 3:
+            found.append(str(word))
+            continue
+        matches = [NUMBER.match(x) for x in pieces]
+        units = {m.group(2) for m in matches if m is not None} - {""}
+        if None in matches or len(units) != 1:
+            raise InputError(f"vary {key}", word, "three numbers with one unit, as in '+-5:20:5 %' (from, to, step)")
+        steps = _steps(f"vary {key}", str(word), [float(m.group(1)) for m in matches if m is not None])
+        found += [f"+-{_written(x, *units)}" for x in steps]
+    if len(set(found)) < len(found):
+        raise InputError(f"vary {key}", values, "each value once")
+    return tuple(found)
+
+
 # ---- the questions of a study ---------------------------------------------------------------------------------------
 
 
@@ -302,13 +334,31 @@ class Asked:
     gap: float = 1e-3
     grid: bool = True
     seed: int = 0
+    robust: scatter.Asked | None = None
 
-    def pose(self) -> Question:
-        """Check the question."""
+    def pose(self, problem: DesignProblem | None = None) -> Question:
+        """Check the question; ``problem`` has its limits posed already where something scatters."""
+        problem = self.posed() if problem is None else problem
         return pose(
-            self.problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits,
-            self.fix, self.weights, self.gap, self.grid, self.seed,
+            problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits, self.fix,
+            self.weights, self.gap, self.grid, self.seed,
         )  # fmt: skip
+
+    def posed(self) -> DesignProblem:
+        """Return the problem with its limits where they are worst, if they are to hold over a range."""
+        return posed(self.problem, self.robust, self.limits)
+
+    def rater(self) -> Rater | None:
+        """Return what rates designs over the range; None where nothing scatters.
+
+        Raises
+        ------
+        InputError
+            When the range does not fit what is asked.
+        """
+        if self.robust is None:
+            return None
+        return Rater(self.problem, self.requirements, self.catalogs, self.limits, self.robust)
 
     def at(self, varied: Varied, value: Value) -> Asked:
         """Return the question with one thing at a value, which takes the place of what was said of it before."""
@@ -321,6 +371,8 @@ class Asked:
             return replace(self, parts={**self.without(self.parts, varied.name), varied.name: asked})
         if varied.kind == "option":
             return replace(self, problem=self._with_option(varied.name, str(value)))
+        if varied.kind == "scatter":
+            return replace(self, robust=self._scattering(varied.name, str(value)))
         kept = self._other_limits(varied)
         return replace(
             self, limits={**self.without(self.limits, varied.name), varied.name: [*kept, f"{varied.sign} {asked}"]}
@@ -333,10 +385,21 @@ class Asked:
         others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
         return type(problem)(**{**others, name: word})
 
+    def _scattering(self, name: str, text: str) -> scatter.Asked | None:
+        """Return what scatters, with one thing over another range or, for "none", without it."""
+        block = {} if self.robust is None else self.without(self.robust.block(), name)
+        if "tolerance" in block:
+            block["tolerance"] = self.without(block["tolerance"], name)
+        if text != NO_SCATTER:
+            block[name] = text
+        if not block.get("tolerance") and set(block) <= set(scatter.KEYS[2:]):
+            return None
+        return scatter.read_block(block)
+
     def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
         """Return what is given by name or symbol, without one name."""
         spellings = self._names()
-        return {word: value for word, value in (given or {}).items() if spellings.get(str(word)) != name}
+        return {word: value for word, value in (given or {}).items() if spellings.get(str(word), word) != name}
 
     def _names(self) -> dict[str, str]:
         return self.problem.model(frozenset(), self.catalogs).declaration.names()
@@ -381,6 +444,9 @@ class Steps:
         self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
+        self._posed_ones: dict[tuple[DesignProblem, str], DesignProblem] = {}
+        self._learned: dict[tuple[str, ...], scatter.Asked] = {}
+        self.raters: list[Rater | None] = []  # by step; None where nothing scatters
         self.questions = self._posed()
         self.combinations = max(q.instance.combinations for q in self.questions)  # of the largest step
 
@@ -414,10 +480,43 @@ class Steps:
             asked = replace(asked, parts={**asked.without(asked.parts, slot), slot: rows})
         for name, value in pins.items():
             asked = replace(asked, fix={**asked.without(asked.fix, name), name: value})
-        question = asked.pose()
+        question = self._pose(self._with_learned(asked))
         # The same code as for the whole question, however few combinations are left.
         whole = len(self) * self.combinations
         return replace(question, alike=-(-whole // max(question.instance.combinations, 1)))
+
+    def question(self, position: int, robust: scatter.Asked) -> Question:
+        """Return the question of a step with limits posed for another block of what scatters."""
+        asked = replace(self._at(self.values[position]), robust=robust)
+        return replace(self._pose(asked), alike=len(self))
+
+    def learn(self, robust: scatter.Asked) -> None:
+        """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
+        known = self._learned.get(robust.names)
+        self._learned[robust.names] = robust if known is None else known.with_scenarios(robust.scenarios)
+
+    def stands(self, values: Sequence[Value], design: Design) -> bool:
+        """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
+        asked = self._at(values)
+        if asked.robust is None or asked.robust.mode == scatter.RATE:
+            return True
+        rater = asked.rater()
+        return rater is None or bool(rater.one(design)["holds"])
+
+    def _with_learned(self, asked: Asked) -> Asked:
+        known = None if asked.robust is None else self._learned.get(asked.robust.names)
+        if asked.robust is None or known is None:
+            return asked
+        return replace(asked, robust=asked.robust.with_scenarios(known.scenarios))
+
+    def _pose(self, asked: Asked) -> Question:
+        """Return a question; limits that are posed alike at several steps are traced once."""
+        if asked.robust is None or asked.robust.mode == scatter.RATE:
+            return asked.pose()
+        key = asked.problem, repr((asked.robust, asked.limits))
+        if key not in self._posed_ones:
+            self._posed_ones[key] = asked.posed()
+        return asked.pose(self._posed_ones[key])
 
     def stated(self, values: Sequence[Value]) -> str:
         """Return the values of a step for people."""
@@ -440,7 +539,9 @@ class Steps:
         questions, faults = list[Question](), dict[int, InputError]()
         for k, values in enumerate(self.values):
             try:
-                questions.append(replace(self._at(values).pose(), alike=len(self)))
+                asked = self._at(values)
+                questions.append(replace(self._pose(asked), alike=len(self)))
+                self.raters.append(asked.rater())
             except InputError as error:
                 faults[k] = error
         if not faults:
@@ -457,8 +558,10 @@ def steps_of(
     requirements: Mapping[str, Any],
     vary: Any,
     catalogs: Any,
+    robust: Any = None,
     **settings: Any,
 ) -> Steps:
     """Return the questions of a study; the arguments are those of ``synth.whatif``."""
     problem = load(p)
-    return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), **settings), vary)
+    block = None if robust is None else scatter.read_block(robust)
+    return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), robust=block, **settings), vary)

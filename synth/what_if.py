@@ -22,7 +22,10 @@ from synth.front_record import front_record, record_text
 from synth.loading import front_of_record, load_front
 from synth.pareto import rank
 from synth.problem import DesignProblem
+from synth.rating import Rater
 from synth.results import Design, ParetoFront
+from synth.robust import robust_front
+from synth.scatter import read_block
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
 from synth.together_fronts import joint_answers, joint_groups
@@ -53,8 +56,9 @@ def whatif(
     time_limit: float | None = None,
     breaks: bool = True,
     folder: str | Path | None = None,
+    robust: Mapping[str, Any] | None = None,
 ) -> Study:
-    """Answer a question at many values of a requirement, a limit, a weight, a part or an option.
+    """Answer a question at many values of a requirement, a limit, a weight, a part, an option or a scatter.
 
     Parameters
     ----------
@@ -65,9 +69,10 @@ def whatif(
         asked for.
     vary : mapping
         One or two of: a requirement (``"load_torque"``), a limit on a quantity (``"mass <="``), ``"weights.mass"``,
-        ``"parts.friction_pair"``, ``"options.lubrication"``. Values are a text (``"200:300:10 mm"`` from:to:step, or
-        ``"500, 600, 700 N*m"``), a list, or ends and a count (``("200 mm", "300 mm", 11)``). Of two the second runs
-        through for each value of the first.
+        ``"parts.friction_pair"``, ``"options.lubrication"``, ``"robust.friction"``. Values are a text
+        (``"200:300:10 mm"`` from:to:step, or ``"500, 600, 700 N*m"``), a list, or ends and a count (``("200 mm", "300
+        mm", 11)``); of what scatters ranges such as ``"+-10 %"``, or ``"none"``. Of two the second runs through for
+        each value of the first.
     progress : callable, optional
         Called with a mapping: stage, done (0..1), combinations, incumbents, message.
     time_limit : float, optional
@@ -76,6 +81,8 @@ def whatif(
         Whether to find the values at which the best parts or counts change.
     folder : path, optional
         Where finished steps are kept; the same study does not search them again.
+    robust : mapping, optional
+        What scatters, as for ``synthesize``: the designs of every step stand it, or are rated.
 
     Returns
     -------
@@ -89,7 +96,7 @@ def whatif(
     check_settings(points, gap, grid, workers, seed, progress, time_limit)
     steps = steps_of(
         p, requirements, vary, catalogs, objectives=objectives, points=points, parts=parts, limits=limits, fix=fix,
-        weights=weights, gap=gap, grid=grid, seed=seed,
+        weights=weights, gap=gap, grid=grid, seed=seed, robust=robust,
     )  # fmt: skip
     return _Run(steps, int(workers), progress, time_limit, None if folder is None else Path(folder)).study(breaks)
 
@@ -110,9 +117,10 @@ class _Run:
         self.deadline = math.inf if time_limit is None else self.started + time_limit
         self.store = _Store(folder)
         self.questions = steps.questions
-        self.alone = [_fingerprint(question) for question in self.questions]
+        asked = list(zip(self.questions, steps.raters, strict=True))
+        self.alone = [_fingerprint(question, rater) for question, rater in asked]
         weighted = any(x.kind == "weight" for x in steps.varied)
-        self.unweighted = [_fingerprint(q, weights=False) for q in self.questions] if weighted else self.alone
+        self.unweighted = [_fingerprint(q, r, weights=False) for q, r in asked] if weighted else self.alone
         self.answered: list[Step] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
         self.fingerprints: list[str] = []
@@ -175,28 +183,43 @@ class _Run:
         if front is not None:
             self.kept += 1
         else:
-            front, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
-            if known is not None:
-                front = _reranked(known, question)
-            if front is None:
-                front = self._search(number, question, [self.answered[k] for k in self._neighbours(position)])
+            found, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
+            front = self._search(position, found) if known is None else _reranked(known, question)
             record = front_record(front)
             self.store.put(number, own, record)
             # As it would be read again: a study that goes on is the same to the last digit.
             front = front_of_record(json.loads(json.dumps(record, allow_nan=False)), Path(RECORD))
-        front = replace(front, question=question.instance, record=None, folder=None)
+        front = replace(front, question=self._asked(position, front).instance, record=None, folder=None)
         self.same_but_weights.setdefault(unweighted, front)
         return Step(number, values, front, own)
 
-    def _search(self, number: int, question: Question, before: Sequence[Step]) -> ParetoFront:
+    def _search(self, position: int, front: ParetoFront | None) -> ParetoFront:
+        """Return the front of a step; ``front`` is that found together with others, not rated yet."""
+        question, rater = self.questions[position], self.steps.raters[position]
+        before = [self.answered[k] for k in self._neighbours(position)]
         known = [d for s in before if s.front is not None for d in s.front.designs]
-        says = f"step {number} of {len(self.steps)}, {self.steps.stated(self.steps.values[number - 1])}"
+        says = f"step {position + 1} of {len(self.steps)}, {self.steps.stated(self.steps.values[position])}"
         share = self.share_of_steps / len(self.steps)
-        shown = self._shown(says, (number - 1) * share, share)
-        front = question.answer(self.workers, shown, self._left(), known)
+        shown = self._shown(says, position * share, share)
+        if rater is not None:
+            front = robust_front(
+                lambda block: self.steps.question(position, block), rater, self.workers, shown, self._left(), known,
+                front,
+            )  # fmt: skip
+        elif front is None:
+            front = question.answer(self.workers, shown, self._left(), known)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return front
+
+    def _asked(self, position: int, front: ParetoFront) -> Question:
+        """Return the question that the front of a step answers, with the limits that were posed on the way."""
+        block = front.settings.get("robust") or {}
+        if not block.get("scenarios"):
+            return self.questions[position]
+        robust = read_block(block)
+        self.steps.learn(robust)
+        return self.steps.question(position, robust)
 
     def _neighbours(self, position: int) -> list[int]:
         """Return the steps before one that differ in one place by one value: their designs are ideas for this one."""
@@ -256,7 +279,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
         replace(front.designs[k], rank=place + 1, score=float(ranking.scores[k]), note=ranking.notes[k])
         for place, k in enumerate(ranking.order)
     ]
-    return replace(front, designs=designs, settings=dict(question.settings))
+    return replace(front, designs=designs, settings={**front.settings, **question.settings})
 
 
 def _joined(fingerprints: Sequence[str]) -> str:
@@ -264,7 +287,7 @@ def _joined(fingerprints: Sequence[str]) -> str:
     return hashlib.sha256(" ".join(fingerprints).encode()).hexdigest()
 
 
-def _fingerprint(question: Question, weights: bool = True) -> str:
+def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
     """Return the hash of all that decides an answer but ideas: question, formulas, tables, code."""
     instance, selection = question.instance, question.instance.selection
     program = instance.model.program
@@ -284,6 +307,7 @@ def _fingerprint(question: Question, weights: bool = True) -> str:
         "limits": [repr(x) for x in instance.extra],
         "objectives": dict(question.chosen),
         "settings": {k: repr(v) for k, v in settings.items()},
+        "robust": None if rater is None else rater.asked.block(),
         "formulas": formulas,
         "code": code_digest(),
     }
