@@ -158,10 +158,34 @@ def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new:
     assert not (tmp_path / "out").exists()
 
 
-def test_studies_do_not_take_a_range(saved: Path, robust: tuple[Path, str]) -> None:
-    done = at_once("whatif", saved / "robust.yaml", "-o", saved / "study", "--vary", "load_torque=600,610 N*m")
-    assert done.returncode == 2
-    assert "no robust block here" in done.stderr
+def test_a_study_of_designs_that_stand_a_range(saved: Path, robust: tuple[Path, str]) -> None:
+    out = saved / "study"
+    done = at_once("whatif", saved / "robust.yaml", "-o", out, "--vary", "load_torque=600,610 N*m", "--no-breaks")
+    assert done.returncode == 0, done.stderr
+    assert "4 of 4 designs keep all limits over the whole range (proven)" in done.stdout
+    table = rows(out / "whatif.csv")
+    assert [row["robust"] for row in table] == ["yes"] * 4
+    assert {row["yield"] for row in table} == {"1.0"}
+    alone = sorted(float(row["mass [kg]"]) for row in rows(robust[0] / "designs.csv"))
+    assert sorted(float(row["mass [kg]"]) for row in table[:2]) == pytest.approx(alone, rel=1e-3)
+
+
+def test_a_study_of_the_range_itself(saved: Path) -> None:
+    out = saved / "ranges"
+    done = at_once("whatif", saved / "spec.yaml", "-o", out, "--vary", "robust.friction=none, +-5:45:20 %")
+    assert done.returncode == 0, done.stderr
+    table = rows(out / "whatif.csv")
+    assert list(dict.fromkeys(row["robust.friction"] for row in table)) == ["none", "+-5 %", "+-25 %", "+-45 %"]
+    assert table[0]["robust"] == ""
+    assert {row["robust"] for row in table if row["robust.friction"] != "none" and row["rank"]} == {"yes"}
+    # What stands more costs more.
+    least: dict[str, float] = {}
+    for row in table:
+        if row["rank"]:
+            name, force = row["robust.friction"], float(row["actuation_force [N]"])
+            least[name] = min(force, least.get(name, force))
+    assert list(least.values()) == sorted(least.values())
+    assert len(set(least.values())) == len(least) > 1
 
 
 def test_the_front_is_not_written_over(saved: Path) -> None:
