@@ -1,10 +1,11 @@
 """A frame of a family's hooks as a figure: what to draw stands in ``frame.attrs``, nothing is computed again.
 
 The keys of ``attrs``, all optional but the title: ``title``, ``x`` (column, by default the first), ``panels`` (each
-with ``label``, ``columns``, ``log``, ``points``, ``stairs``: ``post`` or ``pre`` as values hold up to the next row or
-from the row before, ``height`` over that of an ordinary panel), ``marks`` (vertical lines: ``x``, ``label``), ``spans``
-(``from``, ``to``, ``label``, ``shaded``: by default every second one), ``lines`` (horizontal lines: ``panel``, ``y``,
-``label``), ``source`` (footer).
+with ``label``, ``columns``, ``log``, ``points``, ``apart`` where points are not joined, ``stairs``: ``post`` or ``pre``
+as values hold up to the next row or from the row before, ``height`` over that of an ordinary panel), ``ticks`` (words
+along the horizontal axis: ``x``, ``label``), ``marks`` (vertical lines: ``x``, ``label``), ``spans`` (``from``, ``to``,
+``label``, ``shaded``: by default every second one), ``lines`` (horizontal lines: ``panel``, ``y``, ``label``),
+``source`` (footer).
 """
 
 from __future__ import annotations
@@ -56,6 +57,8 @@ WIDTH, ONE, MORE = 7.1, 3.9, 1.62  # inches: the text width of an A4 page, one p
 PREFIXED = ("W", "J", "N", "N*m", "Pa")
 ROW = 0.155  # inches between two rows of labels above the panels
 LETTER = 0.066  # inches, width of a letter of such a label
+TICK_LETTER, TICK_ROW = 0.072, 0.14  # inches, of words along the horizontal axis
+MOST_TICK_ROWS, UPRIGHT_LETTERS = 4, 24
 
 
 def figure_svg(frame: pd.DataFrame) -> str:
@@ -119,11 +122,13 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     attrs = frame.attrs
     x = _column(frame, attrs.get("x", frame.columns[0]))
     panels = attrs.get("panels") or _panels_by_unit(frame, x)
-    marks, spans = list(attrs.get("marks", ())), list(attrs.get("spans", ()))
+    marks, spans, ticks = (list(attrs.get(key, ())) for key in ("marks", "spans", "ticks"))
     limits = _limits(float(frame[x].min()), float(frame[x].max()), spans)
 
     left, right, bottom = 0.78, 1.75, 0.5
     axis_width = WIDTH - left - right
+    words, rotation, room = _tick_words(ticks, axis_width)
+    bottom += room
     strips = _label_rows(spans, marks, limits, axis_width)
     title = textwrap.wrap(str(attrs.get("title", "")), 76)
     footer = textwrap.wrap(str(attrs.get("source", "")), 115)
@@ -146,6 +151,8 @@ def make_figure(frame: pd.DataFrame) -> Figure:
         _draw_spans(axis, spans, marks)
         if k + 1 < len(panels):
             axis.tick_params(labelbottom=False)
+    if ticks:
+        axes[-1].set_xticks([float(tick["x"]) for tick in ticks], labels=words, rotation=rotation)
     axes[0].set_xlim(*limits)
     axes[-1].set_xlabel(_label(x))
     figure.align_ylabels(axes)
@@ -160,6 +167,26 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     for k, text in enumerate(reversed(footer)):
         figure.text(left / WIDTH, (0.06 + 0.15 * k) / height, text, ha="left", va="bottom", fontsize=7, color="#555555")
     return figure
+
+
+def _tick_words(ticks: Sequence[Mapping[str, Any]], axis_width: float) -> tuple[list[str], int, float]:
+    """Return the words at ticks, their rotation, and the inches that they need beyond those of numbers."""
+    if not ticks:
+        return [], 0, 0.0
+    letters = max(int(axis_width / len(ticks) / TICK_LETTER) - 1, 1)
+    level = [_wrapped(str(tick["label"]), letters) for tick in ticks]
+    rows = max(map(len, level))
+    if rows <= MOST_TICK_ROWS and max(len(line) for lines in level for line in lines) <= letters:
+        return ["\n".join(lines) for lines in level], 0, TICK_ROW * (rows - 1)
+    upright = [_wrapped(str(tick["label"]), UPRIGHT_LETTERS) for tick in ticks]
+    longest = max(len(line) for lines in upright for line in lines)
+    return ["\n".join(lines) for lines in upright], 90, TICK_LETTER * longest - TICK_ROW
+
+
+def _wrapped(text: str, letters: int) -> list[str]:
+    """Return the lines of a text, which may be broken after underscores."""
+    lines = textwrap.wrap(text.replace("_", "_ "), letters, break_long_words=False)
+    return [line.replace("_ ", "_") for line in lines]
 
 
 def _limits(low: float, high: float, spans: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
@@ -220,7 +247,7 @@ def _draw_panel(
 ) -> None:
     columns = [_column(frame, name) for name in panel["columns"]]
     name, unit = split_header(str(panel.get("label", columns[0])))
-    logarithmic = bool(panel.get("log", False))
+    logarithmic, apart = bool(panel.get("log", False)), bool(panel.get("apart", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
     named = len(columns) > 1 or _legend(columns[0], name) != name.replace("_", " ")
     for column in columns:
@@ -229,10 +256,10 @@ def _draw_panel(
             frame[x].to_numpy(),
             frame[column].to_numpy(dtype=float) * factor,
             color=COLOURS[k % len(COLOURS)],
-            linestyle=DASHES[k % len(DASHES)],
-            marker=MARKERS[k % len(MARKERS)] if panel.get("points") else "",
+            linestyle="" if apart else DASHES[k % len(DASHES)],
+            marker=MARKERS[k % len(MARKERS)] if apart or panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
-            markersize=3.5,
+            markersize=4.5 if apart else 3.5,
             label=textwrap.fill(_legend(column, name), LEGEND_LETTERS),
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )

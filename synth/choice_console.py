@@ -8,6 +8,7 @@ from rich.console import Console
 
 from synth.console import explanation_text, plain_table
 from synth.price_list import NOTHING, percent
+from synth.robust import told_of
 from synth.units import format_quantity
 
 if TYPE_CHECKING:
@@ -112,6 +113,9 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
         meanings = {x.family: x.meanings[name] for x in found.outcomes if x.listed and x.meanings.get(name)}
         if len(set(meanings.values())) > 1:
             console.print(f"{name} means: " + "; ".join(f"{text} ({family})" for family, text in meanings.items()))
+    rated = [d for d in found.designs if d.robust]
+    if rated:
+        console.print(told_of(rated, rated[0].frame.restated["robust"]["samples"]))
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
     console.print(found.sentence())

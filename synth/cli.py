@@ -223,7 +223,7 @@ def explain(
         check_output(folder)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         problem = _load(asked.family, asked.options)
-        settings = {k: v for k, v in asked.search_settings(robust=True).items() if k in EXPLAINED}
+        settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
         found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
     if not quiet:
@@ -378,7 +378,7 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
         try:
             return synthesize(
                 problem, asked.requirements, catalogs=catalogs, progress=progress,
-                **asked.search_settings(robust=True),
+                **asked.search_settings(),
             )  # fmt: skip
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")

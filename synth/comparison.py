@@ -17,13 +17,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth import scatter
 from synth.clock import Stopped
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import csv_text, save_files
+from synth.instance import Instance
 from synth.pareto import rank, spread_subset
+from synth.posed import posed
+from synth.rated import COLUMNS, limits_table, rating_row
+from synth.rating import Rater
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
-from synth.search import FrontSearch, pose
+from synth.robust import NOTHING_STANDS, robust_front
+from synth.scatter import RATE
+from synth.search import FrontSearch, Question, pose
 from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
 from synth.tables import Catalogs
 from synth.units import format_quantity
@@ -117,6 +124,8 @@ class Comparison:
             "families.csv": csv_text(*self._family_table()),
             "comparison.json": self._json(),
         }
+        if any(d.robust for d in self.designs):
+            found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
             found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
         return found
@@ -135,11 +144,16 @@ class Comparison:
             for d in self.designs
         ]
         every = sorted({c: None for columns in known for c in columns}, key=lambda c: c.startswith("utilisation: "))
+        rated = any(d.robust for d in self.designs)
         rows: list[list[Any]] = [
-            [d.rank, d.score, name, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *map(own.get, every)]
+            [
+                d.rank, d.score, name, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *map(own.get, every),
+                *(rating_row(d) if rated else ()),
+            ]
             for d, name, own in zip(self.designs, self.families, known, strict=True)
-        ]
-        return ["rank", "score", "family", "status", "gap", "note", "alternatives", *every], rows
+        ]  # fmt: skip
+        columns = ["rank", "score", "family", "status", "gap", "note", "alternatives", *every]
+        return [*columns, *(COLUMNS if rated else ())], rows
 
     def _family_table(self) -> tuple[list[str], list[list[Any]]]:
         columns = ["family", "title", "outcome", "listed", "why", "designs", "certificate", "gap", "combinations"]
@@ -178,7 +192,14 @@ class Comparison:
                 for x in self.outcomes
             ],
             "designs": [
-                {"rank": d.rank, "score": d.score, "family": name, "note": d.note, "objectives": dict(d.objectives)}
+                {
+                    "rank": d.rank,
+                    "score": d.score,
+                    "family": name,
+                    "note": d.note,
+                    "objectives": dict(d.objectives),
+                    **({"robust": dict(d.robust)} if d.robust else {}),
+                }
                 for d, name in zip(self.designs, self.families, strict=True)
             ],
         }
@@ -211,6 +232,7 @@ def compare(
     time_limit: float | None = None,
     options: Mapping[str, str] | None = None,
     finished: Callable[[str, ParetoFront], object] | None = None,
+    robust: Mapping[str, Any] | None = None,
 ) -> Comparison:
     """Search all families that can serve one requirement sheet, and rank their designs on one front.
 
@@ -218,7 +240,7 @@ def compare(
     ----------
     families : "any" or list
         Every registered family, or some: names, DesignProblem subclasses or instances, or mappings with ``family`` and
-        what concerns that family alone (``options``, ``requirements``, ``limits``, ``fix``, ``parts``).
+        what concerns that family alone (``options``, ``requirements``, ``limits``, ``fix``, ``parts``, ``robust``).
     requirements : mapping
         What all are asked: names that several families understand.
     objectives : names, or mapping name -> "min"/"max", optional
@@ -233,6 +255,9 @@ def compare(
         Options of every family.
     finished : callable, optional
         Called with the label and the front of each family as soon as it is searched.
+    robust : mapping, optional
+        What scatters, as for ``synthesize``: designs of all families stand it, or are rated. Under a family "none" in
+        place of a range tells that it does not scatter there.
 
     Returns
     -------
@@ -243,7 +268,7 @@ def compare(
     InputError
         When something is wrong for every family: a name that none knows, a sheet that none can serve.
     """
-    sheet = sheet_of(options=options, requirements=requirements, limits=limits, fix=fix, parts=parts)
+    sheet = sheet_of(options=options, requirements=requirements, limits=limits, fix=fix, parts=parts, robust=robust)
     tables = catalogs if isinstance(catalogs, Catalogs) else Catalogs(catalogs)
     found = applicants(families, sheet, tables)
     refuse_all(found, sheet)
@@ -259,12 +284,61 @@ def compare(
 
 @dataclass
 class _Member:
-    """A family that is searched: its search, its front, and its designs on the way to the common front."""
+    """A family that is searched: its search, its front, and its designs on the way to the common front.
+
+    ``rater`` rates its designs where something scatters.
+    """
 
     one: Applicant
     search: FrontSearch
     front: ParetoFront
     designs: list[Design]
+    rater: Rater | None = None
+
+    @property
+    def incomplete(self) -> bool:
+        """Tell whether designs are missing that did not stand the range: others may have been left out for them."""
+        return bool(self.front.statistics.get("robust", {}).get("taken_off"))
+
+    def standing(self, designs: Sequence[Design], deadline: float) -> list[Design]:
+        """Return those of its designs that stand the range, if they must; rated, if anything scatters.
+
+        Raises
+        ------
+        Stopped
+            When there was no time to rate them.
+        """
+        if self.rater is None:
+            return list(designs)
+        ratings, stopped = self.rater.rate(designs, None, deadline)
+        if stopped:
+            raise Stopped(stopped)
+        rated = [replace(d, frame=self.front.frame, robust=r) for d, r in zip(designs, ratings, strict=True)]
+        return [d for d in rated if d.robust["holds"] or self.rater.asked.mode == RATE]
+
+
+class _Kept:
+    """A question that keeps the search by which it was answered, as more is asked of it."""
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        self.search: FrontSearch | None = None
+
+    @property
+    def instance(self) -> Instance:
+        """The model with its requirements and restrictions."""
+        return self.question.instance
+
+    def answer(
+        self,
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+        known: Sequence[Design] = (),
+    ) -> ParetoFront:
+        """Search the designs."""
+        self.search = self.question.search(workers, progress, time_limit, known)
+        return self.search.run(list(self.question.weights.values()), self.question.settings)
 
 
 class _Comparing:
@@ -332,13 +406,26 @@ class _Comparing:
         limit = None
         if math.isfinite(self.deadline):
             limit = max((self.deadline - time.monotonic()) / (count - number), 1e-3)
-        question = pose(
-            one.problem, asked["requirements"], self.objectives, settings["points"], self.tables, asked["parts"],
-            asked["limits"], asked["fix"], settings["weights"], settings["gap"], settings["grid"], settings["seed"],
-        )  # fmt: skip
-        search = question.search(settings["workers"], self._shown(one.label, number, count), limit)
-        front = search.run(list(question.weights.values()), question.settings)
-        return _Member(one, search, front, list(front.designs))
+        shown, kept = self._shown(one.label, number, count), list[_Kept]()
+
+        def ask(block: scatter.Asked | None) -> _Kept:
+            problem = posed(one.problem, block, asked["limits"])
+            question = pose(
+                problem, asked["requirements"], self.objectives, settings["points"], self.tables, asked["parts"],
+                asked["limits"], asked["fix"], settings["weights"], settings["gap"], settings["grid"],
+                settings["seed"],
+            )  # fmt: skip
+            kept.append(_Kept(question))
+            return kept[-1]
+
+        block, rater = scatter.read_remaining(asked["robust"]), None
+        if block is None:
+            front = ask(None).answer(settings["workers"], shown, limit)
+        else:
+            rater = Rater(one.problem, asked["requirements"], self.tables, asked["limits"], block)
+            front = robust_front(ask, rater, settings["workers"], shown, limit)
+        search = next(k.search for k in reversed(kept) if k.search is not None)
+        return _Member(one, search, front, list(front.designs), rater)
 
     def _shown(self, label: str, number: int, count: int) -> Callable[[Mapping[str, Any]], None] | None:
         progress = self.progress
@@ -370,11 +457,14 @@ class _Comparing:
                 others = [d for m, d in listed if m is not member]
                 if others:
                     done, better = member.search.challenged(self._signed(others), self.deadline)
-                    fresh = self._useful(member.search.reported(better)) if better else []
+                    useful = self._useful(member.search.reported(better)) if better else []
+                    fresh = member.standing(useful, self.deadline)
                     member.designs += fresh
-                    closed, quiet = closed and done, quiet and not fresh
+                    closed = closed and done and len(fresh) == len(useful)
+                    quiet = quiet and not fresh
             if quiet:
-                self.proven = closed
+                # What did not stand the range may have kept the search from what does, and beats others as well.
+                self.proven = closed and not any(m.incomplete for m in self.members)
                 return
         self.proven = False
 
@@ -485,7 +575,8 @@ class _Comparing:
             reason = f"no design was found until it was stopped ({member.front.interrupted})"
             return replace(told, outcome="stopped", sentence=reason)
         if not member.designs:
-            explanation = (member.front.explanation or {}).get("message", "No design is feasible.")
+            nothing = NOTHING_STANDS if member.incomplete else "No design is feasible."
+            explanation = (member.front.explanation or {}).get("message", nothing)
             return replace(told, outcome="infeasible", sentence=str(explanation))
         if any(m is member for m, _ in every):
             reason = "it has designs that nothing beats, but there is no room for them among so few points"

@@ -38,7 +38,7 @@ def rating_row(design: Design) -> list[Any]:
 
 def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]:
     """Return headers and rows of robust.csv: every limit of every design at its worst point of the range."""
-    units: Mapping[str, str] = next((d.robust["units"] for d in designs if d.robust), {})
+    units: dict[str, str] = {n: unit for d in designs if d.robust for n, unit in d.robust["units"].items()}
     columns = ["rank", "limit", "robust", "proof", "value", "limit value", "unit", "utilisation", "residual"]
     columns += [f"worst at: {header(name, unit)}" for name, unit in units.items()]
     rows: list[list[Any]] = []

@@ -31,6 +31,7 @@ Progress = Callable[[Mapping[str, Any]], None]
 SEARCHES = 5  # at most so many, each with more points at which limits are posed
 SCENARIOS = 4  # new points per limit
 SHORTEST, GRACE = 1e-3, 2.0  # seconds
+NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from synth.errors import InputError
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 LIMITS, RATE = "limits", "rate"
+NONE = "none"  # in place of a range: does not scatter here
 CATALOGUE, NEW_AND_WORN = "catalogue range", "new and worn"
 # Columns of a table of friction pairs: what slides, and the ends of its scatter; mu_static moves with it in proportion.
 SLIDING, LEAST, MOST = "mu_dynamic", "mu_min", "mu_max"
@@ -200,6 +201,21 @@ def read_block(robust: Any, where: str = "robust") -> Asked:
         _confidence(block.get("confidence", CONFIDENCE), f"{where}: confidence"),
         _scenarios(block.get("scenarios") or {}, f"{where}: scenarios"),
     )  # fmt: skip
+
+
+def read_remaining(robust: Mapping[str, Any]) -> Asked | None:
+    """Read a block without what has "none" for a range; None where nothing is left that scatters.
+
+    Raises
+    ------
+    InputError
+        When something is not understood.
+    """
+    block = {key: value for key, value in robust.items() if value != NONE}
+    if isinstance(block.get("tolerance"), Mapping):
+        block["tolerance"] = {key: value for key, value in block["tolerance"].items() if value != NONE}
+    nothing = not block.get("tolerance") and set(block) <= set(KEYS[2:])
+    return None if nothing else read_block(block)
 
 
 def _whole(value: Any, field: str, expected: str) -> int:

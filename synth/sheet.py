@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from synth import scatter
 from synth.declaration import Declaration
 from synth.errors import InputError
 from synth.instance import as_catalogs, as_mapping
@@ -19,13 +20,14 @@ from synth.tables import Catalogs
 from synth.units import parse_unit
 
 ANY = "any"
-KEYS = ("options", "requirements", "limits", "fix", "parts")
+KEYS = ("options", "requirements", "limits", "fix", "parts", "robust")
 EXAMPLES = {
     "options": "{'friction_basis': 'worst_case'}",
     "requirements": "{'mass': '20 kg'}",
     "limits": "{'mass': '<= 20 kg'}",
     "fix": "{'mass': '20 kg'}",
     "parts": "{'slot': ['designation', 'designation']}",
+    "robust": "{'friction': '+-10 %'}",
 }
 LEAST_OBJECTIVES, MOST_OBJECTIVES = 2, 3
 
@@ -151,7 +153,7 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
             close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
             expected = "a name that one of the families knows"
             expected += f" (did you mean {' or '.join(close)}?)" if close else ""
-            if key == "requirements" and any(name in one.declaration.names() for one in found):
+            if key in ("requirements", "robust") and any(name in one.declaration.names() for one in found):
                 expected = (
                     "a requirement that families understand in common, by name; what concerns one family alone is "
                     "stated under that family"
@@ -162,12 +164,15 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
 def _known(one: Applicant, key: str) -> Iterable[str]:
     d = one.declaration
     quantities = {name for name, _, _ in d.quantities()}
+    understands = [n for n in one.problem.understands if n in d.requirements]
+    columns = {f"{slot}.{column}" for slot, part in d.slots.items() for column in part.columns}
     return {
         "options": d.options,
-        "requirements": [n for n in one.problem.understands if n in d.requirements],
+        "requirements": understands,
         "limits": quantities,
         "fix": quantities | set(d.choices) | set(d.slots),
         "parts": d.slots,
+        "robust": {*scatter.KEYS, *understands, *d.variables, *columns},
     }[key]
 
 
@@ -188,6 +193,7 @@ def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
         "fix": "has nothing to fix as",
         "parts": "has no slot",
         "options": "has no option",
+        "robust": "has nothing that scatters as",
     }
     for key, lacks in words.items():
         strange = [n for n in sheet[key] if n not in _known(one, key)]

@@ -73,17 +73,8 @@ class Spec:
             given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
         return replace(self, **given)
 
-    def search_settings(self, robust: bool = False) -> dict[str, Any]:
-        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart.
-
-        Raises
-        ------
-        InputError
-            When something scatters and what asks is not prepared for it (``robust`` says that it is).
-        """
-        if self.robust and not robust:
-            expected = "no robust block here: clutchsynth run (one family), rate, check and explain take one"
-            raise InputError("robust", ", ".join(self.robust), expected)
+    def search_settings(self) -> dict[str, Any]:
+        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart."""
         names = (
             "objectives",
             "limits",
@@ -303,7 +294,7 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
 
 
 # What may concern one family of several alone.
-OWN = ("family", "options", "requirements", "limits", "fix", "parts")
+OWN = ("family", "options", "requirements", "limits", "fix", "parts", "robust")
 
 
 def _hint(key: Any) -> str:

@@ -12,6 +12,7 @@ from synth.feasibility import Status
 from synth.files import csv_text
 from synth.rated import COLUMNS, rating_row
 from synth.results import Design, Frame, ParetoFront
+from synth.robust import NOTHING_STANDS
 from synth.terminal import report, write_all
 from synth.units import from_si, header
 from synth.vary import Value, Varied
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 BINDING = 0.999  # a limit used more than this binds
 MOST_LINES = 7  # a drawing with more is not read
 MOST_LABELS = 8
+MOST_TICKS = 20
 NO_DESIGN = "no design"
 
 
@@ -48,7 +50,7 @@ class Step:
         if self.front.designs:
             return ""
         if self.front.status is Status.NOT_SOLVED:
-            return "no design was found that keeps its limits over the whole range"
+            return NOTHING_STANDS
         conflicts = (self.front.explanation or {}).get("conflicts") or []
         missed = [f"{c['limit']} by {100 * c['missed_by']:.3g} %" for c in conflicts]
         return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
@@ -256,9 +258,14 @@ class Study:
         k = 0 if self.along is None else self.along
         varied = self.varied[k]
         numeric = self.along is not None
-        x = self._headers()[k] if numeric else header("step", "-")
+        ticks = [] if numeric else [{"x": n, "label": varied.shown(v)} for n, v in enumerate(varied.values, start=1)]
+        ticks = ticks if len(ticks) <= MOST_TICKS else []
+        called = varied.label if numeric or ticks else "step"
+        x = self._headers()[k] if numeric else header(called, "-")
         groups = [()] if len(self.varied) == 1 else list(dict.fromkeys(_without(s.values, k) for s in self.steps))
-        along = [float(s.values[k]) if numeric else float(s.number) for s in self.steps]  # type: ignore[arg-type]
+        # Words stand in the order in which they were given.
+        places_of = {v: float(v) if isinstance(v, float) else n for n, v in enumerate(varied.values, start=1)}
+        along = [float(places_of[s.values[k]]) for s in self.steps]
         places = sorted(set(along))
         data: dict[str, list[float]] = {x: places}
         panels: list[dict[str, Any]] = []
@@ -268,7 +275,7 @@ class Study:
                 at = {
                     place: s
                     for place, s in zip(along, self.steps, strict=True)
-                    if not numeric or _without(s.values, k) == group or len(self.varied) == 1
+                    if len(self.varied) == 1 or _without(s.values, k) == group
                 }
                 lines = _lines(len(groups) == 1, [at.get(p) for p in places], name)
                 for label, values in lines.items():
@@ -276,7 +283,7 @@ class Study:
                     column = header(f"{words}{label} {name}", unit)
                     data[column] = [_in_unit(v, unit) for v in values]
                     columns.append(column)
-            panels.append({"label": header(name, unit), "columns": columns, "points": True})
+            panels.append({"label": header(name, unit), "columns": columns, "points": True, "apart": not numeric})
         frame = pd.DataFrame(data)
         marks: list[dict[str, Any]] = [{"x": b.value} for b in self.breaks] if numeric else []
         if len(marks) <= MOST_LABELS:
@@ -285,9 +292,10 @@ class Study:
         legend = ["vertical lines: break points"] if marks else []
         legend += [f"grey: {NO_DESIGN}"] if spans else []
         frame.attrs.update(
-            title=f"{self._title()} over {varied.label.replace('_', ' ')}" if numeric else self._title(),
+            title=f"{self._title()} over {called.replace('_', ' ')}",
             x=x,
             panels=panels,
+            ticks=ticks,
             marks=marks,
             spans=spans,
             source=self._footer(*legend),

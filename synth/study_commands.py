@@ -95,7 +95,7 @@ def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool
             try:
                 return answer(
                     problem, asked.requirements, wanted, catalogs=catalogs, progress=progress, breaks=breaks,
-                    folder=folder, **asked.search_settings(robust=True),
+                    folder=folder, **asked.search_settings(),
                 )  # fmt: skip
             except KeyboardInterrupt:
                 tell("stopped before the first step was begun; nothing is written")

@@ -31,7 +31,6 @@ COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one c
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
 PLACES = {"weight": "weights.", "part": "parts.", "option": "options.", "scatter": "robust."}
-NO_SCATTER = "none"
 
 Value = float | str | tuple[str, ...]
 
@@ -390,11 +389,7 @@ class Asked:
         block = {} if self.robust is None else self.without(self.robust.block(), name)
         if "tolerance" in block:
             block["tolerance"] = self.without(block["tolerance"], name)
-        if text != NO_SCATTER:
-            block[name] = text
-        if not block.get("tolerance") and set(block) <= set(scatter.KEYS[2:]):
-            return None
-        return scatter.read_block(block)
+        return scatter.read_remaining({**block, name: text})
 
     def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
         """Return what is given by name or symbol, without one name."""

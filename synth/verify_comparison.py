@@ -89,6 +89,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
 def _values(path: Path, content: Mapping[str, Any], findings: list[str]) -> dict[str, np.ndarray]:
     """Return the objectives of the designs listed, evaluated again from their files."""
     from synth.analysis import evaluate
+    from synth.posed import posed
     from synth.problem import load
 
     rows: dict[str, list[float]] = {name: [] for name in content["objectives"]}
@@ -97,7 +98,7 @@ def _values(path: Path, content: Mapping[str, Any], findings: list[str]) -> dict
         label = f"design {told['rank']}"
         try:
             spec = yaml.safe_load((path / f"design_{told['rank']:0{width}d}.yaml").read_text(encoding="utf-8"))
-            problem = load(spec["family"], **spec.get("options", {}))
+            problem = posed(load(spec["family"], **spec.get("options", {})), spec.get("robust"), spec.get("limits"))
             design = evaluate(
                 problem, spec["requirements"], spec, catalogs=spec.get("catalogs"), limits=spec.get("limits"),
                 objectives=content["objectives"],

@@ -7,6 +7,8 @@ import pandas as pd
 import pytest
 
 import synth
+import synth.comparison
+import synth.robust
 from synth import DesignProblem
 from synth.comparison import compare
 from synth.results import Status
@@ -14,6 +16,7 @@ from synth.search import FrontSearch
 from synth.sheet import applicants, common_objectives, sheet_of
 from synth.tables import Catalogs
 from synth.units import format_quantity
+from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 
 METALS = pd.DataFrame({
     "designation": ["plain", "strong"], "yield_Re [N/mm2]": [200.0, 500.0], "density [kg/m3]": [7850.0, 7900.0],
@@ -103,14 +106,14 @@ class Stranger(DesignProblem):
 ALL = [Solid, Padded, Tube, Weak, Stranger]
 
 
-def enumerated():
-    """Return mass and sag of every makeable bar and tube that holds: plain arithmetic."""
+def enumerated(bars=1.0, tubes=1.0):
+    """Return mass and sag of every makeable bar and tube that holds so many times the load: plain arithmetic."""
     found = []
     for re, density in METALS[["yield_Re [N/mm2]", "density [kg/m3]"]].itertuples(index=False):
-        a = SIZES[LOAD * SPAN / 4 / (SIZES**3 / 6) <= re * 1e6]
+        a = SIZES[bars * LOAD * SPAN / 4 / (SIZES**3 / 6) <= re * 1e6]
         found.append(np.stack([density * a**2 * SPAN, LOAD * SPAN**3 / (48 * 2.1e11 * a**4 / 12)], axis=1))
         s, t = (x.ravel() for x in np.meshgrid(SIZES, np.arange(2, 9) * 0.5e-3))
-        ok = (LOAD * SPAN / 4 / (4 / 3 * s**2 * t) <= re * 1e6) & (t >= s / 30 * (1 - 1e-9))
+        ok = (tubes * LOAD * SPAN / 4 / (4 / 3 * s**2 * t) <= re * 1e6) & (t >= s / 30 * (1 - 1e-9))
         s, t = s[ok], t[ok]
         found.append(np.stack([
             density * 4 * s * t * SPAN + 1.0, LOAD * SPAN**3 / (48 * 2.1e11 * 2 / 3 * s**3 * t)
@@ -308,6 +311,151 @@ def test_files(found, tmp_path):
     assert {x["family"] for x in content["families"] if x["folder"]} == {"solid", "padded", "tube", "weak"}
     assert all((folder / name / "front.json").exists() for name in ("solid", "padded", "tube", "weak"))
     assert len(list(folder.glob("design_*.yaml"))) == len(found.designs)
+
+
+# ---- what scatters --------------------------------------------------------------------------------------------------
+
+SCATTER = {"load": "+-40 %"}
+
+
+def check_enumerated(found, every):
+    """Check that no enumerated design beats a listed one, and that each is one of them."""
+    assert found.certificate.kind == "global"
+    for design in found.designs:
+        row = np.array(list(design.objectives.values()))
+        assert not np.any(np.all(every < row * (1 - 1e-3) * (1 - 1e-9), axis=1))
+        assert np.any(np.all(np.isclose(every, row, rtol=1e-9), axis=1))
+
+
+@pytest.fixture(scope="module")
+def sure():
+    return compare(ALL, {"load": LOAD}, catalogs=OWN, points=15, robust=SCATTER)
+
+
+def test_designs_of_all_families_stand_what_scatters(sure, found):
+    assert {x.family: x.outcome for x in sure.outcomes} == {x.family: x.outcome for x in found.outcomes}
+    check_enumerated(sure, enumerated(1.4, 1.4))
+    assert all(d.robust["holds"] and d.robust["proof"] == "proven" for d in sure.designs)
+    least = min(d.objectives["mass"] for d in sure.designs)
+    assert least == pytest.approx(enumerated(1.4, 1.4)[:, 0].min(), rel=1e-9)
+    assert least > 1.1 * min(d.objectives["mass"] for d in found.designs)
+
+
+def test_what_scatters_is_stated_for_a_family_alone():
+    entries = [Solid, {"family": Tube, "robust": {"load": "none"}}]
+    found = compare(entries, {"load": LOAD}, catalogs=OWN, points=15, robust=SCATTER)
+    check_enumerated(found, enumerated(1.4, 1.0))
+    rated = {name: bool(d.robust) for d, name in zip(found.designs, found.families, strict=True)}
+    assert rated == {"solid": True, "tube": False}
+    # The same the other way round; a name that one family alone has may stand under it by its symbol.
+    entries = [{"family": Solid, "robust": SCATTER}, Tube]
+    again = compare(entries, {"load": LOAD}, catalogs=OWN, points=15)
+    assert [d.objectives for d in again.designs] == [d.objectives for d in found.designs]
+
+
+def test_designs_of_all_families_may_be_rated_alone(found):
+    rated = compare(ALL, {"load": LOAD}, catalogs=OWN, points=15, robust={**SCATTER, "mode": "rate"})
+    assert [d.objectives for d in rated.designs] == [d.objectives for d in found.designs]
+    assert {d.robust["holds"] for d in rated.designs} == {True, False}
+    assert rated.certificate.kind == "global"
+
+
+def test_a_family_without_what_scatters_steps_back():
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust={"wall": "+-0.1 mm"})
+    assert outcome(found, "solid").sentence == "it has nothing that scatters as wall"
+    assert set(found.families) == {"tube"}
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust={"tolerance": {"wall": "+-0.1 mm"}})
+    assert "robust: tolerance: wall" in outcome(found, "solid").sentence
+    assert set(found.families) == {"tube"}
+
+
+@pytest.mark.parametrize(
+    ("robust", "words"),
+    [
+        ({"laod": "+-5 %"}, ["robust", "laod", "did you mean load"]),
+        ({"shade": "+-5 %"}, ["robust", "shade", "in common", "under that family"]),
+        ({"load": "+-150 %"}, ["robust: load", "+-150 %"]),
+        ({"load": 5}, ["robust: load", "a range"]),
+        ({"friction": "+-5 %"}, ["robust: friction", "uses the friction of a table"]),
+        ("load", ["robust", "{'friction': '+-10 %'}"]),
+        ({"load": "+-5 %", "samples": 5}, ["robust: samples"]),
+    ],
+)
+def test_ranges_that_no_family_can_stand_are_refused(robust, words):
+    with pytest.raises(synth.InputError) as error:
+        compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, robust=robust)
+    assert all(word in str(error.value) for word in words), str(error.value)
+
+
+def test_files_tell_how_designs_stand_the_range(sure, tmp_path):
+    folder = sure.save(tmp_path / "out")
+    table = pd.read_csv(folder / "designs.csv")
+    assert list(table.columns)[-8:] == [
+        "robust", "proof", "yield", "yield low", "yield high", "worst limit", "worst utilisation", "worst at",
+    ]  # fmt: skip
+    assert set(table["robust"]) == {"yes"}
+    limits = pd.read_csv(folder / "robust.csv")
+    assert set(limits["rank"]) == set(table["rank"])
+    content = json.loads((folder / "comparison.json").read_text())
+    assert content["settings"]["sheet"]["robust"] == SCATTER
+    assert all(x["robust"]["holds"] for x in content["designs"])
+
+
+class Brake(ShaftBrake):
+    """Hums in the middle of a range of speeds."""
+
+    name, understands = "brake", ("torque", "speed")
+
+
+class OtherBrake(Brake):
+    """The same by another name."""
+
+    name = "other_brake"
+
+
+WIDE = {"speed": "+-30 %", "samples": 512}
+
+
+def brakes(**more):
+    settings = {"fix": {"force": "3 kN"}, "limits": {"size": ">= 200 mm"}, "points": 3, "robust": WIDE, **more}
+    return compare([Brake, OtherBrake], NEEDED, {"size": "min", "worth": "min"}, catalogs=CATALOGS, **settings)
+
+
+def test_limits_that_fail_between_corners_are_posed_for_every_family():
+    found = brakes()
+    assert found.certificate.kind == "global"
+    assert all(x.front.statistics["robust"]["searches"] > 1 for x in found.outcomes)
+    assert all(d.robust["holds"] for d in found.designs)
+    assert min(d.values["size"] for d in found.designs) == pytest.approx(2 * 0.11 / 0.7, rel=1e-6)
+
+
+def test_nothing_is_proven_of_all_where_designs_were_taken_off(monkeypatch):
+    monkeypatch.setattr(synth.robust, "SEARCHES", 1)
+    found = brakes()
+    assert any(x.front.statistics["robust"]["taken_off"] for x in found.outcomes)
+    assert found.certificate.kind == "heuristic"
+    none = brakes(limits={"size": "200 mm .. 250 mm"})
+    assert none.designs == []
+    assert none.certificate.kind == "heuristic"
+    assert {x.sentence for x in none.outcomes} == {"no design was found that keeps its limits over the whole range"}
+
+
+def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
+    # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well.
+    rated, own = [], synth.comparison._Member.standing
+
+    def standing(self, designs, deadline):
+        rated.extend(own(self, designs, deadline))
+        return rated[len(rated) - len(designs) :]
+
+    monkeypatch.setattr(synth.comparison._Member, "standing", standing)
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
+    assert found.certificate.kind == "global"
+    assert [d.robust["holds"] for d in rated] == [True]
+    # Where it fails nothing says that what is left cannot be beaten.
+    monkeypatch.setattr(synth.comparison._Member, "standing", lambda self, designs, deadline: [])
+    found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
+    assert found.certificate.kind == "heuristic"
 
 
 # ---- the families that there are ------------------------------------------------------------------------------------

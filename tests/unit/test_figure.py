@@ -137,6 +137,53 @@ def test_the_figures_of_a_study_can_be_read(vary: dict[str, str]) -> None:
     assert named == [pair for pair in second if not str(pair[0]).startswith("_")]
 
 
+def words(labels: list[str]) -> pd.DataFrame:
+    places = np.arange(1.0, len(labels) + 1)
+    frame = pd.DataFrame({"kind [-]": places, "mass [kg]": places**2})
+    frame.attrs = {
+        "title": "Words", "source": "Nothing but an example.",
+        "panels": [{"label": "mass [kg]", "columns": ["mass [kg]"], "apart": True}],
+        "ticks": [{"x": x, "label": label} for x, label in zip(places, labels, strict=True)],
+    }  # fmt: skip
+    return frame
+
+
+@pytest.mark.parametrize(
+    ("labels", "rotation", "first"),
+    [
+        (["none", "+-10 %", "catalogue range"], 0, "none"),
+        (["metal_ceramic_bronze_dry", "moulded_dry", "paper_wet", "cork_wet"], 0, "metal_\nceramic_\nbronze_dry"),
+        ([f"designation-{k}" for k in range(20)], 90, "designation-0"),
+        (["a_lining_with_a_very_long_name_indeed", *"bcdefgh"], 90, "a_lining_with_a_\nvery_long_name_indeed"),
+        (["mu >= 0.12 and p_allow >= 0.5", *"bcdefghi"], 90, "mu >= 0.12 and p_allow\n>= 0.5"),
+    ],
+)
+def test_words_stand_along_the_axis(labels: list[str], rotation: int, first: str) -> None:
+    frame = words(labels)
+    assert_readable(frame)
+    figure, _ = drawn(frame)
+    axis = figure.axes[0].xaxis
+    assert [t.get_rotation() for t in axis.get_ticklabels()] == [rotation] * len(labels)
+    assert axis.get_ticklabels()[0].get_text() == first
+    (line,) = figure.axes[0].get_lines()
+    assert (line.get_linestyle(), line.get_marker()) == ("None", "o")
+
+
+def test_a_study_of_words_names_them_and_joins_nothing() -> None:
+    problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
+    vary = {"parts.rope": "rope a, rope b", "options.thick": "given, makeable"}
+    study = synth.whatif(problem, {"load": "20 kN"}, vary, {"cost": "min"}, 1, table)
+    (frame,) = study.curves().values()
+    assert_readable(frame)
+    assert [tick["label"] for tick in frame.attrs["ticks"]] == ["rope a", "rope b"]
+    (panel,) = frame.attrs["panels"]
+    assert panel["apart"]
+    # A line per option, each with what is best of either rope.
+    cost = [f.designs[0].values["cost"] if f.designs else np.nan for f in study.fronts]
+    assert frame[panel["columns"]].to_numpy().T == pytest.approx(np.array([cost[::2], cost[1::2]]), nan_ok=True)
+    assert "over parts.rope" in frame.attrs["title"]
+
+
 def test_a_frame_with_a_title_only_gets_a_panel_per_unit() -> None:
     frame = sample()
     frame.attrs = {"title": "Plain"}
