@@ -13,7 +13,8 @@ from synth.errors import InputError
 
 if TYPE_CHECKING:
     from synth.analysis import evaluate
-    from synth.comparison import Comparison, FamilyOutcome, compare
+    from synth.comparing import compare
+    from synth.comparison import Comparison, FamilyOutcome
     from synth.description import describe
     from synth.explanation import Explanation, Relaxation, explain
     from synth.hooks import curves, second_opinion, simulate
@@ -82,7 +83,7 @@ _HOME = {
     "SizeRange": "synth.variants.run",
     "Study": "synth.study",
     "batch": "synth.jobs.run",
-    "compare": "synth.comparison",
+    "compare": "synth.comparing",
     "curves": "synth.hooks",
     "describe": "synth.description",
     "evaluate": "synth.analysis",

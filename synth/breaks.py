@@ -21,9 +21,10 @@ from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search import Question
 from synth.study import Break, Composition, Step, best_design
+from synth.study_questions import Steps
 from synth.together import alike, different, groups_of
 from synth.together_search import TogetherSearch, Wider
-from synth.vary import Steps, Value
+from synth.vary import Value
 
 WIDTH = 1e-3  # of a value: a break is known to be within this
 GAP = 1e-5  # of the searches that compare parts

@@ -103,7 +103,7 @@ def show_common() -> None:
 def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> None:
     """Search the families of a spec, show and save their common front; end as ``run`` does."""
     from synth.choice_console import comparison_explanation, print_comparison
-    from synth.comparison import compare
+    from synth.comparing import compare
     from synth.console import output, progress_display
     from synth.files import write_atomically
     from synth.tables import Catalogs

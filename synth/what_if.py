@@ -28,8 +28,8 @@ from synth.robust import robust_front
 from synth.scatter import read_block
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
+from synth.study_questions import Steps, steps_of
 from synth.together_fronts import joint_answers, joint_groups
-from synth.vary import Steps, steps_of
 
 FORMAT = 1
 RECORD = "study.json"

@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 import synth
-import synth.comparison
+import synth.comparing
 import synth.robust
 from synth import DesignProblem
-from synth.comparison import compare
+from synth.comparing import compare
 from synth.results import Status
 from synth.search import FrontSearch
 from synth.sheet import applicants, common_objectives, sheet_of
@@ -442,18 +442,18 @@ def test_nothing_is_proven_of_all_where_designs_were_taken_off(monkeypatch):
 
 def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
     # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well.
-    rated, own = [], synth.comparison._Member.standing
+    rated, own = [], synth.comparing._Member.standing
 
     def standing(self, designs, deadline):
         rated.extend(own(self, designs, deadline))
         return rated[len(rated) - len(designs) :]
 
-    monkeypatch.setattr(synth.comparison._Member, "standing", standing)
+    monkeypatch.setattr(synth.comparing._Member, "standing", standing)
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "global"
     assert [d.robust["holds"] for d in rated] == [True]
     # Where it fails nothing says that what is left cannot be beaten.
-    monkeypatch.setattr(synth.comparison._Member, "standing", lambda self, designs, deadline: [])
+    monkeypatch.setattr(synth.comparing._Member, "standing", lambda self, designs, deadline: [])
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "heuristic"
 

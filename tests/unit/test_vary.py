@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 import synth
 from synth.errors import InputError
-from synth.vary import Steps, Varied, split_text, steps_of
+from synth.study_questions import Steps, steps_of
+from synth.vary import Varied, split_text
 from tests.unit.ropes import Ropes, ropes
 
 TABLE = ropes((10, 2), (20, 1), (35, 0.5))

@@ -1,0 +1,266 @@
+"""The questions of a study: one for each value of what is varied, all checked beforehand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+from synth import scatter
+from synth.analysis import chosen_objectives
+from synth.errors import InputError
+from synth.instance import SENSES, catalogs_for
+from synth.posed import posed
+from synth.problem import DesignProblem, load
+from synth.rating import Rater
+from synth.results import Design
+from synth.search import Question, pose
+from synth.tables import Catalogs
+from synth.vary import Value, Varied, read_vary
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What ``synthesize`` is asked, before a study varies it; the arguments are those of the same names."""
+
+    problem: DesignProblem
+    requirements: Mapping[str, Any]
+    catalogs: Catalogs
+    objectives: Any = None
+    points: int = 30
+    parts: Mapping[str, Any] | None = None
+    limits: Mapping[str, Any] | None = None
+    fix: Mapping[str, Any] | None = None
+    weights: Mapping[str, float] | None = None
+    gap: float = 1e-3
+    grid: bool = True
+    seed: int = 0
+    robust: scatter.Asked | None = None
+
+    def pose(self, problem: DesignProblem | None = None) -> Question:
+        """Check the question; ``problem`` has its limits posed already where something scatters."""
+        problem = self.posed() if problem is None else problem
+        return pose(
+            problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits, self.fix,
+            self.weights, self.gap, self.grid, self.seed,
+        )  # fmt: skip
+
+    def posed(self) -> DesignProblem:
+        """Return the problem with its limits where they are worst, if they are to hold over a range."""
+        return posed(self.problem, self.robust, self.limits)
+
+    def rater(self) -> Rater | None:
+        """Return what rates designs over the range; None where nothing scatters.
+
+        Raises
+        ------
+        InputError
+            When the range does not fit what is asked.
+        """
+        if self.robust is None:
+            return None
+        return Rater(self.problem, self.requirements, self.catalogs, self.limits, self.robust)
+
+    def at(self, varied: Varied, value: Value) -> Asked:
+        """Return the question with one thing at a value, which takes the place of what was said of it before."""
+        asked = varied.asked(value)
+        if varied.kind == "requirement":
+            return replace(self, requirements={**self.without(self.requirements, varied.name), varied.name: asked})
+        if varied.kind == "weight":
+            return replace(self, weights={**self.without(self.weights, varied.name), varied.name: asked})
+        if varied.kind == "part":
+            return replace(self, parts={**self.without(self.parts, varied.name), varied.name: asked})
+        if varied.kind == "option":
+            return replace(self, problem=self._with_option(varied.name, str(value)))
+        if varied.kind == "scatter":
+            return replace(self, robust=self._scattering(varied.name, str(value)))
+        kept = self._other_limits(varied)
+        return replace(
+            self, limits={**self.without(self.limits, varied.name), varied.name: [*kept, f"{varied.sign} {asked}"]}
+        )
+
+    def _with_option(self, name: str, word: str) -> DesignProblem:
+        """Return the problem with another word for an option."""
+        problem = self.problem
+        option = problem.model(frozenset(), self.catalogs).declaration.options[name]
+        others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
+        return type(problem)(**{**others, name: word})
+
+    def _scattering(self, name: str, text: str) -> scatter.Asked | None:
+        """Return what scatters, with one thing over another range or, for "none", without it."""
+        block = {} if self.robust is None else self.without(self.robust.block(), name)
+        if "tolerance" in block:
+            block["tolerance"] = self.without(block["tolerance"], name)
+        return scatter.read_remaining({**block, name: text})
+
+    def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
+        """Return what is given by name or symbol, without one name."""
+        spellings = self._names()
+        return {word: value for word, value in (given or {}).items() if spellings.get(str(word), word) != name}
+
+    def _names(self) -> dict[str, str]:
+        return self.problem.model(frozenset(), self.catalogs).declaration.names()
+
+    def _other_limits(self, varied: Varied) -> list[str]:
+        """Return the limits on the quantity of a varied one that point another way."""
+        spellings, kept = self._names(), list[str]()
+        for word, texts in (self.limits or {}).items():
+            if spellings.get(str(word)) == varied.name:
+                for text in texts if isinstance(texts, (list, tuple)) else [texts]:
+                    low, dots, high = str(text).partition("..")
+                    for one in [f">= {low.strip()}", f"<= {high.strip()}"] if dots else [str(text)]:
+                        sign = re.match(r"^\s*(<=|>=|==|=|<|>)", one)
+                        if sign is None or SENSES[sign.group(1)] != SENSES[varied.sign]:
+                            kept.append(one)
+        return kept
+
+
+class Steps:
+    """The questions of a study, in their order: of two things varied the second runs through for each of the first.
+
+    Parameters
+    ----------
+    asked : Asked
+        What stays.
+    vary : mapping
+        What does not.
+
+    Raises
+    ------
+    InputError
+        For whatever is wrong at any step, before anything is searched.
+    """
+
+    def __init__(self, asked: Asked, vary: Any) -> None:
+        self.asked = asked
+        names = asked.requirements if isinstance(asked.requirements, Mapping) else {}
+        spellings = asked.problem.model(frozenset(), asked.catalogs).declaration
+        keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
+        given = {spellings.names().get(str(w)) for w in [*names, *keys]} & set(spellings.requirements)
+        model = asked.problem.model(frozenset(n for n in given if n is not None), asked.catalogs)
+        self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
+        self.values = list(product(*(x.values for x in self.varied)))
+        self._problems: dict[Value, DesignProblem] = {}
+        self._posed_ones: dict[tuple[DesignProblem, str], DesignProblem] = {}
+        self._learned: dict[tuple[str, ...], scatter.Asked] = {}
+        self.raters: list[Rater | None] = []  # by step; None where nothing scatters
+        self.questions = self._posed()
+        self.combinations = max(q.instance.combinations for q in self.questions)  # of the largest step
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def one_best(
+        self,
+        values: Sequence[Value],
+        objective: Mapping[str, str],
+        gap: float,
+        slots: Mapping[str, list[str]],
+        pins: Mapping[str, Any],
+    ) -> Question:
+        """Return the question for the best design in one objective at some values, among some parts.
+
+        Parameters
+        ----------
+        values : list
+            One per thing varied.
+        objective : mapping
+            The objective with its sense.
+        gap : float
+        slots : mapping
+            Slot -> the designations that may fill it; others stay as they are asked.
+        pins : mapping
+            Counts and choices -> the value that they must have.
+        """
+        asked = replace(self._at(values), objectives=dict(objective), points=1, weights=None, gap=gap)
+        for slot, rows in slots.items():
+            asked = replace(asked, parts={**asked.without(asked.parts, slot), slot: rows})
+        for name, value in pins.items():
+            asked = replace(asked, fix={**asked.without(asked.fix, name), name: value})
+        question = self._pose(self._with_learned(asked))
+        # The same code as for the whole question, however few combinations are left.
+        whole = len(self) * self.combinations
+        return replace(question, alike=-(-whole // max(question.instance.combinations, 1)))
+
+    def question(self, position: int, robust: scatter.Asked) -> Question:
+        """Return the question of a step with limits posed for another block of what scatters."""
+        asked = replace(self._at(self.values[position]), robust=robust)
+        return replace(self._pose(asked), alike=len(self))
+
+    def learn(self, robust: scatter.Asked) -> None:
+        """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
+        known = self._learned.get(robust.names)
+        self._learned[robust.names] = robust if known is None else known.with_scenarios(robust.scenarios)
+
+    def stands(self, values: Sequence[Value], design: Design) -> bool:
+        """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
+        asked = self._at(values)
+        if asked.robust is None or asked.robust.mode == scatter.RATE:
+            return True
+        rater = asked.rater()
+        return rater is None or bool(rater.one(design)["holds"])
+
+    def _with_learned(self, asked: Asked) -> Asked:
+        known = None if asked.robust is None else self._learned.get(asked.robust.names)
+        if asked.robust is None or known is None:
+            return asked
+        return replace(asked, robust=asked.robust.with_scenarios(known.scenarios))
+
+    def _pose(self, asked: Asked) -> Question:
+        """Return a question; limits that are posed alike at several steps are traced once."""
+        if asked.robust is None or asked.robust.mode == scatter.RATE:
+            return asked.pose()
+        key = asked.problem, repr((asked.robust, asked.limits))
+        if key not in self._posed_ones:
+            self._posed_ones[key] = asked.posed()
+        return asked.pose(self._posed_ones[key])
+
+    def stated(self, values: Sequence[Value]) -> str:
+        """Return the values of a step for people."""
+        return ", ".join(x.stated(v) for x, v in zip(self.varied, values, strict=True))
+
+    def _at(self, values: Sequence[Value]) -> Asked:
+        asked = self.asked
+        for varied, value in zip(self.varied, values, strict=True):
+            if varied.kind == "option":
+                # One problem per word, so that each is traced once.
+                if value not in self._problems:
+                    self._problems[value] = asked.at(varied, value).problem
+                asked = replace(asked, problem=self._problems[value])
+            else:
+                asked = asked.at(varied, value)
+        return asked
+
+    def _posed(self) -> list[Question]:
+        """Return the question of every step; what is wrong with all of them is no matter of the values."""
+        questions, faults = list[Question](), dict[int, InputError]()
+        for k, values in enumerate(self.values):
+            try:
+                asked = self._at(values)
+                questions.append(replace(self._pose(asked), alike=len(self)))
+                self.raters.append(asked.rater())
+            except InputError as error:
+                faults[k] = error
+        if not faults:
+            return questions
+        first, fault = next(iter(faults.items()))
+        same = len({(e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
+        if same and len(faults) == len(self.values) > 1:
+            raise fault
+        raise InputError(f"vary, {self.stated(self.values[first])}: {fault.field}", fault.value, fault.expected)
+
+
+def steps_of(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    vary: Any,
+    catalogs: Any,
+    robust: Any = None,
+    **settings: Any,
+) -> Steps:
+    """Return the questions of a study; the arguments are those of ``synth.whatif``."""
+    problem = load(p)
+    block = None if robust is None else scatter.read_block(robust)
+    return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), robust=block, **settings), vary)
