@@ -15,6 +15,7 @@ from synth.units import format_quantity
 TRIES = 400
 ROUNDS = 4  # of exchanging one part of the nearest designs
 PARENTS = 3
+NEVER = 10.0  # more than any limit can be missed by: twice the larger side
 
 
 def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
@@ -52,20 +53,23 @@ def _least_missed(
     boxes = form.leaves(combinations)
     start = form.inside(boxes, rng.random((count, form.n)))
     points = form.solve_many(tasks, combinations, start).variables if form.n else start
-    misses = _misses(form, points, combinations)
+    misses, before = _misses(form, points, combinations), _misses(form, start, combinations)
+    # Far from everything feasible a solver may end where nothing makes sense: there the place it began at is better.
+    worse = ~(misses <= before)
+    points, misses = np.where(worse[:, None], start, points), np.where(worse, before, misses)
     return [(float(misses[k]), int(combinations[k]), points[k]) for k in np.flatnonzero(np.isfinite(misses))]
 
 
 def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
-    """Return the largest violation of each design; a guard that fails, or a limit that does not exist, counts as 10."""
+    """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
     result = form.evaluate(variables, combinations)
     rows = []
     for limit in form.model.limits:
-        missed = np.where(limit.guard | np.isnan(result.residuals[limit.name]), 10.0, result.residuals[limit.name])
+        missed = np.nan_to_num(result.residuals[limit.name], nan=NEVER) + (NEVER if limit.guard else 0.0)
         rows.append(np.where(result.holds[limit.name], 0.0, missed))
     for extra in form.instance.extra:
         missed = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
-        rows.append(np.where(np.isnan(missed), 10.0, np.maximum(missed, 0.0)))
+        rows.append(np.nan_to_num(np.maximum(missed, 0.0), nan=NEVER))
     worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
     return worst
 
@@ -98,6 +102,7 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping
 def _conflict(name: str, sense: str, value: float, bound: float, unit: str) -> dict[str, Any]:
     missed = abs(value - bound) / max(abs(bound), 1e-300)
     shown, allowed = format_quantity(value, unit, 5), format_quantity(bound, unit, 5)
+    share = format_quantity(missed, "%", 3)
     words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[sense]
     return {
         "limit": name,
@@ -105,5 +110,5 @@ def _conflict(name: str, sense: str, value: float, bound: float, unit: str) -> d
         "limit_value": bound,
         "unit": unit,
         "missed_by": missed,
-        "sentence": f"{name} is {shown} where {words} {allowed} is allowed (missed by {100 * missed:.3g} %)",
+        "sentence": f"{name} is {shown} where {words} {allowed} is allowed (missed by {share})",
     }

@@ -311,7 +311,7 @@ def explanation_text(front: ParetoFront) -> str:
         table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3), wide=0)
         for row in conflicts:
             shown = [format_quantity(row[key], row["unit"]) for key in ("value", "limit_value")]
-            table.add_row(row["limit"], *shown, f"{100 * row['missed_by']:.3g} %")
+            table.add_row(row["limit"], *shown, format_quantity(row["missed_by"], "%", 3))
         console.print(table)
     nearest = [f"{n} {value}" for n, value in (explanation.get("nearest") or {}).items()]
     nearest += [f"{slot} {designation}" for slot, designation in (explanation.get("parts") or {}).items()]

@@ -14,7 +14,7 @@ from synth.rated import COLUMNS, rating_row
 from synth.results import Design, Frame, ParetoFront
 from synth.robust import NOTHING_STANDS
 from synth.terminal import report, write_all
-from synth.units import from_si, header
+from synth.units import format_quantity, from_si, header
 from synth.vary import Value, Varied
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Step:
         if self.front.status is Status.NOT_SOLVED:
             return NOTHING_STANDS
         conflicts = (self.front.explanation or {}).get("conflicts") or []
-        missed = [f"{c['limit']} by {100 * c['missed_by']:.3g} %" for c in conflicts]
+        missed = [f"{c['limit']} by {format_quantity(c['missed_by'], '%', 3)}" for c in conflicts]
         return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
 
 

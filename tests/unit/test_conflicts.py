@@ -1,0 +1,48 @@
+"""The nearest design where nothing is feasible: nearer than any that chance finds, and one that makes sense."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import synth
+from synth.formulation import Formulation
+from synth.problem import load
+from synth.search import pose
+
+DUTY = {
+    "load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2",
+    "engagements_per_hour": "50 1/h", "jerk_limit": "18 rad/s3",
+}  # fmt: skip
+FEW: dict[str, Any] = {"fix": {"ramp_time": "2 s"}, "parts": {"friction_pair": ["graphitic_wet", "paper_wet"]}}
+
+
+def nearest(torque: str) -> tuple[dict[str, float], dict[str, Any]]:
+    """Return the limits that the nearest design misses with the share, and the whole explanation."""
+    front = synth.synthesize("multi_plate_clutch", {**DUTY, "load_torque": torque}, **FEW)
+    assert not front.designs
+    explanation = dict(front.explanation or {})
+    return {c["limit"]: c["missed_by"] for c in explanation["conflicts"]}, explanation
+
+
+@pytest.mark.parametrize("torque", ["60 kN*m", "900 kN*m"])
+def test_far_from_everything_feasible_the_nearest_design_is_still_a_clutch(torque: str) -> None:
+    missed, explanation = nearest(torque)
+    sizes = {name: float(text.split()[0]) for name, text in explanation["nearest"].items() if text.endswith("mm")}
+    assert sizes["ring_inner_diameter"] < sizes["ring_outer_diameter"]
+    # It bears a good part of the load at least: chance alone finds designs that do.
+    assert missed["torque_capacity"] < 0.9
+    assert "e+" not in explanation["message"]
+
+
+def test_no_design_that_chance_finds_is_nearer() -> None:
+    missed, _ = nearest("900 kN*m")
+    question = pose(load("multi_plate_clutch"), {**DUTY, "load_torque": "900 kN*m"}, **FEW)
+    form, rng = Formulation(question.instance, dict(question.chosen), 2), np.random.default_rng(5)
+    combinations = rng.integers(question.instance.combinations, size=200)
+    points = form.lower + rng.random((200, form.n)) * (form.upper - form.lower)
+    result = form.evaluate(points, combinations)
+    capacity, needed = (np.asarray(x, dtype=float) for x in result.limits["torque_capacity"])
+    assert missed["torque_capacity"] <= 1 - (capacity / needed).max() + 1e-9
