@@ -11,6 +11,7 @@ along the horizontal axis: ``x``, ``label``), ``marks`` (vertical lines: ``x``, 
 from __future__ import annotations
 
 import io
+import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,7 +22,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.style import context
-from matplotlib.ticker import LogFormatter, ScalarFormatter
+from matplotlib.ticker import LogFormatter, MaxNLocator, ScalarFormatter
 
 from synth.errors import InputError
 from synth.units import split_header
@@ -32,6 +33,7 @@ DASHES: tuple[Any, ...] = (
     "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
 )  # fmt: skip
 LEGEND_LETTERS = 21  # of a line beside the panels
+JOINT = re.compile(r"(?<=[0-9]) (?=[^0-9\s])")  # between a number and its unit no line is broken
 BESIDE = 0.03  # inches by which the name of a line may stand below it
 STAIRS = {None: "default", "post": "steps-post", "pre": "steps-pre"}
 MARKERS = ("o", "s", "^", "D", "x", "v", "+")
@@ -141,16 +143,22 @@ def make_figure(frame: pd.DataFrame) -> Figure:
     figure = Figure(figsize=(WIDTH, height))
     axes: list[Axes] = []
     styles: dict[str, int] = {}  # the same name, the same line in every panel
+    above: list[str] = []  # the names of the panel above
     for k, panel in enumerate(panels):
         base = height - top - sum(heights[: k + 1]) + gap
         place = (left / WIDTH, base / height, axis_width / WIDTH, (heights[k] - gap) / height)
         axis = figure.add_axes(place, sharex=axes[0] if axes else None)
         axes.append(axis)
         lines = [line for line in attrs.get("lines", ()) if int(line.get("panel", 0)) == k]
-        _draw_panel(axis, frame, x, panel, lines, styles)
+        names = _names(panel)
+        # A legend that says the same as the one above, which may be long, is left out.
+        _draw_panel(axis, frame, x, panel, lines, styles, repeated=names == above and not lines)
+        above = names
         _draw_spans(axis, spans, marks)
         if k + 1 < len(panels):
             axis.tick_params(labelbottom=False)
+    if x.endswith("[-]") and (frame[x] % 1 == 0).all():
+        axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
     if ticks:
         axes[-1].set_xticks([float(tick["x"]) for tick in ticks], labels=words, rotation=rotation)
     axes[0].set_xlim(*limits)
@@ -244,9 +252,10 @@ def _draw_panel(
     panel: Mapping[str, Any],
     lines: Sequence[Mapping[str, Any]],
     styles: dict[str, int],
+    repeated: bool,
 ) -> None:
     columns = [_column(frame, name) for name in panel["columns"]]
-    name, unit = split_header(str(panel.get("label", columns[0])))
+    name, unit = split_header(_title(panel))
     logarithmic, apart = bool(panel.get("log", False)), bool(panel.get("apart", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
     named = len(columns) > 1 or _legend(columns[0], name) != name.replace("_", " ")
@@ -260,7 +269,7 @@ def _draw_panel(
             marker=MARKERS[k % len(MARKERS)] if apart or panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
             markersize=4.5 if apart else 3.5,
-            label=textwrap.fill(_legend(column, name), LEGEND_LETTERS),
+            label=textwrap.fill(JOINT.sub("\u00a0", _legend(column, name)), LEGEND_LETTERS),
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )
     for line in lines:
@@ -275,9 +284,18 @@ def _draw_panel(
         formatter.set_powerlimits((-4, 6))
         axis.yaxis.set_major_formatter(formatter)
         axis.margins(y=0.08)
-    if named:
+    if named and not repeated:
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
     _name_lines(axis, lines, factor, len(columns) if named else 0)
+
+
+def _title(panel: Mapping[str, Any]) -> str:
+    return str(panel.get("label", panel["columns"][0]))
+
+
+def _names(panel: Mapping[str, Any]) -> list[str]:
+    """Return what the lines of a panel are called."""
+    return [_legend(column, split_header(_title(panel))[0]) for column in panel["columns"]]
 
 
 def _legend(column: str, panel: str) -> str:

@@ -289,3 +289,29 @@ def test_png_has_the_same_size_on_paper() -> None:
     assert picture.shape[1] == pytest.approx(width / 72 * 100, abs=1)
     assert picture.shape[0] == pytest.approx(height / 72 * 100, abs=1)
     assert width <= 7.2 * 72  # fits the text width of an A4 page
+
+
+def test_a_legend_that_says_the_same_stands_once_and_has_room() -> None:
+    frame = pd.DataFrame({"load [kN]": [1.0, 2.0]})
+    groups = [f"robust.friction = +-{k} % in each lining" for k in range(7)]
+    panels = []
+    for name, unit in (("mass", "kg"), ("actuation_force", "N")):
+        columns = [f"{group}: best {name} [{unit}]" for group in groups]
+        for k, column in enumerate(columns):
+            frame[column] = [k, k + 1.0]
+        panels.append({"label": f"{name} [{unit}]", "columns": columns, "points": True})
+    frame.attrs = {"title": "Many lines", "panels": panels}
+    assert_readable(frame)
+    upper, lower = make_figure(frame).axes
+    assert upper.get_legend() is not None
+    assert lower.get_legend() is None
+    # Another name, and it is told.
+    panels[1]["columns"] = panels[1]["columns"][:6]
+    assert make_figure(frame).axes[1].get_legend() is not None
+
+
+def test_whole_numbers_without_a_unit_are_counted() -> None:
+    frame = pd.DataFrame({"step [-]": np.arange(1.0, 23), "mass [kg]": np.arange(22.0)})
+    frame.attrs = {"title": "Steps"}
+    (axis,) = make_figure(frame).axes
+    assert all(float(place).is_integer() for place in axis.get_xticks())
