@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from synth.comparison import Comparison
     from synth.near import NearEquals
     from synth.price_list import Price, Prices
+    from synth.results import Design
 
 SHOWN = 10  # designs on one screen
 
@@ -94,11 +95,14 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
         families = len(set(found.families))
         console.print(f"{number} of {'1 family' if families == 1 else f'{families} families'}")
         console.print()
+        rated = ["robust"] if any(d.robust for d in found.designs) else []
+        last = 3 + len(names) + len(rated)
         table = plain_table(
-            "rank", "score", "family", *names, "note", right=(1, *range(3, 3 + len(names))), wide=3 + len(names)
+            "rank", "score", "family", *names, *rated, "note", right=(1, *range(3, 3 + len(names))), wide=last
         )
         for design, family in list(zip(found.designs, found.families, strict=True))[:count]:
             values = [format_quantity(design.values[n], design.frame.units[n], 5) for n in names]
+            values += [stands(design)] if rated else []
             table.add_row(f"#{design.rank}", f"{design.score:.4f}", family, *values, design.note)
         console.print(table)
         if count < len(found.designs):
@@ -113,12 +117,23 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
         meanings = {x.family: x.meanings[name] for x in found.outcomes if x.listed and x.meanings.get(name)}
         if len(set(meanings.values())) > 1:
             console.print(f"{name} means: " + "; ".join(f"{text} ({family})" for family, text in meanings.items()))
-    rated = [d for d in found.designs if d.robust]
-    if rated:
-        console.print(told_of(rated, rated[0].frame.restated["robust"]["samples"]))
+    told = [d for d in found.designs if d.robust]
+    if told:
+        console.print(told_of(told, told[0].frame.restated["robust"]["samples"]))
+        unrated = len(found.designs) - len(told)
+        if unrated:
+            designs = "1 design is" if unrated == 1 else f"{unrated} designs are"
+            console.print(f"{designs} not rated: in the family nothing scatters")
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
     console.print(found.sentence())
+
+
+def stands(design: Design) -> str:
+    """Tell in a word whether a design keeps its limits over the range."""
+    if not design.robust:
+        return "not rated"
+    return "yes" if design.robust["holds"] else "no"
 
 
 def comparison_explanation(found: Comparison) -> str:

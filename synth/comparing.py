@@ -234,7 +234,8 @@ class _Comparing:
             kept.append(_Kept(question))
             return kept[-1]
 
-        block, rater = scatter.read_remaining(asked["robust"]), None
+        block = scatter.read_remaining(asked["robust"]) if asked["robust"] else None
+        rater = None
         if block is None:
             front = ask(None).answer(settings["workers"], shown, limit)
         else:

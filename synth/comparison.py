@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
 from synth.files import csv_text, save_files
+from synth.loading import COMPARISON
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.units import format_quantity
@@ -98,7 +99,7 @@ class Comparison:
         found = {
             "designs.csv": csv_text(*self._table()),
             "families.csv": csv_text(*self._family_table()),
-            "comparison.json": self._json(),
+            COMPARISON: self._json(),
         }
         if any(d.robust for d in self.designs):
             found["robust.csv"] = csv_text(*limits_table(self.designs))

@@ -15,6 +15,7 @@ from synth.units import format_quantity
 TRIES = 400
 ROUNDS = 4  # of exchanging one part of the nearest designs
 PARENTS = 3
+STARTS = 16
 NEVER = 10.0  # more than any limit can be missed by: twice the larger side
 
 
@@ -46,18 +47,24 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
 def _least_missed(
     form: Formulation, combinations: np.ndarray, rng: np.random.Generator
 ) -> list[tuple[float, int, np.ndarray]]:
-    """Return how far each combination stays from feasible, where that could be found, with the design."""
-    count, goals = len(combinations), len(form.goals)
-    nothing = np.zeros((count, goals))
-    tasks = Tasks(nothing, nothing, np.full((count, goals), np.inf), form.goal_scales, elastic=1.0)
-    boxes = form.leaves(combinations)
-    start = form.inside(boxes, rng.random((count, form.n)))
-    points = form.solve_many(tasks, combinations, start).variables if form.n else start
-    misses, before = _misses(form, points, combinations), _misses(form, start, combinations)
+    """Return how far each combination stays from feasible, where that could be found, with the design.
+
+    Limits that cannot all hold have many places where none of them gives way a little without another: combinations
+    that are few are tried from several starts.
+    """
+    number = np.repeat(np.arange(len(combinations)), np.clip(TRIES // len(combinations), 1, STARTS))
+    every, goals = combinations[number], len(form.goals)
+    nothing = np.zeros((len(every), goals))
+    tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.goal_scales, elastic=1.0)
+    start = form.inside(form.leaves(every), rng.random((len(every), form.n)))
+    points = form.solve_many(tasks, every, start).variables if form.n else start
+    misses, before = _misses(form, points, every), _misses(form, start, every)
     # Far from everything feasible a solver may end where nothing makes sense: there the place it began at is better.
     worse = ~(misses <= before)
     points, misses = np.where(worse[:, None], start, points), np.where(worse, before, misses)
-    return [(float(misses[k]), int(combinations[k]), points[k]) for k in np.flatnonzero(np.isfinite(misses))]
+    order = np.lexsort((misses, number))
+    best = order[np.unique(number[order], return_index=True)[1]]  # of each combination
+    return [(float(misses[k]), int(every[k]), points[k]) for k in best if np.isfinite(misses[k])]
 
 
 def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def must_be_one_family(asked: Spec) -> None:
     """Refuse a spec of several families."""
     if asked.compares:
-        raise InputError(f"{asked.file}: family", "several", "one family (clutchsynth run compares several)")
+        raise InputError(f"{asked.file}: family", asked.shown_family, "one family (clutchsynth run compares several)")
 
 
 def must_be_a_question(asked: Spec) -> None:

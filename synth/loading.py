@@ -11,6 +11,8 @@ from synth.feasibility import Status
 from synth.front_record import FORMAT
 from synth.results import Certificate, Design, Frame, ParetoFront, PartRow
 
+COMPARISON = "comparison.json"
+
 
 def load_front(folder: str | Path) -> ParetoFront:
     """Rebuild a front from the files that ``save`` wrote.
@@ -26,6 +28,9 @@ def load_front(folder: str | Path) -> ParetoFront:
         When there is no front, or it is of another format.
     """
     path = Path(folder)
+    if (path / COMPARISON).is_file():
+        one = next((x.parent.name for x in sorted(path.glob("*/front.json"))), "FAMILY")
+        raise InputError("front", str(path), f"the folder of one family of this comparison, for example {path / one}")
     path = path / "front.json" if path.is_dir() else path
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

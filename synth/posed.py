@@ -22,7 +22,7 @@ from synth.declaration import Choice, Declaration, Limit, Part
 from synth.description import declared_ranges
 from synth.instance import SIGNS, Instance
 from synth.problem import DesignProblem
-from synth.scatter import LEAST, MOST, RATE, SLIDING, Asked, Member, Scattered, read_block, scattered
+from synth.scatter import LEAST, MOST, RATE, SLIDING, Asked, Member, Scattered, read_remaining, scattered
 from synth.structure import Shape, classify
 from synth.units import format_quantity
 
@@ -50,8 +50,8 @@ def posed(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None)
     """
     if robust is None:
         return problem
-    asked = read_block(robust)
-    return problem if asked.mode == RATE else RobustProblem(nominal(problem), asked, limits or {})
+    asked = read_remaining(robust)
+    return problem if asked is None or asked.mode == RATE else RobustProblem(nominal(problem), asked, limits or {})
 
 
 def nominal(problem: DesignProblem) -> DesignProblem:

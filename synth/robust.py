@@ -22,7 +22,7 @@ from synth.problem import load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, design_columns, design_row
-from synth.scatter import LIMITS, Asked, read_block
+from synth.scatter import LIMITS, Asked, check_rows, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -219,6 +219,7 @@ def robust_front(
 
     def ask(asked: Asked, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
         question = pose(asked)
+        check_rows(rater.things, question.instance.selection.slots)
         if front is None:
             left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
             front = question.answer(workers, progress, left, known)

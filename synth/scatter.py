@@ -9,16 +9,19 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth.declaration import Declaration
 from synth.errors import InputError
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
+
+if TYPE_CHECKING:
+    from synth.instance import SlotRows
 
 LIMITS, RATE = "limits", "rate"
 NONE = "none"  # in place of a range: does not scatter here
@@ -203,19 +206,33 @@ def read_block(robust: Any, where: str = "robust") -> Asked:
     )  # fmt: skip
 
 
-def read_remaining(robust: Mapping[str, Any]) -> Asked | None:
-    """Read a block without what has "none" for a range; None where nothing is left that scatters.
+def read_remaining(robust: Any, where: str = "robust") -> Asked | None:
+    """Read a block without what has "none" for a range; None where nothing is left then that scatters.
 
     Raises
     ------
     InputError
         When something is not understood.
     """
-    block = {key: value for key, value in robust.items() if value != NONE}
+    if isinstance(robust, Asked) or not isinstance(robust, Mapping):
+        return read_block(robust, where)
+    block = _scattering(robust)
     if isinstance(block.get("tolerance"), Mapping):
-        block["tolerance"] = {key: value for key, value in block["tolerance"].items() if value != NONE}
-    nothing = not block.get("tolerance") and set(block) <= set(KEYS[2:])
-    return None if nothing else read_block(block)
+        block["tolerance"] = _scattering(block["tolerance"])
+    left = {**block.get("tolerance", {}), **{k: v for k, v in block.items() if k not in KEYS[2:]}}
+    return None if block != robust and not left else read_block(block, where)
+
+
+def _scattering(ranges: Mapping[str, Any]) -> dict[str, Any]:
+    return {k: v for k, v in ranges.items() if not (isinstance(v, str) and _words(v) == NONE)}
+
+
+def name_in_block(key: str, names: Mapping[str, str]) -> str:
+    """Return what a key of a block means, by its public name; ``names`` has those of a problem by all spellings."""
+    if key in KEYS:
+        return key
+    slot, dot, column = key.partition(".")
+    return f"{names.get(slot, slot)}.{column}" if dot else names.get(key, key)
 
 
 def _whole(value: Any, field: str, expected: str) -> int:
@@ -305,6 +322,9 @@ class _Reader:
             field = f"{self.where}: friction"
             words = f"'{CATALOGUE}' or "
             span = Range("columns") if _words(text) == CATALOGUE else self._range(text, "-", field, words)
+            largest = float(np.nanmax(self.d.catalogs.table(part.table).number(SLIDING)))
+            if (span.kind == "ends" and span.low <= 0) or (span.kind == "offset" and span.high >= largest):
+                raise InputError(field, text, f"{words}a range above zero, for example '+-10 %' or '0.08 .. 0.12'")
             moving = [SLIDING, *(c for c in part.columns if c.startswith("mu_") and c in part.known and c != SLIDING)]
             members = tuple(Member("part", part.slot, c) for c in moving)
             name = "friction" if len(slots) == 1 else f"friction of {part.slot}"
@@ -400,13 +420,39 @@ def _difference(unit: str) -> str:
 def _ends(text: str, unit: str, field: str, words: str = "") -> tuple[float, float]:
     """Return two values with one sign between them; a unit of the last counts for both."""
     first, sign, last = text.partition("..") if ".." in text else text.partition(":")
-    if not sign or not first.strip() or not last.strip():
+    if not sign or ":" in last or (".." in text and ":" in text) or not first.strip() or not last.strip():
         raise InputError(field, text, f"{words}a range, for example {EXAMPLE}")
     if NUMBER.match(first):
         own = re.sub(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", "", last)
         first = f"{first.strip()} {own.strip()}".strip()
     low, high = (parse_quantity(x.strip(), unit, field) for x in (first, last))
     return low, high
+
+
+def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str = "robust") -> None:
+    """Refuse a range of a column that holds the nominal value of none of the rows offered.
+
+    Parameters
+    ----------
+    found : list of Scattered
+    slots : iterable of SlotRows
+        What may fill the slots.
+
+    Raises
+    ------
+    InputError
+        When there is such a range.
+    """
+    rows = {s.slot: s for s in slots}
+    for x in found:
+        first = x.members[0]
+        if first.kind != "part" or x.range.kind != "ends" or first.name not in rows:
+            continue
+        nominal = rows[first.name].columns[first.column]
+        if not np.any((nominal >= x.range.low) & (nominal <= x.range.high)):
+            low, high = (format_quantity(float(f(nominal)), x.unit) for f in (np.nanmin, np.nanmax))
+            held = low if low == high else f"one from {low} to {high}"
+            raise InputError(f"{where}: {x.name}", x.text, f"a range that holds the nominal {first.column}, {held}")
 
 
 def check_values(

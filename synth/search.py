@@ -31,7 +31,7 @@ from synth.rating import Rater
 from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
-from synth.scatter import read_block
+from synth.scatter import read_remaining
 from synth.seeker import SCARCE, Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
@@ -127,9 +127,10 @@ def synthesize(
     def asked(problem: Any) -> Question:
         return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
 
-    if robust is None:
+    block = None if robust is None else read_remaining(robust)
+    if block is None:
         return asked(p).answer(workers, progress, time_limit)
-    problem, block = load(p), read_block(robust)
+    problem = load(p)
     catalogs = catalogs_for(problem, catalogs)
     rater = Rater(problem, requirements, catalogs, limits, block)
     return robust_front(lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, time_limit)

@@ -94,6 +94,7 @@ def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
     found = [_applicant(entry, sheet, catalogs) for entry in entries]
     _tell_apart(found)
     _check_names(found, sheet)
+    _check_own(found, sheet)
     _check_tables(found, catalogs)
     for one in found:
         one.misfits += _misfits(one, sheet)
@@ -159,6 +160,22 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
                     "stated under that family"
                 )
             raise InputError(key, name, expected)
+
+
+def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
+    """Refuse names under a family that mean nothing to it, and blocks of what scatters that mean nothing to any."""
+    for one in found:
+        names = one.declaration.names()
+        spelled = {word for word, name in names.items() if name in one.declaration.requirements}
+        for key in ("requirements", "limits", "fix", "parts", "robust"):
+            known = {*(spelled if key in ("requirements", "robust") else ()), *_known(one, key)}
+            for word in one.own[key]:
+                if word not in known and names.get(word) not in known and not (key == "robust" and "." in word):
+                    close = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
+                    hint = f" (did you mean {' or '.join(close)}?)" if close else ""
+                    raise InputError(f"family {one.label}: {key}", word, f"a name that {one.label} knows{hint}")
+        if one.own["robust"]:
+            scatter.read_remaining(one.asked(sheet)["robust"], f"family {one.label}: robust")
 
 
 def _known(one: Applicant, key: str) -> Iterable[str]:

@@ -53,6 +53,12 @@ class Spec:
         """Tell whether several families are asked."""
         return not isinstance(self.family, str) or self.family == "any"
 
+    @property
+    def shown_family(self) -> str:
+        """Return the family or the families in words."""
+        entries = [self.family] if isinstance(self.family, str) else self.family
+        return ", ".join(str(x["family"]) if isinstance(x, Mapping) else str(x) for x in entries)
+
     def merged(self, **flags: Any) -> Spec:
         """Return the spec with some of its keys replaced; flags that are None change nothing.
 

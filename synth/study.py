@@ -24,6 +24,7 @@ BINDING = 0.999  # a limit used more than this binds
 MOST_LINES = 7  # a drawing with more is not read
 MOST_LABELS = 8
 MOST_TICKS = 20
+MOST_MISSED = 2  # limits that a line has room for
 NO_DESIGN = "no design"
 
 
@@ -51,9 +52,22 @@ class Step:
             return ""
         if self.front.status is Status.NOT_SOLVED:
             return NOTHING_STANDS
-        conflicts = (self.front.explanation or {}).get("conflicts") or []
-        missed = [f"{c['limit']} by {format_quantity(c['missed_by'], '%', 3)}" for c in conflicts]
+        missed = [_missed(c) for c in self._conflicts()]
         return f"the nearest design misses {', '.join(missed)}" if missed else "no design keeps all limits"
+
+    @property
+    def brief_reason(self) -> str:
+        """Return the reason with the limits alone that are missed by most."""
+        conflicts = sorted(self._conflicts(), key=lambda c: -c["missed_by"])
+        more = len(conflicts) - MOST_MISSED
+        if more <= 0:
+            return self.reason
+        missed = ", ".join(_missed(c) for c in conflicts[:MOST_MISSED])
+        return f"the nearest design misses {missed} and {more} more"
+
+    def _conflicts(self) -> Sequence[Mapping[str, Any]]:
+        solved = self.front is not None and self.front.status is not Status.NOT_SOLVED
+        return (self.front.explanation or {}).get("conflicts") or [] if self.front is not None and solved else []
 
 
 @dataclass(frozen=True)
@@ -259,10 +273,10 @@ class Study:
         varied = self.varied[k]
         numeric = self.along is not None
         ticks = [] if numeric else [{"x": n, "label": varied.shown(v)} for n, v in enumerate(varied.values, start=1)]
-        ticks = ticks if len(ticks) <= MOST_TICKS else []
-        called = varied.label if numeric or ticks else "step"
-        x = self._headers()[k] if numeric else header(called, "-")
-        groups = [()] if len(self.varied) == 1 else list(dict.fromkeys(_without(s.values, k) for s in self.steps))
+        x = self._headers()[k] if numeric else header(varied.label, "-")
+        single = len(self.varied) == 1
+        groups = list(dict.fromkeys(_without(s.values, k) for s in self._with_designs())) or [()]
+        drawn = _spread(groups, MOST_LINES)
         # Words stand in the order in which they were given.
         places_of = {v: float(v) if isinstance(v, float) else n for n, v in enumerate(varied.values, start=1)}
         along = [float(places_of[s.values[k]]) for s in self.steps]
@@ -271,15 +285,11 @@ class Study:
         panels: list[dict[str, Any]] = []
         for name, unit in self.objectives().items():
             columns = []
-            for group in _spread(groups, MOST_LINES):
-                at = {
-                    place: s
-                    for place, s in zip(along, self.steps, strict=True)
-                    if len(self.varied) == 1 or _without(s.values, k) == group
-                }
-                lines = _lines(len(groups) == 1, [at.get(p) for p in places], name)
+            for group in drawn:
+                at = {place: s for place, s in zip(along, self.steps, strict=True) if _without(s.values, k) == group}
+                lines = _lines(single, [at.get(p) for p in places], name)
                 for label, values in lines.items():
-                    words = "" if len(groups) == 1 else f"{self._words(k, group)}: "
+                    words = "" if single else f"{self._words(k, group)}: "
                     column = header(f"{words}{label} {name}", unit)
                     data[column] = [_in_unit(v, unit) for v in values]
                     columns.append(column)
@@ -289,13 +299,13 @@ class Study:
         if len(marks) <= MOST_LABELS:
             marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
         spans = self._without_design(along)
-        legend = ["vertical lines: break points"] if marks else []
+        legend = _left_out(len(drawn), len(groups), "lines") + (["vertical lines: break points"] if marks else [])
         legend += [f"grey: {NO_DESIGN}"] if spans else []
         frame.attrs.update(
-            title=f"{self._title()} over {called.replace('_', ' ')}",
+            title=f"{self._title()} over {varied.label.replace('_', ' ')}",
             x=x,
             panels=panels,
-            ticks=ticks,
+            ticks=_spread(ticks, MOST_TICKS),
             marks=marks,
             spans=spans,
             source=self._footer(*legend),
@@ -327,7 +337,7 @@ class Study:
         import pandas as pd
 
         objectives = list(self.objectives().items())
-        steps = [s for s in self.steps if s.front is not None and len(s.front.designs) > 1]
+        steps = [s for s in self._with_designs() if s.front is not None and len(s.front.designs) > 1]
         if len(objectives) < 2 or not steps:
             return None
         (first, unit), (second, other) = objectives[:2]
@@ -359,9 +369,12 @@ class Study:
             title=f"{self._title()}: the front for {names}",
             x=x,
             panels=[panel],
-            source=self._footer("lines: what the designs reach at least"),
+            source=self._footer(*_left_out(len(shown), len(steps), "fronts"), "lines: what the designs reach at least"),
         )
         return frame
+
+    def _with_designs(self) -> list[Step]:
+        return [s for s in self.steps if s.front is not None and s.front.designs]
 
     def _words(self, k: int, group: Sequence[Value]) -> str:
         others = [x for j, x in enumerate(self.varied) if j != k]
@@ -398,6 +411,10 @@ class Study:
             if name not in files:
                 (target / name).unlink(missing_ok=True)
         return target
+
+
+def _missed(conflict: Mapping[str, Any]) -> str:
+    return f"{conflict['limit']} by {format_quantity(conflict['missed_by'], '%', 3)}"
 
 
 def binding(design: Design) -> list[str]:
@@ -467,6 +484,11 @@ def _union(groups: Iterable[Iterable[str]]) -> list[str]:
 
 def _of_kind(frame: Frame, kind: str) -> list[str]:
     return [n for n, k in frame.kinds.items() if k == kind]
+
+
+def _left_out(drawn: int, count: int, what: str) -> list[str]:
+    """Return what a footer says where not all is drawn."""
+    return [f"{drawn} of {count} {what} drawn"] if drawn < count else []
 
 
 def _without(values: Sequence[Value], k: int) -> tuple[Value, ...]:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from synth.console import plain_table
 from synth.robust import taken_off, told_of
+from synth.robust_console import percent
+from synth.scatter import RATE
 from synth.study import Break, Composition, Step, best_design
 from synth.units import format_quantity
 
@@ -29,11 +31,13 @@ def print_study(study: Study, console: Console) -> None:
             console.print(f"{x.label}: {x.remark}")
     console.print()
     names = list(study.objectives())
-    heads = [*(x.label for x in study.varied), "designs", *(f"best {n}" for n in names), "of the leading design"]
+    rates = any(f.settings.get("robust", {}).get("mode") == RATE for f in study.fronts)
+    heads = [*(x.label for x in study.varied), "designs", *(f"best {n}" for n in names)]
+    heads += [*(["yield"] if rates else []), "of the leading design"]
     last = len(heads) - 1
     table = plain_table(*heads, right=range(len(study.varied), last), wide=last)
     for step in study.steps[:MOST_ROWS]:
-        table.add_row(*_row(study, step, names))
+        table.add_row(*_row(study, step, names, rates))
     console.print(table)
     if len(study.steps) > MOST_ROWS:
         console.print(f"{len(study.steps) - MOST_ROWS} more in whatif.csv")
@@ -48,16 +52,18 @@ def print_study(study: Study, console: Console) -> None:
     console.print(_proven(study))
 
 
-def _row(study: Study, step: Step, names: list[str]) -> list[str]:
+def _row(study: Study, step: Step, names: list[str], rates: bool) -> list[str]:
     cells = [x.shown(v) for x, v in zip(study.varied, step.values, strict=True)]
     if step.front is None or not step.front.designs:
-        return [*cells, "0", *("" for _ in names), step.reason]
+        return [*cells, "0", *("" for _ in names), *([""] if rates else []), step.brief_reason]
     frame, leader = step.front.frame, step.front.designs[0]
     best = [(n, best_design(step.front, n)) for n in names]
     cells.append(str(len(step.front.designs)))
     cells += [
         "" if d is None or n not in frame.units else format_quantity(d.values[n], frame.units[n], 5) for n, d in best
     ]
+    if rates:
+        cells.append(percent(leader.robust["yield"]) if leader.robust else "")
     made = Composition.of(leader, names[0])
     words = [*made.parts.values(), *(f"{n} {v:g}" for n, v in made.counts.items()), *made.choices.values()]
     return [*cells, ", ".join(words)]

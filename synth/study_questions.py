@@ -90,15 +90,20 @@ class Asked:
 
     def _scattering(self, name: str, text: str) -> scatter.Asked | None:
         """Return what scatters, with one thing over another range or, for "none", without it."""
-        block = {} if self.robust is None else self.without(self.robust.block(), name)
+        names = self._names()
+
+        def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
+            return {key: value for key, value in ranges.items() if scatter.name_in_block(key, names) != name}
+
+        block = {} if self.robust is None else others(self.robust.block())
         if "tolerance" in block:
-            block["tolerance"] = self.without(block["tolerance"], name)
+            block["tolerance"] = others(block["tolerance"])
         return scatter.read_remaining({**block, name: text})
 
     def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
         """Return what is given by name or symbol, without one name."""
         spellings = self._names()
-        return {word: value for word, value in (given or {}).items() if spellings.get(str(word), word) != name}
+        return {word: value for word, value in (given or {}).items() if spellings.get(str(word)) != name}
 
     def _names(self) -> dict[str, str]:
         return self.problem.model(frozenset(), self.catalogs).declaration.names()
@@ -239,8 +244,11 @@ class Steps:
         for k, values in enumerate(self.values):
             try:
                 asked = self._at(values)
-                questions.append(replace(self._pose(asked), alike=len(self)))
-                self.raters.append(asked.rater())
+                rater, question = asked.rater(), self._pose(asked)
+                if rater is not None:
+                    scatter.check_rows(rater.things, question.instance.selection.slots)
+                questions.append(replace(question, alike=len(self)))
+                self.raters.append(rater)
             except InputError as error:
                 faults[k] = error
         if not faults:
@@ -262,5 +270,5 @@ def steps_of(
 ) -> Steps:
     """Return the questions of a study; the arguments are those of ``synth.whatif``."""
     problem = load(p)
-    block = None if robust is None else scatter.read_block(robust)
+    block = None if robust is None else scatter.read_remaining(robust)
     return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), robust=block, **settings), vary)

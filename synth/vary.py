@@ -126,6 +126,8 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
             "a requirement, a limit such as 'mass <=', weights.NAME, parts.SLOT, options.NAME or robust.NAME",
         )
     place, word, sign = match.group(1), match.group(2), match.group(3) or ""
+    if place is None and f"{word}." in PLACES.values():
+        raise InputError("vary", key, f"{word}.NAME")
     if place is not None and sign:
         raise InputError("vary", key, f"{place}.{word} without {sign}")
     d = model.declaration
@@ -146,7 +148,7 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
     if place == "robust":
         if word in scatter.KEYS[2:]:
             raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
-        return Varied("scatter", d.names().get(word, word), "", "", _ranges(key, values))
+        return Varied("scatter", scatter.name_in_block(word, d.names()), "", "", _ranges(key, values))
     if sign:
         name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity")
         unit = model.units[name]
@@ -287,20 +289,38 @@ def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
 
 
 def _ranges(key: str, values: Any) -> tuple[Value, ...]:
-    """Return ranges as a ``robust`` block takes them, or "none"; ``+-5:20:5 %`` stands for four of them."""
-    found = list[str]()
-    for word in _words(key, values, several=False):
-        around = scatter.AROUND.match(str(word))
-        pieces = around.group(1).split(":") if around else []
-        if len(pieces) != 3:
-            found.append(str(word))
-            continue
-        matches = [NUMBER.match(x) for x in pieces]
-        units = {m.group(2) for m in matches if m is not None} - {""}
-        if None in matches or len(units) != 1:
-            raise InputError(f"vary {key}", word, "three numbers with one unit, as in '+-5:20:5 %' (from, to, step)")
-        steps = _steps(f"vary {key}", str(word), [float(m.group(1)) for m in matches if m is not None])
-        found += [f"+-{_written(x, *units)}" for x in steps]
+    """Return ranges as a ``robust`` block takes them, or "none"; ``+-5:20:5 %`` stands for four of them.
+
+    As of numbers, a unit counts for those before it that have none.
+    """
+    field, found, unit = f"vary {key}", list[str](), ""
+    entries = values.split(",") if isinstance(values, str) else values
+    if not isinstance(entries, (list, tuple)) or not all(isinstance(x, str) and x.strip() for x in entries):
+        raise InputError(field, values, "ranges as text, such as '+-10 %' or '60 .. 80 N*m', or 'none'")
+    for entry in reversed(entries):
+        more, unit = _one_range(field, entry.strip(), unit)
+        found[:0] = more
+    if not found:
+        raise InputError(field, values, "at least one range, or 'none'")
     if len(set(found)) < len(found):
-        raise InputError(f"vary {key}", values, "each value once")
+        raise InputError(field, values, "each value once")
     return tuple(found)
+
+
+def _one_range(field: str, text: str, unit: str) -> tuple[list[str], str]:
+    """Return the ranges that one entry stands for, and their unit; ``unit`` is that of the entry behind it."""
+    around = scatter.AROUND.match(text)
+    if around is None:
+        end = re.split(r"\.\.|:", text)[-1]
+        match = NUMBER.match(end)
+        if match is None or end == text:
+            return [text], unit
+        own = match.group(2)
+        return [text if own or not unit else f"{text} {unit}"], own or unit
+    matches = [NUMBER.match(x) for x in around.group(1).split(":")]
+    units = {m.group(2) for m in matches if m is not None} - {""}
+    if None in matches or len(matches) not in (1, 3) or len(units) > 1:
+        raise InputError(field, text, "a range such as '+-10 %', or from, to and step with one unit: '+-5:20:5 %'")
+    own, numbers = (units or {unit}).pop(), [float(m.group(1)) for m in matches if m is not None]
+    numbers = _steps(field, text, numbers) if len(numbers) == 3 else numbers
+    return [f"+-{_written(x, own or '-')}" for x in numbers], own

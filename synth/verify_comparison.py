@@ -16,17 +16,16 @@ import numpy as np
 import yaml
 
 from synth.errors import InputError
-from synth.loading import load_front
+from synth.loading import COMPARISON, load_front
 from synth.results import ParetoFront
 from synth.verify import UNREADABLE, Verification, checked
 
-FILE = "comparison.json"
 SAME = 1e-9
 
 
 def is_comparison(folder: str | Path) -> bool:
     """Tell whether a folder holds a comparison of families."""
-    return (Path(folder) / FILE).is_file()
+    return (Path(folder) / COMPARISON).is_file()
 
 
 def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verification:
@@ -51,7 +50,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
     started = time.monotonic()
     path = Path(folder)
     try:
-        content = json.loads((path / FILE).read_text(encoding="utf-8"))
+        content = json.loads((path / COMPARISON).read_text(encoding="utf-8"))
         families = {x["family"]: x["folder"] for x in content["families"] if x["folder"] is not None}
         listed, certificate = content["designs"], content["certificate"]
         kind, gap = str(certificate["kind"]), certificate["gap"]

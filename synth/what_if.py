@@ -139,6 +139,7 @@ class _Run:
                 self.answered.append(self._answer(position))
             if breaks:
                 self._find_breaks(found)
+            self.store.forget_beyond(len(self.steps))
         except Stopped as stop:
             stopped = stop.reason
         except KeyboardInterrupt:
@@ -364,11 +365,24 @@ class _Store:
         if self.folder is not None:
             self._enter(key, {"fingerprint": fingerprint, "value": value})
 
+    def forget_beyond(self, count: int) -> None:
+        """Remove the steps that a longer study has left behind."""
+        longer = [key for key in self.record if key.startswith("step ") and int(key[5:]) > count]
+        if self.folder is None or not longer:
+            return
+        files = [str(self.record.pop(key).get("file")) for key in longer]
+        self._write_record(self.folder)
+        for name in files:
+            (self.folder / name).unlink(missing_ok=True)
+
     def _enter(self, key: str, entry: dict[str, Any]) -> None:
         assert self.folder is not None
         self.record[key] = entry
+        self._write_record(self.folder)
+
+    def _write_record(self, folder: Path) -> None:
         text = json.dumps({"format": FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
-        self._write(self.folder / RECORD, text)
+        self._write(folder / RECORD, text)
 
     @staticmethod
     def _write(path: Path, text: str) -> None:

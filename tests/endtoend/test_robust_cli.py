@@ -144,7 +144,6 @@ def test_a_folder_that_is_used_again_keeps_nothing_of_the_range(saved: Path, rob
         ("samples: 256", "samples: 250", ["samples", "power of 2"]),
         ("samples: 256", "mode: best", ["mode", "limits"]),
         ("robust: {", "robust: [", ["robust.yaml"]),
-        ("family: multi_plate_clutch", "family: [multi_plate_clutch, disc_clutch]", ["robust", "one family"]),
     ],
 )
 def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new: str, words: list[str]) -> None:

@@ -37,6 +37,22 @@ def test_far_from_everything_feasible_the_nearest_design_is_still_a_clutch(torqu
     assert "e+" not in explanation["message"]
 
 
+def test_a_combination_alone_is_tried_from_several_starts() -> None:
+    # 0.02 per cent more time to slip would do: one start ends at plates without any width.
+    spec = {
+        "load_torque": "88.053 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.7 kg*m2", "safety_factor": 2,
+        "engagements_per_hour": "20 1/h", "startup_torque": "120 N*m",
+    }  # fmt: skip
+    robust = {"friction": "catalogue range", "load_torque": "+-5 %", "ambient_temperature": "0 .. 60 degC"}
+    front = synth.synthesize(
+        "disc_clutch", spec, fix={"discs": 1}, parts={"friction_pair": ["moulded_dry"]}, robust=robust
+    )
+    assert not front.designs
+    conflicts = (front.explanation or {})["conflicts"]
+    assert [c["limit"] for c in conflicts] == ["slip_time (load_torque high)"]
+    assert conflicts[0]["missed_by"] == pytest.approx(2e-4, rel=0.1)
+
+
 def test_no_design_that_chance_finds_is_nearer() -> None:
     missed, _ = nearest("900 kN*m")
     question = pose(load("multi_plate_clutch"), {**DUTY, "load_torque": "900 kN*m"}, **FEW)

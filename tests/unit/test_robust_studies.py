@@ -200,6 +200,55 @@ def test_what_scatters_takes_the_place_of_what_was_said() -> None:
     assert [r is None for r in steps({"robust.friction": "none, +-5 %"}).raters] == [True, False]
 
 
+def test_a_unit_counts_for_the_ranges_before_it() -> None:
+    def values(key: str, given: Any) -> list[Any]:
+        return [v for (v,) in steps({key: given}).values]
+
+    assert values("robust.torque", "+-5, +-10 %") == ["+-5 %", "+-10 %"]
+    assert values("robust.torque", "+-5, +-10 N*m, none, +-20 %") == ["+-5 N*m", "+-10 N*m", "none", "+-20 %"]
+    assert values("robust.torque", "90 .. 110, 80 .. 120 N*m") == ["90 .. 110 N*m", "80 .. 120 N*m"]
+    assert values("robust.torque", ["+- 5 %", "± 10.0%"]) == ["+-5 %", "+-10 %"]
+    assert values("robust.friction", "+-0.05, +-0.1") == ["+-0.05", "+-0.1"]
+    assert values("robust.friction", "+-0.05:0.15:0.05, Catalogue Range") == [
+        "+-0.05", "+-0.1", "+-0.15", "Catalogue Range",
+    ]  # fmt: skip
+
+
+def test_wear_is_varied_by_its_own_name() -> None:
+    found = steps({"robust.wear": "none, new and worn"}, {"wear": "0 .. 1 mm", "torque": "+-5 %"})
+    assert found.varied[0].label == "robust.wear"
+    scattering = [{x.name: x.text for x in r.things} for r in found.raters if r is not None]
+    assert scattering == [{"torque": "+-5 %"}, {"torque": "+-5 %", "wear": "new and worn"}]
+
+
+def test_none_is_no_scatter_wherever_a_block_stands() -> None:
+    plain = synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=3)
+    none = synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=3, robust={"friction": "None"})
+    assert [d.values for d in none.designs] == [d.values for d in plain.designs]
+    assert not any(d.robust for d in none.designs)
+    some = {"friction": "none", "tolerance": {"radius": "none"}, "torque": "+-5 %"}
+    (design, *_) = synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=3, robust=some).designs
+    assert list(design.robust["units"]) == ["torque"]
+
+
+def test_ranges_that_no_row_offered_fits_are_refused() -> None:
+    def asked(**more: Any) -> ParetoFront:
+        return synth.synthesize(PROBLEM, DUTY, catalogs=CATALOGS, points=1, robust={"friction": "0.25 .. 0.35"}, **more)
+
+    assert asked().designs
+    with pytest.raises(synth.InputError, match=r"holds the nominal mu_dynamic, 0\.4"):
+        asked(parts={"pair": ["soft"]})
+
+
+def test_what_a_longer_study_has_left_behind_is_removed(tmp_path: Path) -> None:
+    study({"torque": "90, 100, 110 N*m"}, None, folder=tmp_path)
+    again = study({"torque": "90, 100 N*m"}, None, folder=tmp_path)
+    assert len(again.steps) == 2
+    assert sorted(p.name for p in (tmp_path / "steps").iterdir()) == ["step_0001.json", "step_0002.json"]
+    assert "step 3" not in (tmp_path / "study.json").read_text()
+    assert study({"torque": "90, 100 N*m"}, None, folder=tmp_path).statistics["kept"] == 2
+
+
 def test_limits_posed_alike_are_traced_once() -> None:
     found = steps({"torque": "90:110:5 N*m", "robust.friction": "+-5 %, +-10 %"})
     assert len({id(q.instance.model) for q in found.questions}) == 2
@@ -212,8 +261,20 @@ def test_limits_posed_alike_are_traced_once() -> None:
         ({"robust.friction": "+-200 %, +-5 %"}, None, ["vary, robust.friction = +-200 %"]),
         ({"robust.mode": "rate"}, RANGES, ["robust.mode", "what scatters"]),
         ({"robust.tolerance": "+-1 mm"}, RANGES, ["robust.tolerance", "what scatters"]),
-        ({"robust.friction": "+-5:x:5 %"}, None, ["robust.friction", "three numbers"]),
+        ({"robust.friction": "+-5:x:5 %"}, None, ["robust.friction", "from, to and step"]),
         ({"robust.friction": "+-5 %:10:5 mm"}, None, ["robust.friction", "one unit"]),
+        ({"robust.friction": "+-5:20 %"}, None, ["robust.friction", "+-5:20 %", "from, to and step"]),
+        ({"robust.friction": "+-10 %, +-10.0 %"}, None, ["each value once"]),
+        ({"robust.friction": "5:20:5 %"}, None, ["got '5:20:5 %'"]),
+        ({"robust.friction": "0.2 .. 0.4:0.5:0.05"}, None, ["got '0.2 .. 0.4:0.5:0.05'"]),
+        ({"robust.friction": ("+-5 %", "+-15 %", 3)}, None, ["ranges as text", "'none'"]),
+        ({"robust.friction": [None, "+-5 %"]}, None, ["ranges as text", "'none'"]),
+        ({"robust.friction": []}, None, ["at least one range"]),
+        ({"robust.friction": "+-5"}, None, ["robust: friction", "above zero"]),
+        ({"robust.friction": "-0.2 .. 0.4"}, None, ["robust: friction", "above zero"]),
+        ({"robust.friction": "0.5 .. 0.6"}, None, ["holds the nominal mu_dynamic, one from 0.3 to 0.4"]),
+        ({"robust.pair.pressure_allow": "2 .. 3 N/mm2"}, None, ["holds the nominal pressure_allow"]),
+        ({"robust": "none, +-5 %"}, None, ["robust.NAME"]),
         ({"robust.friction": "+-5:10:-5 %"}, None, ["a step that leads"]),
         ({"robust.friction": "+-5:10:5 %, +-10 %"}, None, ["each value once"]),
         ({"robust.friction <=": "+-5 %"}, None, ["without <="]),
