@@ -299,7 +299,8 @@ class Study:
         if len(marks) <= MOST_LABELS:
             marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
         spans = self._without_design(along)
-        legend = _left_out(len(drawn), len(groups), "lines") + (["vertical lines: break points"] if marks else [])
+        legend = _left_out(len(drawn), len(groups), "lines") + self._nowhere(k, groups)
+        legend += ["vertical lines: break points"] if marks else []
         legend += [f"grey: {NO_DESIGN}"] if spans else []
         frame.attrs.update(
             title=f"{self._title()} over {varied.label.replace('_', ' ')}",
@@ -372,6 +373,15 @@ class Study:
             source=self._footer(*_left_out(len(shown), len(steps), "fronts"), "lines: what the designs reach at least"),
         )
         return frame
+
+    def _nowhere(self, k: int, groups: Sequence[tuple[Value, ...]]) -> list[str]:
+        """Return what a footer says of values beside those along the axis that have no design anywhere."""
+        empty = [g for g in dict.fromkeys(_without(s.values, k) for s in self.steps) if g not in groups]
+        if not empty or len(self.varied) == 1:
+            return []
+        shown = "; ".join(self._words(k, g) for g in empty[:MOST_MISSED])
+        more = f" and {len(empty) - MOST_MISSED} more" if len(empty) > MOST_MISSED else ""
+        return [f"{NO_DESIGN}: {shown}{more}"]
 
     def _with_designs(self) -> list[Step]:
         return [s for s in self.steps if s.front is not None and s.front.designs]

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 40
 MOST_BREAKS = 20
+MOST_REASONS, MOST_PLACES = 8, 4
 
 
 def print_study(study: Study, console: Console) -> None:
@@ -42,6 +43,7 @@ def print_study(study: Study, console: Console) -> None:
     if len(study.steps) > MOST_ROWS:
         console.print(f"{len(study.steps) - MOST_ROWS} more in whatif.csv")
     console.print()
+    _print_reasons(study, console)
     if study.breaks:
         _print_breaks(study, console)
     if study.interrupted:
@@ -55,7 +57,13 @@ def print_study(study: Study, console: Console) -> None:
 def _row(study: Study, step: Step, names: list[str], rates: bool) -> list[str]:
     cells = [x.shown(v) for x, v in zip(study.varied, step.values, strict=True)]
     if step.front is None or not step.front.designs:
-        return [*cells, "0", *("" for _ in names), *([""] if rates else []), step.brief_reason]
+        return [
+            *cells,
+            "0",
+            *("" for _ in names),
+            *([""] if rates else []),
+            "not reached" if step.front is None else "-",
+        ]
     frame, leader = step.front.frame, step.front.designs[0]
     best = [(n, best_design(step.front, n)) for n in names]
     cells.append(str(len(step.front.designs)))
@@ -67,6 +75,22 @@ def _row(study: Study, step: Step, names: list[str], rates: bool) -> list[str]:
     made = Composition.of(leader, names[0])
     words = [*made.parts.values(), *(f"{n} {v:g}" for n, v in made.counts.items()), *made.choices.values()]
     return [*cells, ", ".join(words)]
+
+
+def _print_reasons(study: Study, console: Console) -> None:
+    """Print why steps have no design, those with the same reason together."""
+    reasons: dict[str, list[Step]] = {}
+    for step in study.steps:
+        if step.front is not None and not step.front.designs:
+            reasons.setdefault(step.brief_reason, []).append(step)
+    for reason, steps in list(reasons.items())[:MOST_REASONS]:
+        places = [", ".join(x.shown(v) for x, v in zip(study.varied, s.values, strict=True)) for s in steps]
+        shown = places if len(places) <= MOST_PLACES else [*places[:MOST_PLACES], f"{len(places) - MOST_PLACES} more"]
+        console.print(f"no design at {'; '.join(shown)}: {reason}")
+    if len(reasons) > MOST_REASONS:
+        console.print(f"{len(reasons) - MOST_REASONS} more reasons in whatif.csv")
+    if reasons:
+        console.print()
 
 
 def _print_breaks(study: Study, console: Console) -> None:
@@ -96,7 +120,7 @@ def _robust(study: Study) -> list[str]:
     if not blocks:
         return []
     designs = [d for f in study.fronts for d in f.designs]
-    lines = [told_of(designs, blocks[0]["samples"])] if designs else []
+    lines = [told_of(designs, blocks[0]["samples"])] if any(d.robust for d in designs) else []
     gone = sum(f.statistics["robust"].get("taken_off", 0) for f in study.fronts if "robust" in f.settings)
     if gone:
         lines.append(taken_off(gone))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from synth.robust_console import percent
 from tests.endtoend.entry import at_once
 
 SPEC = """
@@ -185,6 +186,60 @@ def test_a_study_of_the_range_itself(saved: Path) -> None:
             least[name] = min(force, least.get(name, force))
     assert list(least.values()) == sorted(least.values())
     assert len(set(least.values())) == len(least) > 1
+
+
+def test_a_study_that_rates_shows_the_yield(saved: Path) -> None:
+    (saved / "rated.yaml").write_text(SPEC + 'robust: {friction: "+-10 %", mode: rate, samples: 256}\n')
+    out = saved / "rated_study"
+    done = at_once("whatif", saved / "rated.yaml", "-o", out, "--vary", "robust.friction=+-5, +-10 %", "--no-breaks")
+    assert done.returncode == 0, done.stderr
+    assert "yield" in done.stdout
+    assert "none of 4 designs keeps all limits over the whole range" in done.stdout
+    leading = [row for row in rows(out / "whatif.csv") if row["rank"] == "1"]
+    assert [row["robust.friction"] for row in leading] == ["+-5 %", "+-10 %"]
+    for row in leading:
+        assert percent(float(row["yield"])) in done.stdout
+
+
+FAMILIES = """
+family:
+  - family: disc_clutch
+    parts: {friction_pair: [sinter_bronze_dry]}
+    robust: {friction: none}
+  - family: multi_plate_clutch
+    parts: {friction_pair: [paper_wet], inner_plate: [core 1], outer_plate: [core 1]}
+requirements: {load_torque: 200 N*m, driver_speed: 700 1/min, driven_inertia: 2 kg*m2, outer_diameter_limit: 300 mm}
+fix: {ramp_time: 0.3 s}
+points: 4
+robust: {friction: +-15 %}
+"""
+
+
+def test_families_are_compared_by_what_stands_the_range(tmp_path: Path) -> None:
+    (tmp_path / "both.yaml").write_text(FAMILIES)
+    out = tmp_path / "out"
+    done = at_once("run", tmp_path / "both.yaml", "-o", out)
+    assert done.returncode == 0, done.stderr
+    table = rows(out / "designs.csv")
+    assert {(row["family"], row["robust"]) for row in table} == {("disc_clutch", ""), ("multi_plate_clutch", "yes")}
+    unrated = sum(row["robust"] == "" for row in table)
+    assert f"{unrated} designs are not rated" in done.stdout
+    assert f"{4 - unrated} of {4 - unrated} designs keep all limits" in done.stdout
+    assert done.stdout.count("not rated") == unrated + 1
+    assert at_once("verify", out).returncode == 0
+    # The folder of all is no front: the sentence names one that is.
+    done = at_once("rate", out, "-o", tmp_path / "rated")
+    assert done.returncode == 2
+    assert f"{out / 'disc_clutch'}" in done.stderr
+    done = at_once("whatif", tmp_path / "both.yaml", "-o", tmp_path / "study", "--vary", "load_torque=200,210 N*m")
+    assert done.returncode == 2
+    assert "disc_clutch, multi_plate_clutch" in done.stderr
+    (tmp_path / "wrong.yaml").write_text(FAMILIES.replace("{friction: none}", "{friktion: none}"))
+    done = at_once("run", tmp_path / "wrong.yaml", "-o", tmp_path / "wrong")
+    assert done.returncode == 2
+    assert "family disc_clutch: robust" in done.stderr
+    assert "friction" in done.stderr
+    assert not (tmp_path / "wrong").exists()
 
 
 def test_the_front_is_not_written_over(saved: Path) -> None:

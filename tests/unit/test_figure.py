@@ -315,3 +315,18 @@ def test_whole_numbers_without_a_unit_are_counted() -> None:
     frame.attrs = {"title": "Steps"}
     (axis,) = make_figure(frame).axes
     assert all(float(place).is_integer() for place in axis.get_xticks())
+
+
+def test_a_study_says_what_it_does_not_draw() -> None:
+    problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
+    loads = ", ".join(f"{10 + k}" for k in range(9)) + ", 300 kN"
+    study = synth.whatif(
+        problem, {"load": "20 kN"}, {"share": "1, 2", "load": loads}, {"cost": "min", "bulk": "min"}, 3, table,
+        breaks=False,
+    )  # fmt: skip
+    frames = study.curves()
+    assert "7 of 9 lines drawn" in frames["whatif"].attrs["source"]
+    assert "no design: load = 300 kN" in frames["whatif"].attrs["source"]
+    assert " fronts drawn" in frames["fronts"].attrs["source"]
+    for frame in frames.values():
+        assert_readable(frame)
