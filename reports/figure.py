@@ -150,10 +150,7 @@ def make_figure(frame: pd.DataFrame) -> Figure:
         axis = figure.add_axes(place, sharex=axes[0] if axes else None)
         axes.append(axis)
         lines = [line for line in attrs.get("lines", ()) if int(line.get("panel", 0)) == k]
-        names = _names(panel)
-        # A legend that says the same as the one above, which may be long, is left out.
-        _draw_panel(axis, frame, x, panel, lines, styles, repeated=names == above and not lines)
-        above = names
+        above = _draw_panel(axis, frame, x, panel, lines, styles, above)
         _draw_spans(axis, spans, marks)
         if k + 1 < len(panels):
             axis.tick_params(labelbottom=False)
@@ -252,15 +249,17 @@ def _draw_panel(
     panel: Mapping[str, Any],
     lines: Sequence[Mapping[str, Any]],
     styles: dict[str, int],
-    repeated: bool,
-) -> None:
+    above: Sequence[str],
+) -> list[str]:
+    """Draw a panel; return what its lines are called. ``above`` are the names in the panel above."""
     columns = [_column(frame, name) for name in panel["columns"]]
-    name, unit = split_header(_title(panel))
+    name, unit = split_header(str(panel.get("label", columns[0])))
+    names = [_legend(column, name) for column in columns]
     logarithmic, apart = bool(panel.get("log", False)), bool(panel.get("apart", False))
     factor, unit = _prefix(frame, columns, unit or "-", lines, logarithmic)
-    named = len(columns) > 1 or _legend(columns[0], name) != name.replace("_", " ")
-    for column in columns:
-        k = styles.setdefault(_legend(column, name), len(styles)) if named else 0
+    named = len(columns) > 1 or names[0] != name.replace("_", " ")
+    for column, called in zip(columns, names, strict=True):
+        k = styles.setdefault(called, len(styles)) if named else 0
         axis.plot(
             frame[x].to_numpy(),
             frame[column].to_numpy(dtype=float) * factor,
@@ -269,7 +268,7 @@ def _draw_panel(
             marker=MARKERS[k % len(MARKERS)] if apart or panel.get("points") else "",
             drawstyle=STAIRS[panel.get("stairs")],
             markersize=4.5 if apart else 3.5,
-            label=textwrap.fill(JOINT.sub("\u00a0", _legend(column, name)), LEGEND_LETTERS),
+            label=textwrap.fill(JOINT.sub("\u00a0", called), LEGEND_LETTERS),
             zorder=3 - 0.01 * k,  # what is named first lies on top where two lines coincide
         )
     for line in lines:
@@ -284,18 +283,11 @@ def _draw_panel(
         formatter.set_powerlimits((-4, 6))
         axis.yaxis.set_major_formatter(formatter)
         axis.margins(y=0.08)
-    if named and not repeated:
+    # A legend that says the same as the one above, which may be long, is left out.
+    if named and (names != above or lines):
         axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.03), borderaxespad=0.0, labelspacing=0.35)
     _name_lines(axis, lines, factor, len(columns) if named else 0)
-
-
-def _title(panel: Mapping[str, Any]) -> str:
-    return str(panel.get("label", panel["columns"][0]))
-
-
-def _names(panel: Mapping[str, Any]) -> list[str]:
-    """Return what the lines of a panel are called."""
-    return [_legend(column, split_header(_title(panel))[0]) for column in panel["columns"]]
+    return names
 
 
 def _legend(column: str, panel: str) -> str:

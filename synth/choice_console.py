@@ -8,6 +8,7 @@ from rich.console import Console
 
 from synth.console import explanation_text, plain_table
 from synth.price_list import NOTHING, percent
+from synth.rated import rating_row
 from synth.robust import told_of
 from synth.units import format_quantity
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from synth.comparison import Comparison
     from synth.near import NearEquals
     from synth.price_list import Price, Prices
-    from synth.results import Design
 
 SHOWN = 10  # designs on one screen
 
@@ -102,7 +102,7 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
         )
         for design, family in list(zip(found.designs, found.families, strict=True))[:count]:
             values = [format_quantity(design.values[n], design.frame.units[n], 5) for n in names]
-            values += [stands(design)] if rated else []
+            values += [rating_row(design)[0] or "not rated"] if rated else []
             table.add_row(f"#{design.rank}", f"{design.score:.4f}", family, *values, design.note)
         console.print(table)
         if count < len(found.designs):
@@ -127,13 +127,6 @@ def print_comparison(found: Comparison, console: Console, every: bool = False) -
     if found.interrupted:
         console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
     console.print(found.sentence())
-
-
-def stands(design: Design) -> str:
-    """Tell in a word whether a design keeps its limits over the range."""
-    if not design.robust:
-        return "not rated"
-    return "yes" if design.robust["holds"] else "no"
 
 
 def comparison_explanation(found: Comparison) -> str:

@@ -234,8 +234,7 @@ class _Comparing:
             kept.append(_Kept(question))
             return kept[-1]
 
-        block = scatter.read_remaining(asked["robust"]) if asked["robust"] else None
-        rater = None
+        block, rater = scatter.read_remaining(asked["robust"] or None), None
         if block is None:
             front = ask(None).answer(settings["workers"], shown, limit)
         else:

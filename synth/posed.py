@@ -48,8 +48,6 @@ def posed(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None)
     limits : mapping or None
         The user's own limits, which are to hold over the range as well.
     """
-    if robust is None:
-        return problem
     asked = read_remaining(robust)
     return problem if asked is None or asked.mode == RATE else RobustProblem(nominal(problem), asked, limits or {})
 

@@ -207,14 +207,16 @@ def read_block(robust: Any, where: str = "robust") -> Asked:
 
 
 def read_remaining(robust: Any, where: str = "robust") -> Asked | None:
-    """Read a block without what has "none" for a range; None where nothing is left then that scatters.
+    """Read a block without what has "none" for a range; None where there is none, or nothing is left that scatters.
 
     Raises
     ------
     InputError
         When something is not understood.
     """
-    if isinstance(robust, Asked) or not isinstance(robust, Mapping):
+    if robust is None:
+        return None
+    if not isinstance(robust, Mapping):
         return read_block(robust, where)
     block = _scattering(robust)
     if isinstance(block.get("tolerance"), Mapping):

@@ -127,7 +127,7 @@ def synthesize(
     def asked(problem: Any) -> Question:
         return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
 
-    block = None if robust is None else read_remaining(robust)
+    block = read_remaining(robust)
     if block is None:
         return asked(p).answer(workers, progress, time_limit)
     problem = load(p)

@@ -151,9 +151,7 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
         for name in sheet[key]:
             if name in known:
                 continue
-            close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
-            expected = "a name that one of the families knows"
-            expected += f" (did you mean {' or '.join(close)}?)" if close else ""
+            expected = f"a name that one of the families knows{_hint(name, known)}"
             if key in ("requirements", "robust") and any(name in one.declaration.names() for one in found):
                 expected = (
                     "a requirement that families understand in common, by name; what concerns one family alone is "
@@ -162,18 +160,23 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
             raise InputError(key, name, expected)
 
 
+def _hint(word: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
+    return f" (did you mean {' or '.join(close)}?)" if close else ""
+
+
 def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
     """Refuse names under a family that mean nothing to it, and blocks of what scatters that mean nothing to any."""
     for one in found:
         names = one.declaration.names()
-        spelled = {word for word, name in names.items() if name in one.declaration.requirements}
         for key in ("requirements", "limits", "fix", "parts", "robust"):
-            known = {*(spelled if key in ("requirements", "robust") else ()), *_known(one, key)}
+            # Under a family what concerns it alone may stand as well, by symbols too.
+            known = {*_known(one, key), *(one.declaration.requirements if key in ("requirements", "robust") else ())}
             for word in one.own[key]:
-                if word not in known and names.get(word) not in known and not (key == "robust" and "." in word):
-                    close = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
-                    hint = f" (did you mean {' or '.join(close)}?)" if close else ""
-                    raise InputError(f"family {one.label}: {key}", word, f"a name that {one.label} knows{hint}")
+                name = scatter.name_in_block(word, names) if key == "robust" else names.get(word, word)
+                if name not in known:
+                    expected = f"a name that {one.label} knows{_hint(word, known)}"
+                    raise InputError(f"family {one.label}: {key}", word, expected)
         if one.own["robust"]:
             scatter.read_remaining(one.asked(sheet)["robust"], f"family {one.label}: robust")
 

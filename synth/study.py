@@ -66,8 +66,8 @@ class Step:
         return f"the nearest design misses {missed} and {more} more"
 
     def _conflicts(self) -> Sequence[Mapping[str, Any]]:
-        solved = self.front is not None and self.front.status is not Status.NOT_SOLVED
-        return (self.front.explanation or {}).get("conflicts") or [] if self.front is not None and solved else []
+        explanation = None if self.front is None else self.front.explanation
+        return (explanation or {}).get("conflicts") or []
 
 
 @dataclass(frozen=True)

@@ -39,17 +39,12 @@ class Asked:
     seed: int = 0
     robust: scatter.Asked | None = None
 
-    def pose(self, problem: DesignProblem | None = None) -> Question:
-        """Check the question; ``problem`` has its limits posed already where something scatters."""
-        problem = self.posed() if problem is None else problem
+    def pose(self, problem: DesignProblem) -> Question:
+        """Check the question to the problem with its limits posed where they are worst, if anything scatters."""
         return pose(
             problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits, self.fix,
             self.weights, self.gap, self.grid, self.seed,
         )  # fmt: skip
-
-    def posed(self) -> DesignProblem:
-        """Return the problem with its limits where they are worst, if they are to hold over a range."""
-        return posed(self.problem, self.robust, self.limits)
 
     def rater(self) -> Rater | None:
         """Return what rates designs over the range; None where nothing scatters.
@@ -148,7 +143,7 @@ class Steps:
         self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
-        self._posed_ones: dict[tuple[DesignProblem, str], DesignProblem] = {}
+        self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}
         self._learned: dict[tuple[str, ...], scatter.Asked] = {}
         self.raters: list[Rater | None] = []  # by step; None where nothing scatters
         self.questions = self._posed()
@@ -201,26 +196,20 @@ class Steps:
 
     def stands(self, values: Sequence[Value], design: Design) -> bool:
         """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
-        asked = self._at(values)
-        if asked.robust is None or asked.robust.mode == scatter.RATE:
-            return True
-        rater = asked.rater()
-        return rater is None or bool(rater.one(design)["holds"])
+        rater = self._at(values).rater()
+        return rater is None or rater.asked.mode == scatter.RATE or bool(rater.one(design)["holds"])
 
     def _with_learned(self, asked: Asked) -> Asked:
-        known = None if asked.robust is None else self._learned.get(asked.robust.names)
-        if asked.robust is None or known is None:
+        if asked.robust is None or asked.robust.names not in self._learned:
             return asked
-        return replace(asked, robust=asked.robust.with_scenarios(known.scenarios))
+        return replace(asked, robust=asked.robust.with_scenarios(self._learned[asked.robust.names].scenarios))
 
     def _pose(self, asked: Asked) -> Question:
         """Return a question; limits that are posed alike at several steps are traced once."""
-        if asked.robust is None or asked.robust.mode == scatter.RATE:
-            return asked.pose()
         key = asked.problem, repr((asked.robust, asked.limits))
-        if key not in self._posed_ones:
-            self._posed_ones[key] = asked.posed()
-        return asked.pose(self._posed_ones[key])
+        if key not in self._with_limits:
+            self._with_limits[key] = posed(asked.problem, asked.robust, asked.limits)
+        return asked.pose(self._with_limits[key])
 
     def stated(self, values: Sequence[Value]) -> str:
         """Return the values of a step for people."""
@@ -270,5 +259,5 @@ def steps_of(
 ) -> Steps:
     """Return the questions of a study; the arguments are those of ``synth.whatif``."""
     problem = load(p)
-    block = None if robust is None else scatter.read_remaining(robust)
-    return Steps(Asked(problem, requirements, catalogs_for(problem, catalogs), robust=block, **settings), vary)
+    block, tables = scatter.read_remaining(robust), catalogs_for(problem, catalogs)
+    return Steps(Asked(problem, requirements, tables, robust=block, **settings), vary)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -34,6 +35,7 @@ from synth.together_fronts import joint_answers, joint_groups
 FORMAT = 1
 RECORD = "study.json"
 STEPS = "steps"
+STEP = re.compile(r"step ([1-9][0-9]*)")  # its key in the record
 INTERRUPTED = "interrupted"
 
 
@@ -351,7 +353,7 @@ class _Store:
         """Keep the front of a step, by the content of its front.json."""
         if self.folder is None:
             return
-        name = f"{STEPS}/step_{number:04d}.json"
+        name = self._file_of(number)
         self._write(self.folder / name, record_text(record))
         self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": record["digest"]})
 
@@ -367,13 +369,19 @@ class _Store:
 
     def forget_beyond(self, count: int) -> None:
         """Remove the steps that a longer study has left behind."""
-        longer = [key for key in self.record if key.startswith("step ") and int(key[5:]) > count]
+        steps = [int(match.group(1)) for key in self.record if (match := STEP.fullmatch(key))]
+        longer = [number for number in steps if number > count]
         if self.folder is None or not longer:
             return
-        files = [str(self.record.pop(key).get("file")) for key in longer]
+        for number in longer:
+            del self.record[f"step {number}"]
         self._write_record(self.folder)
-        for name in files:
-            (self.folder / name).unlink(missing_ok=True)
+        for number in longer:
+            (self.folder / self._file_of(number)).unlink(missing_ok=True)
+
+    @staticmethod
+    def _file_of(number: int) -> str:
+        return f"{STEPS}/step_{number:04d}.json"
 
     def _enter(self, key: str, entry: dict[str, Any]) -> None:
         assert self.folder is not None
