@@ -20,8 +20,10 @@ import numpy as np
 
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
+from synth.fingerprint import code_digest, problem_digest
 from synth.formulation import Boxes, Formulation
 from synth.instance import Instance
+from synth.posed import nominal
 from synth.purposes import Purpose
 from synth.seeker import roundings
 
@@ -95,9 +97,14 @@ def search_parts(
 
 
 def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> Path | None:
-    """Return where the study of a question is kept, or None where no folder can be written."""
+    """Return where the study of a question is kept, or None where no folder can be written.
+
+    What computes the answers belongs to its name: another version must not go on with trials that it would value
+    differently.
+    """
     selection = instance.selection
     question = {
+        "code": [code_digest(), problem_digest([type(nominal(instance.problem))])],
         "family": instance.problem.name,
         "options": dict(instance.problem.options),
         "restated": repr(instance.problem.restated),

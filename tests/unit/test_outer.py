@@ -141,3 +141,15 @@ def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
     assert len(set(files)) == len(files)
     assert file() == files[0]
     assert files[0].parent == tmp_path / "clutchsynth" / "studies"
+
+
+@pytest.mark.parametrize("what", ["code_digest", "problem_digest"])
+def test_another_version_does_not_go_on_with_a_study(monkeypatch, what):
+    def file():
+        instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
+        return study_file(instance, {"mass": "min"}, 0)
+
+    before = file()
+    assert file() == before
+    monkeypatch.setattr(outer, what, lambda *_: "sources of another version")
+    assert file() != before
