@@ -32,7 +32,7 @@ SETTINGS: Mapping[str, Setting] = {
     ),
     "driver_torque": Setting("constant torque of a driver without motor curve; 0 for a flywheel", unit="N*m"),
     "ramp": Setting("course of the clutch torque up to ramp_time", choices=("linear", "smooth")),
-    "hold_time": Setting("how long to go on after lock-up", unit="s"),
+    "hold_time": Setting("how long to go on after lock-up; 0 ends with it, whatever the driver does then", unit="s"),
     "time_limit": Setting("longest time, for a clutch that does not lock", unit="s"),
 }
 WORST = "worst_case"

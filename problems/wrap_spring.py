@@ -76,8 +76,8 @@ class WrapSpringClutch(DesignProblem):
         self._declare_fit(d, duty, wants, coils, interference)
         low, high = self._fitted_moments(options, duty, wire, coils, interference)
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
-        closing = formulas.closing_torque(effective, friction.exponent_low)
-        blocks.declare_closing(d, duty, closing)
+        guards = self._declare_grip(d, options, duty, wire, coils, low)
+        blocks.declare_closing(d, duty, formulas.closing_torque(effective, friction.exponent_low), needs=guards)
         self._declare_liftoff(d, duty, wants, wire, coils, low)
         load = self._declare_overload(d, duty, overload, friction, high)
         bending = formulas.bending_stress(high, wire.width, wire.thickness)
@@ -194,6 +194,28 @@ class WrapSpringClutch(DesignProblem):
             source=S2,
         )
 
+    def _declare_grip(
+        self,
+        d: Declaration,
+        options: blocks.Options,
+        duty: blocks.Duty,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        low: Any,
+    ) -> tuple[str, ...]:
+        """Declare that something grips at all, and return the guards without which there is no closing torque.
+
+        Model ``seed`` counts the torque at rest, as its source does: there the preload alone decides, and what the
+        speed does is told by the limit ``liftoff`` in both models.
+        """
+        if options.model == "seed":
+            return ("interference_positive",)
+        d.at_least(
+            "grip", low, blocks.centrifugal_moment(options, duty, wire, coils), "N*m", guard=True,
+            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips", source=DERIVED,
+        )  # fmt: skip
+        return ("grip",)  # without interference there is no preload either
+
     def _declare_liftoff(
         self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
     ) -> None:
@@ -205,7 +227,8 @@ class WrapSpringClutch(DesignProblem):
         )  # fmt: skip
         d.at_most(
             "liftoff", duty.spring_speed, wants.liftoff_margin * speed, "1/min",
-            text="The spring stays on its hub", source=DERIVED,
+            text="The spring stays on its hub at spring_speed, also with model seed, which counts torques at rest",
+            source=DERIVED,
         )  # fmt: skip
 
     def _declare_overload(

@@ -67,7 +67,8 @@ def declare_options(d: Declaration) -> Options:
             formulas.MODELS,
             "refined",
             symbol="mdl",
-            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source",
+            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source, "
+            "which counts all torques at rest",
             source=f"{S2}; refined: derived",
         ),
         wire_choice=d.option(

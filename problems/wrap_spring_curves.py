@@ -277,9 +277,14 @@ def interference_curves(clutch: Fitted, spec: Mapping[str, Any], values: Mapping
     return result
 
 
+def _pressing(moment: Any) -> Any:
+    """Return the moment that presses a spring with interference on its hub: none once it has lifted off."""
+    return np.maximum(moment, 0.0)
+
+
 def _torque_over_friction(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) -> pd.DataFrame:
     mu = friction_ladder(clutch)
-    spinning = low - clutch.centrifugal_moment(spec["spring_speed"])
+    spinning = _pressing(low - clutch.centrifugal_moment(spec["spring_speed"]))
     beta = clutch.belt_exponent(mu)
     columns = {
         FRICTION_AXIS: mu,
@@ -305,7 +310,7 @@ def _torque_over_interference(clutch: Fitted, spec: Mapping[str, Any], values: M
     widest = min(spec["interference_ratio_max"] * clutch.mean_radius, 3 * here + tolerance) - tolerance
     nominal = np.unique(np.append(np.linspace(tolerance, max(widest, here), POINTS), here))
     low, high = clutch.moment(nominal - tolerance), clutch.moment(nominal + tolerance)
-    spinning = low - clutch.centrifugal_moment(spec["spring_speed"])
+    spinning = _pressing(low - clutch.centrifugal_moment(spec["spring_speed"]))
     columns = {
         "interference [mm]": nominal / MM,
         "least closing torque [N*m]": formulas.closing_torque(spinning, clutch.belt_exponent(clutch.mu_min)),
@@ -419,7 +424,7 @@ def _torque_over_speed(clutch: Fitted, spec: Mapping[str, Any], low: float) -> p
     )
     here = spec["spring_speed"]
     speed = np.unique(np.append(np.linspace(0, lift, POINTS), min(here, lift)))
-    effective = np.maximum(low - clutch.centrifugal_moment(speed), 0.0)
+    effective = _pressing(low - clutch.centrifugal_moment(speed))
     columns = {
         SPEED_AXIS: speed / RPM,
         "least closing torque [N*m]": formulas.closing_torque(effective, clutch.belt_exponent(clutch.mu_min)),

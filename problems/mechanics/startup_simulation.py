@@ -140,8 +140,8 @@ class StartupRun:
 
     ``outcome`` is locked, slipping (the time was up) or stalled. ``slip_time`` is the time of the first lock-up
     (not-a-number without one), ``friction_work`` counts to the end of the run, ``hold_reserve`` is the least static
-    torque over the torque carried while locked, ``keeps_load`` tells whether the driver can carry the load on after
-    lock-up.
+    torque over the torque carried while locked (not-a-number where the run ends with lock-up), ``keeps_load`` tells
+    whether the driver can carry the load on after lock-up.
     """
 
     outcome: str
@@ -240,6 +240,8 @@ class StartupRun:
         if math.isnan(self.slip_time):
             return "the driver stalls" if self.outcome == "stalled" else f"no lock-up within {self.end:.4g} s"
         text = f"lock-up after {self.slip_time:.4g} s"
+        if self.outcome == "locked" and not self.keeps_load:
+            return f"{text}, but the driver cannot hold the load"
         ends = {"stalled": ", then the driver stalls", "slipping": ", then slip again"}
         return f"{text}{ends.get(self.outcome, f', friction work {self.friction_work:.5g} J')}"
 
@@ -310,7 +312,8 @@ def simulate_startup(
         Static over sliding friction [-]. Locked, the clutch carries this times the torque of the ramp, and at least
         that torque: a ratio below 1 would mean stick-slip without end.
     hold_time : float, optional
-        How long to go on after lock-up [s]; by default a fifth of the slip time.
+        How long to go on after lock-up [s], 0 ends with it; by default a fifth of the slip time, or until the driver
+        stalls where it cannot hold the load.
     time_limit : float, optional
         Longest time [s]; by default well after any possible lock-up.
 
@@ -564,10 +567,10 @@ class _Integration:
         if math.isnan(self.lock_time):
             self.lock_time, self.lock_speed = time, float(state[SPEED_1])
             self.keeps_load = self._keeps_load(self.lock_speed)
-            if not self.keeps_load:
-                self.end = self.limit
-            elif self.hold is not None:
+            if self.hold is not None:
                 self.end = min(time + self.hold, max(self.limit, time))
+            elif not self.keeps_load:
+                self.end = self.limit  # to show how it ends
             else:
                 self.end = max(1.2 * time, min(1.05 * question.ramp_time, 1.5 * time))
         return 0, motion, state

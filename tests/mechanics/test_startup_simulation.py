@@ -209,6 +209,14 @@ def test_two_finite_inertias_under_constant_torques(torque, load, first, second,
     assert work_until_lock == pytest.approx(work, rel=1e-7)
 
 
+def test_a_run_that_is_not_to_go_on_ends_with_lock_up():
+    full, short = simulate_startup(*LECTURE), simulate_startup(*LECTURE, hold_time=0)
+    assert short.end == short.slip_time == full.slip_time
+    assert short.friction_work == pytest.approx(full.friction_work, rel=1e-12)
+    assert {name for _, _, name in short.phases()} == {"load at rest", "ramp", "full torque"}
+    assert simulate_switching(short, 50 / 3600, 2400, 150, 0.2).peak_rise == pytest.approx(27.2241, abs=1e-4)
+
+
 def test_a_weak_motor_stalls_and_both_are_reported():
     motor = partial(motors.kloss_torque, synchronous_speed=27.0, breakdown_torque=900.0, breakdown_slip=0.15)
     run = simulate_startup(*LECTURE, driver_inertia=1.0, driver_torque=motor)
@@ -218,6 +226,16 @@ def test_a_weak_motor_stalls_and_both_are_reported():
     assert run.slip_time < run.end
     assert run.headline() == f"lock-up after {run.slip_time:.4g} s, then the driver stalls"
     assert run.frame()["driver_speed [1/min]"].iloc[-1] == pytest.approx(0, abs=1e-6)
+    # Who says how long to go on after lock-up is not shown more.
+    for hold in (0.0, 0.05):
+        shown = simulate_startup(*LECTURE, driver_inertia=1.0, driver_torque=motor, hold_time=hold)
+        assert shown.end == pytest.approx(run.slip_time + hold, rel=1e-12)
+        assert (shown.outcome, shown.keeps_load, shown.slip_time) == ("locked", False, run.slip_time)
+        assert names(shown)[-1] == "lock-up"
+        assert shown.headline() == f"lock-up after {run.slip_time:.4g} s, but the driver cannot hold the load"
+        assert abs(shown.energy_error()) < 1e-9
+        assert shown.frame()["time [s]"].iloc[-1] == shown.end
+        assert math.isnan(shown.hold_reserve) == (hold == 0)
     # A driver without torque stops before the load has moved.
     flywheel = simulate_startup(1080, 1000, 30, 26.6, 2, driver_inertia=1.0, driver_torque=0.0)
     assert (flywheel.outcome, flywheel.headline()) == ("stalled", "the driver stalls")

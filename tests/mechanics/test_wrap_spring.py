@@ -114,6 +114,37 @@ def test_a_wire_of_ones_own_gives_what_the_same_wire_of_the_catalogue_gives():
     assert own.utilisation == pytest.approx(catalogue.utilisation)
 
 
+def test_beyond_liftoff_nothing_grips_and_no_torque_is_told():
+    """Model seed counts torques at rest, as its source does: there the limit alone speaks of lift-off."""
+    lift = clutch().values["liftoff_speed"]
+    below, beyond = ({"spring_speed": f"{share * lift!r} rad/s"} for share in (0.999, 1.001))
+    found = clutch(requirements=below)
+    assert found.values["closing_torque"] > 0
+    assert {"liftoff", "closing_torque"} <= set(found.violated)
+    assert "grip" not in found.violated
+    found = clutch(requirements=beyond)
+    assert math.isnan(found.values["closing_torque"])
+    assert {"liftoff", "grip"} <= set(found.violated)
+    assert "closing_torque" not in found.violated  # the guard alone tells why
+    loose = clutch(values={"interference": "0.02 mm"})  # less than its tolerance
+    assert math.isnan(loose.values["closing_torque"])
+    at_rest, spinning = (clutch({"model": "seed"}, speed) for speed in ({}, beyond))
+    assert spinning.values["closing_torque"] == at_rest.values["closing_torque"] > 0
+    assert "grip" not in spinning.utilisation
+    assert "liftoff" in clutch({"model": "seed"}, {"spring_speed": "60000 1/min"}).violated
+
+
+def test_curves_beyond_liftoff_show_no_torque_below_zero():
+    lift = clutch().values["liftoff_speed"]
+    speed = {"spring_speed": f"{1.5 * lift!r} rad/s"}
+    frames = synth.curves("wrap_spring", BASE | speed, values=POINT, parts=PARTS)
+    for name in ("torque_over_friction", "torque_over_interference"):
+        torques = frames[name].filter(regex=r"torque \[N")
+        assert torques.shape[1] >= 2
+        assert (torques.to_numpy() >= 0).all(), name
+    assert (frames["torque_over_friction"]["loosest closing torque [N*m]"] == 0).all()
+
+
 def test_worked_example_as_a_design():
     """The example of the reference: no tolerance to speak of, one friction coefficient, a wire of one's own."""
     pair = pd.DataFrame({
@@ -203,8 +234,8 @@ def test_the_energising_torque_of_the_closed_form_is_just_enough():
 # -- limits ----------------------------------------------------------------------------------------
 
 ALWAYS = {
-    "interference_positive", "interference_range", "closing_torque", "liftoff", "wire_stress", "contact_pressure",
-    "fatigue", "overrun_pv", "overrun_temperature", "hub_bore", "hub_shear", "spring_index",
+    "interference_positive", "grip", "interference_range", "closing_torque", "liftoff", "wire_stress",
+    "contact_pressure", "fatigue", "overrun_pv", "overrun_temperature", "hub_bore", "hub_shear", "spring_index",
 }  # fmt: skip
 ASKED = {
     "drag_torque": ("drag_torque_limit", "8 N*m"),
@@ -285,7 +316,7 @@ def test_without_grip_nothing_closes():
 
 def test_with_a_preload_that_may_vanish_nothing_is_known_of_the_fit():
     found = clutch(values={"interference": "0.029 mm"})
-    assert set(found.violated) == {"interference_positive", "closing_torque"}
+    assert set(found.violated) == {"interference_positive", "grip"}
     for name in ("liftoff_speed", "windup_angle", "wire_stress", "drag_torque"):
         assert math.isnan(found.values[name]), name
 
