@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
@@ -15,6 +15,7 @@ from synth.instance import Instance, as_mapping, catalogs_for
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
+from synth.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
 from synth.special import expanded
 from synth.units import format_quantity, parse_quantity
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from synth.formulation import Candidate, Formulation
 
 ON_GRID = 1e-9
+WIDER = 100.0  # how much further than it is searched a variable may lie that derived quantities stand for
 
 
 def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
@@ -249,6 +251,8 @@ def evaluate(
 ) -> Design:
     """Analyse one design: every quantity, every limit; nothing is searched or rounded.
 
+    A value outside of the range that is searched is computed as well, and told in ``outside``.
+
     Parameters
     ----------
     p : family name, DesignProblem subclass or instance
@@ -269,7 +273,7 @@ def evaluate(
     Raises
     ------
     InputError
-        When something is missing, unknown, or more is given than needed.
+        When something is missing, unknown or cannot be computed, or more is given than needed.
     """
     if design is not None and (values is not None or parts is not None):
         raise InputError("design", "design and values/parts", "either a design, or values= and parts=")
@@ -309,7 +313,9 @@ def _evaluate(
     frame = make_frame(instance, chosen_objectives(model, objectives))
     part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
     result = instance.model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
-    return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks)
+    found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
+    refuse_not_computable(instance, result, found, data)
+    return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found)
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
@@ -398,14 +404,8 @@ def _read_values(
             raise InputError(f"values: {name}", None, "one of " + ", ".join(choice.labels))
     for name, count in d.counts.items():
         if name not in known:
-            raise InputError(f"values: {name}", None, f"a value from {count.values[0]:g} to {count.values[-1]:g}")
-        if np.min(np.abs(count.values - known[name])) > 1e-9:
-            step = count.values[1] - count.values[0] if len(count.values) > 1 else 1
-            raise InputError(
-                f"values: {name}",
-                values.get(name, known[name]),
-                f"a value from {count.values[0]:g} to {count.values[-1]:g} in steps of {step:g}",
-            )
+            raise InputError(f"values: {name}", None, f"a value, {shown_range(count)} as a rule")
+    refuse_other_sign(model, known)
     return known, choices, derived
 
 
@@ -474,10 +474,6 @@ def _complete_variables(
             "values", ", ".join(derived), f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
         )
     variables = np.array([known.get(v.name, np.nan) for v in model.variables])
-    for v, value in zip(model.variables, variables, strict=True):
-        if np.isfinite(value) and not v.lower - 1e-9 * abs(v.lower) <= value <= v.upper + 1e-9 * abs(v.upper):
-            low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
-            raise InputError(f"values: {v.name}", format_quantity(value, v.unit), f"{low} to {high}")
     if missing:
         variables[missing] = _solve_for(model, missing, derived, variables, data)
     return variables
@@ -486,8 +482,7 @@ def _complete_variables(
 def _solve_for(
     model: Model, missing: list[int], derived: Mapping[str, float], variables: np.ndarray, data: Sequence[float]
 ) -> np.ndarray:
-    from scipy.optimize import least_squares  # costly to import; most designs are given by their variables
-
+    """Return the missing variables that give the derived quantities: within what is searched, or else nearest to it."""
     unknown = [model.variables[k] for k in missing]
     names = list(derived)
     target = np.array([derived[n] for n in names])
@@ -509,23 +504,39 @@ def _solve_for(
     rng = np.random.default_rng(0)
     starts = [np.sqrt(np.maximum(lower, 1e-9) * upper)]
     starts += list(lower + (upper - lower) * rng.random((24, len(unknown))))
-    with np.errstate(all="ignore"):
-        for start in starts:
+    for x in _solutions(difference, slope, starts, lower, upper):
+        return x
+    least, most = widened(unknown, WIDER)
+    # Searched lies nearest what was meant; from its corners and inside, and from further out.
+    reach = [np.clip(lower + (upper - lower) * (3 * share - 1), least, most) for share in rng.random((8, len(unknown)))]
+    found = list(_solutions(difference, slope, [lower, upper, *starts[:6], *reach], least, most))
+    if found:
+        size = np.maximum(upper - lower, 1e-12 * np.abs(upper))
+        return min(found, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
+    wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
+    ranges = ", ".join(f"{v.name} ({shown_range(v)})" for v in unknown)
+    raise InputError("values", wanted, f"quantities that some {ranges} can give, or values not far outside")
+
+
+def _solutions(
+    difference: Any, slope: Any, starts: Sequence[np.ndarray], lower: np.ndarray, upper: np.ndarray
+) -> Iterator[np.ndarray]:
+    """Yield the points within bounds at which nothing differs, one per start that leads to one."""
+    from scipy.optimize import least_squares  # costly to import; most designs are given by their variables
+
+    for start in starts:
+        with np.errstate(all="ignore"):
             try:
                 answer = least_squares(
                     difference, np.clip(start, lower, upper), jac=slope, bounds=(lower, upper),
-                    xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=upper,
+                    xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=np.maximum(np.abs(lower), np.abs(upper)),
                 )  # fmt: skip
             except (ValueError, np.linalg.LinAlgError):
                 continue  # this start left the domain of a formula
             x = _polish(answer.x, difference, slope, lower, upper)
-            if np.max(np.abs(difference(x))) <= 1e-12:
-                return x
-    wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
-    ranges = ", ".join(
-        f"{v.name} {format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}" for v in unknown
-    )
-    raise InputError("values", wanted, f"quantities that some {ranges} can give")
+            solved = bool(np.max(np.abs(difference(x))) <= 1e-12)
+        if solved:
+            yield x
 
 
 def _derived_function(model: Model, missing: list[int], names: list[str]) -> Any:

@@ -209,6 +209,8 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         console.print(f"not asked, so their limits are not built: {', '.join(frame.not_asked)}")
     for name, remark in design.off_grid.items():
         console.print(f"off the grid: {name}, {remark}")
+    for name, remark in design.outside.items():
+        console.print(f"outside the range that is searched: {name} {remark}")
     for remark in design.advice:
         console.print(f"advice: {remark}")
     if design.violated:
@@ -281,6 +283,7 @@ def write_check(design: Design, details: Sequence[Mapping[Any, Any]], folder: Pa
     for name, si in design.values.items():
         unit = frame.units[name]
         grid = "off the grid" if name in design.off_grid else ""
+        grid = "outside the range that is searched" if name in design.outside else grid
         writer.writerow([frame.kinds[name], name, symbols[name], unit, _plain(si, unit), "", "", "", grid])
     for name, state in _limit_states(design).items():
         unit, (value, limit), used = frame.limit_units[name], design.limits[name], design.utilisation.get(name)

@@ -97,6 +97,7 @@ def _design_record(design: Design) -> dict[str, Any]:
         "advice": list(design.advice),
         "violated": list(design.violated),
         "not_checked": list(design.not_checked),
+        **({"outside": dict(design.outside)} if design.outside else {}),
         **({"robust": _plain(design.robust)} if design.robust else {}),
     }
 

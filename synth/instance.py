@@ -155,7 +155,8 @@ class Instance:
     grid : bool
         Whether makeable values are asked for.
     restrict : bool
-        False for the analysis of a given design: then rows are not filtered.
+        False for the analysis of a given design: then rows are not filtered, and limits on what it is made of bound
+        nothing.
     """
 
     def __init__(
@@ -188,7 +189,8 @@ class Instance:
         self._count_bounds: list[tuple[str, str, float]] = []
         quantities = list(self.model.quantity_sx)
         for word, conditions in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
-            self._add_limit(word, conditions)
+            if restrict or word in d.derived:
+                self._add_limit(word, conditions)
         pinned = as_mapping(fix, "fix", "{'mass': '20 kg'}")
         among = [*quantities, *d.choices, *d.slots]
         kinds = "a variable, count, choice, slot or derived quantity"

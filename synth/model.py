@@ -154,6 +154,10 @@ class Model:
                     limits[name].append(guard)
         return values, limits
 
+    def guards_of(self, name: str) -> tuple[str, ...]:
+        """Return the guards without which a quantity does not exist."""
+        return tuple(self._null_values[name])
+
     # -- names ---------------------------------------------------------------------------------
 
     def name_of(self, word: str, field: str, among: Sequence[str], what: str) -> str:

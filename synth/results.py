@@ -73,7 +73,8 @@ class Design:
     """One evaluated design.
 
     ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
-    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``robust`` tells,
+    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells
+    which values of a given design lie outside of the range that is searched, and what that is. ``robust`` tells,
     where that was asked, how the design stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and
     ``yield_high``, ``worst_limit``, and per limit its worst point.
     """
@@ -94,6 +95,7 @@ class Design:
     note: str = ""
     alternatives: tuple[str, ...] = ()
     off_grid: Mapping[str, str] = field(default_factory=dict)
+    outside: Mapping[str, str] = field(default_factory=dict)
     advice: tuple[str, ...] = ()
     violated: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()

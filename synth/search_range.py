@@ -1,0 +1,139 @@
+"""The range of the unknowns that is searched, and given designs that lie outside of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.declaration import Count, Variable
+from synth.errors import InputError
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    from synth.instance import Instance
+    from synth.model import Evaluation, Model
+
+END = 1e-9  # relative: what is this close to the end of a range is within it
+
+
+def shown_range(unknown: Variable | Count) -> str:
+    """Return the range in which an unknown is searched, in words.
+
+    Examples
+    --------
+    >>> import synth
+    >>> model = synth.load("multi_plate_clutch").model(frozenset(), synth.instance.as_catalogs(None))
+    >>> shown_range(model.declaration.counts["friction_surfaces"])
+    '2 to 60 in steps of 2'
+    """
+    low, high = _ends(unknown)
+    text = f"{format_quantity(low, unknown.unit)} to {format_quantity(high, unknown.unit)}"
+    steps = _steps(unknown)
+    return f"{text} in steps of {steps[1] - steps[0]:g}" if len(steps) > 1 else text
+
+
+def outside(model: Model, values: Mapping[str, float]) -> dict[str, str]:
+    """Return the variables and counts that lie outside of what is searched, each with the range that is.
+
+    Parameters
+    ----------
+    values : mapping
+        Variables and counts by name in SI.
+    """
+    result = {}
+    for unknown in _unknowns(model):
+        value, (low, high) = values[unknown.name], _ends(unknown)
+        within = low - END * abs(low) <= value <= high + END * abs(high)
+        steps = _steps(unknown)
+        if not within or (len(steps) and np.min(np.abs(steps - value)) > END):
+            result[unknown.name] = f"{format_quantity(value, unknown.unit)}, searched is {shown_range(unknown)}"
+    return result
+
+
+def refuse_other_sign(model: Model, values: Mapping[str, float]) -> None:
+    """Refuse sizes and counts on the other side of zero than all that is searched: there are none such.
+
+    Raises
+    ------
+    InputError
+    """
+    for unknown in _unknowns(model):
+        value, (low, high) = values.get(unknown.name, math.nan), _ends(unknown)
+        zero = format_quantity(0.0, unknown.unit)
+        for wrong, expected in (
+            (low > 0 >= value, f"above {zero}"),
+            (low == 0 > value, f"at least {zero}"),
+            (high < 0 <= value, f"below {zero}"),
+            (high == 0 < value, f"at most {zero}"),
+        ):
+            if wrong:
+                shown = format_quantity(value, unknown.unit)
+                raise InputError(
+                    f"values: {unknown.name}", shown, f"a value {expected} (searched is {shown_range(unknown)})"
+                )
+
+
+def refuse_not_computable(
+    instance: Instance, result: Evaluation, told: Mapping[str, str], data: Sequence[float]
+) -> None:
+    """Refuse values outside of the range for which some formula has no number, though no guard or missing cell says so.
+
+    Parameters
+    ----------
+    result : Evaluation
+        Of the one design.
+    told : mapping
+        What ``outside`` returned.
+    data : list of numbers
+        The data inputs; a cell that a table lacks is not-a-number.
+
+    Raises
+    ------
+    InputError
+    """
+    if not told:
+        return
+    model = instance.model
+    missing = [len(model.variables) + k for k, x in enumerate(data) if math.isnan(x)]
+    lacking = model.program.dependence(missing) if missing else None
+    for name, node in model.quantity_node.items():
+        guarded = any(not result.holds[guard][0] for guard in model.guards_of(name))
+        if not math.isfinite(result.values[name][0]) and not guarded and not (lacking is not None and lacking[node]):
+            raise InputError(
+                f"values: {', '.join(told)}",
+                "; ".join(told.values()),
+                f"values for which {name} can be computed",
+            )
+
+
+def widened(unknowns: Sequence[Variable], factor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return ranges that reach further than what is searched, by a factor or by as many spans; signs are kept.
+
+    Parameters
+    ----------
+    unknowns : list of Variable
+    factor : float
+        How much further.
+    """
+    low, high = (np.array(ends) for ends in zip(*(_ends(v) for v in unknowns), strict=True))
+    span = high - low
+    least = np.where(low > 0, low / factor, np.where(low == 0, 0.0, low - factor * span))
+    most = np.where(high < 0, high / factor, np.where(high == 0, 0.0, high + factor * span))
+    return least, most
+
+
+def _unknowns(model: Model) -> list[Variable | Count]:
+    return [*model.variables, *model.declaration.counts.values()]
+
+
+def _ends(unknown: Variable | Count) -> tuple[float, float]:
+    steps = _steps(unknown)
+    return (unknown.lower, unknown.upper) if isinstance(unknown, Variable) else (float(steps[0]), float(steps[-1]))
+
+
+def _steps(unknown: Variable | Count) -> np.ndarray:
+    """Return the values of a count; a variable has none."""
+    return np.empty(0) if isinstance(unknown, Variable) else unknown.values
