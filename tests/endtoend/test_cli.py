@@ -9,7 +9,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -299,7 +298,8 @@ def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
         [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "2000", "--gap", "1e-6", "--no-grid"],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as process:  # fmt: skip
-        time.sleep(3)
+        assert process.stderr is not None
+        assert "designs" in process.stderr.readline()  # of the progress: the search has begun
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 4
