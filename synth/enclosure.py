@@ -104,14 +104,28 @@ class Arithmetic:
             inverse = do("divide", 1.0, b[0])
             return self.multiply(a, (inverse, inverse))
         if sign_of(b[0]) > 0 and sign_of(a[0]) > 0:
-            return do("divide", a[0], b[1]), do("divide", a[1], b[0])
-        signed = sign_of(b[0]) > 0 or sign_of(b[1]) < 0
-        # Not-a-number compares as false: such ends count as including zero.
-        apart = True if signed else self._either_of(*self._apart_from_zero(b))
+            return do("divide", a[0], b[1]), do("divide", a[1], self._end_at_zero(b[0]))
+        if sign_of(b[0]) > 0:
+            return self.multiply(a, (do("divide", 1.0, b[1]), do("divide", 1.0, self._end_at_zero(b[0]))))
+        if isinstance(b[1], Ref) and sign_of(b[1]) < 0:
+            least = do("divide", -1.0, self._end_at_zero(b[1]))
+            return self.multiply(a, (least, do("divide", 1.0, b[0])))
+        # Not-a-number compares as false: such ends count as having zero between them. Zero itself may be an end: what
+        # is divided by it grows without bound to one side, whichever zero it is.
+        where = self.tape.where
+        apart = self._either_of(do("less_equal", 0.0, b[0]), do("less_equal", b[1], 0.0))
         if apart is False:
             return ANYTHING
-        low, high = self.multiply(a, (do("divide", 1.0, b[1]), do("divide", 1.0, b[0])))
-        return self.tape.where(apart, low, -INF), self.tape.where(apart, high, INF)
+        least, most = (
+            where(do("equal", b[1], 0.0), -INF, do("divide", 1.0, b[1])),
+            where(do("equal", b[0], 0.0), INF, do("divide", 1.0, b[0])),
+        )
+        low, high = self.multiply(a, (least, most))
+        return where(apart, low, -INF), where(apart, high, INF)
+
+    def _end_at_zero(self, end: Expr) -> Expr:
+        """Return the size of the end next to zero: divided by zero of either sign it must not change sides."""
+        return self.do("absolute", end)
 
     def _either_of(self, a: Expr, b: Expr) -> Expr:
         return self.do("logical_not", self.do("logical_and", self.do("logical_not", a), self.do("logical_not", b)))
@@ -275,7 +289,7 @@ class Ranges(Arithmetic):
         p = b[0]
         if is_thin(b) and not isinstance(p, Ref):
             if sign_of(a[0]) > 0:
-                ends = do("power", a[0], p), do("power", a[1], p)
+                ends = do("power", a[0] if p >= 0 else self._end_at_zero(a[0]), p), do("power", a[1], p)
                 return ends if p >= 0 else ends[::-1]
             if p > 0 and float(p).is_integer():
                 size = a if p % 2 else self.size(a)

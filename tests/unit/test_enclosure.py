@@ -101,6 +101,22 @@ def test_a_divisor_that_may_be_zero_leaves_anything_possible():
     assert high.tolist() == [INF, 2.0, 0.5]
 
 
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_a_divisor_that_reaches_zero_from_one_side_stays_on_it(zero, known):
+    for divisor, right in (((zero, 2.0), (0.5, INF)), ((-2.0, zero), (-INF, -0.5))):
+        with np.errstate(all="ignore"):
+            found = Arithmetic(Tape()).divide((1.0, 1.0), divisor)
+        assert found[0] <= right[0]
+        assert found[1] >= right[1]
+        tape = Tape()
+        side = sign(divisor) if known else 0
+        b = tape.leaf(side), tape.leaf(side)
+        kernel = tape.kernel([*b], Arithmetic(tape).divide((1.0, 1.0), b))
+        with np.errstate(all="ignore"):
+            assert tuple(float(x[0]) for x in kernel.run([np.array([x]) for x in divisor])) == right
+
+
 # -- whole formulas ----------------------------------------------------------------------------------
 
 
