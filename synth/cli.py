@@ -21,6 +21,7 @@ from synth.terminal import (
     INFEASIBLE,
     INTERNAL,
     INTERRUPTED,
+    NOT_PROVEN,
     STOPPED,
     as_csv,
     blamed_on,
@@ -55,7 +56,7 @@ app = typer.Typer(
     help="Design synthesis for clutches and shaft couplings: requirement in, ranked Pareto designs out.",
     epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written), "
     "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved), "
-    "5 what verify checked does not hold.",
+    "5 what verify checked does not hold, 6 verify could neither prove it again nor refute it.",
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -348,7 +349,7 @@ def verify(
         verification = load_front(folder).verify(**limit)
     print_verification(verification, output())
     if not verification.holds:
-        raise typer.Exit(DOES_NOT_HOLD)
+        raise typer.Exit(DOES_NOT_HOLD if verification.findings else NOT_PROVEN)
 
 
 batches.register(app)

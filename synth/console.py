@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.explanation import Explanation
-    from synth.verify import Verification
+    from synth.verification import Verification
 
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
@@ -346,9 +346,9 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
 
 
 def print_verification(verification: Verification, console: Console) -> None:
-    """Print what checking a front again has shown: every finding, then the outcome."""
-    for finding in verification.findings:
-        console.print(f"- {finding}")
+    """Print what checking a front again has shown: every finding and what stays open, then the outcome."""
+    for sentence in (*verification.findings, *verification.open):
+        console.print(f"- {sentence}")
     console.print(verification.sentence())
 
 

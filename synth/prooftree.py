@@ -17,13 +17,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from synth.enclosure import INF, Cut, Enclosed, Encloser, Pair, Slopes
+from synth.enclosure import INF, LOOSE, Cut, Enclosed, Encloser, Pair, Slopes
 from synth.feasibility import TOLERANCE
 from synth.instance import Instance
 from synth.program import Program
@@ -37,6 +37,7 @@ PAD = 1e-10  # relative; rounding is far below
 SNAP = 1e-9  # relative distance within which a makeable value or a row counts as inside
 THIN = 1e-9  # relative width below which a variable is not split any more
 ROW_TOLERANCE = 1.01 * TOLERANCE
+GUARD_TOLERANCE = 1e-12  # for rounding alone: a guard has no tolerance
 FAR = 1e3
 TINY = 1e-100
 TRIES = 4  # designs in the middle of boxes that are looked at in each round
@@ -75,6 +76,7 @@ class LimitSides:
     sense: str
     scale: float
     void: tuple[int, ...] = ()
+    guard: bool = False
 
 
 @dataclass(frozen=True)
@@ -203,6 +205,10 @@ class Boxes:
         """Return some of the boxes."""
         return Boxes(self.real[:, which], self.whole[:, which])
 
+    def each(self) -> Iterator[Boxes]:
+        """Yield the boxes one by one."""
+        return (self.take(slice(k, k + 1)) for k in range(len(self)))
+
     @staticmethod
     def joined(parts: Sequence[Boxes]) -> Boxes:
         """Return several batches as one."""
@@ -311,7 +317,7 @@ class ProofTree:
             optional = [self._inputs[first + k] for k in model.void_inputs[limit.name]]
             if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
                 void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
-                self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void))
+                self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))
         for extra in self.instance.extra:
             self._limits.append(LimitSides(next(outputs), float(extra.limit), extra.sense, 1e-9))
         self._refusals = list(outputs)
@@ -333,9 +339,10 @@ class ProofTree:
         for x in self._limits:
             if not x.void:
                 direction = {"at_most": 1, "at_least": -1, "equal": 0}[x.sense]
-                cuts.setdefault(x.value, []).append(Cut(x.bound, direction, x.scale))
+                loose = 0.0 if x.guard else LOOSE  # a guard has no tolerance
+                cuts.setdefault(x.value, []).append(Cut(x.bound, direction, x.scale, loose))
                 if isinstance(x.bound, int):
-                    cuts.setdefault(x.bound, []).append(Cut(x.value, -direction, x.scale))
+                    cuts.setdefault(x.bound, []).append(Cut(x.value, -direction, x.scale, loose))
         return cuts
 
     # -- the root box --------------------------------------------------------------------------
@@ -472,24 +479,24 @@ class ProofTree:
         void = masks[x.void] if x.void else None
         rows = []
         if x.sense in ("at_most", "equal"):
-            rows.append(self._limit_row(encloser, value, bound, x.scale, void))
+            rows.append(self._limit_row(encloser, value, bound, x, void))
         if x.sense in ("at_least", "equal"):
-            rows.append(self._limit_row(encloser, bound, value, x.scale, void))
+            rows.append(self._limit_row(encloser, bound, value, x, void))
         return rows
 
-    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, scale: float, void: Ref | None) -> Row:
+    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> Row:
         """Return small <= large as a row: log(small/large), or their difference over their size."""
-        do = e.do
+        do, scale, share = e.do, x.scale, GUARD_TOLERANCE if x.guard else ROW_TOLERANCE
         if small.sign > 0 and large.sign > 0 and scale <= max(small.least, large.least):
             ends = []
             for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
-                ends.append(do("subtract", do("log", do("divide", a[0], b[1])), ROW_TOLERANCE))
+                ends.append(do("subtract", do("log", do("divide", a[0], b[1])), share))
             slopes = e.merged(e.logarithmic(small), e.logarithmic(large), e.subtract)
             return Row(ends[0], ends[1], ends[2], slopes, void)
         size = do("maximum", do("absolute", large.center[0]), do("maximum", do("absolute", small.center[0]), scale))
         factor = do("divide", 1.0, size)
         pair = (factor, factor)
-        tolerance = do("multiply", ROW_TOLERANCE, do("maximum", e.largest(large.range), scale))
+        tolerance = do("multiply", share, do("maximum", e.largest(large.range), scale))
         ends = []
         for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
             ends.append(do("subtract", do("subtract", a[0], b[1]), tolerance))
@@ -551,16 +558,17 @@ class ProofTree:
             if not len(boxes):
                 continue
             widths = self._widths(boxes, regions)
-            small = ~np.any(widths > 0, axis=0)
+            small = ~np.any(widths > 0, axis=0) | self._single(boxes)
             # Once more: what is too small to be split has been tightened only now.
             left = self._tightened(boxes.take(small), regions)[0] if small.any() else boxes.take(small)
+            single = self._single(left)
             hopeful = np.argsort(middle)[:TRIES]
-            for chosen in (left, boxes.take(hopeful[middle[hopeful] <= 0])):
-                for k in range(min(len(chosen), TRIES)):
-                    point = self._point(chosen.take(slice(k, k + 1)))
-                    if confirm(point):
-                        return Outcome(False, nodes, point)
-            stuck += len(left)
+            few = [left.take(np.flatnonzero(~single)[:TRIES]), boxes.take(hopeful[middle[hopeful] <= 0])]
+            # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
+            for point in map(self._point, Boxes.joined([left.take(single), *few]).each()):
+                if confirm(point):
+                    return Outcome(False, nodes, point)
+            stuck += int(np.count_nonzero(~single))
             if stuck > MOST_STUCK:
                 return Outcome(False, nodes)
             if not small.all():
@@ -683,6 +691,15 @@ class ProofTree:
             result[v + m + group] = slot.spread[boxes.whole[2 * m + group]]
         result[-1] = regions.spread[boxes.whole[-1]]
         return result
+
+    def _single(self, boxes: Boxes) -> np.ndarray:
+        """Tell which boxes are a single design in all that the question sees; regions may be many."""
+        v, m = len(self._variables), len(self._ladders)
+        single: np.ndarray = np.all(boxes.real[:v] == boxes.real[v:], axis=0)
+        single &= np.all(boxes.whole[:m] == boxes.whole[m : 2 * m], axis=0)
+        for slot, nodes in zip(self._slots, boxes.whole[2 * m : -1], strict=True):
+            single &= slot.left[nodes] < 0
+        return single
 
     def _split(self, boxes: Boxes, scores: np.ndarray, widths: np.ndarray, regions: Clusters) -> Boxes:
         """Return boxes split where the rows are spread most, once, or more often where there are few."""

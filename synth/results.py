@@ -19,7 +19,7 @@ from synth.units import format_quantity, from_si, header
 if TYPE_CHECKING:
     import pandas as pd
 
-    from synth.verify import Verification
+    from synth.verification import Verification
 
 
 class PartRow(Mapping[str, Any]):

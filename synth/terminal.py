@@ -15,7 +15,7 @@ from synth.files import write_atomically
 if TYPE_CHECKING:
     import pandas as pd
 
-FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD = 0, 1, 2, 3, 4, 5
+FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD, NOT_PROVEN = 0, 1, 2, 3, 4, 5, 6
 INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C
 REPORTS = "clutchsynth.reports"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from synth.prooftree import Outcome, Point, ProofTree
 from synth.question import asked_again, problem_of
 from synth.special import expanded
 from synth.units import format_quantity
+from synth.verification import Verification, percent
 
 if TYPE_CHECKING:
     from synth.model import DataInput
@@ -36,42 +37,6 @@ WIDEST_GAP = 0.5
 NARROWINGS = 3
 # What a record that has been written over by hand leads to.
 UNREADABLE = (KeyError, TypeError, ValueError, AttributeError, IndexError)
-
-
-@dataclass(frozen=True)
-class Verification:
-    """What checking a front again has shown.
-
-    ``findings`` say in a sentence each what is not as claimed. ``proven_gap`` is the smallest gap that could be proven
-    (None: none was claimed, or none could be), ``nodes`` counts the boxes of that proof.
-    """
-
-    holds: bool
-    findings: tuple[str, ...]
-    certificate: str
-    designs: int
-    claimed_gap: float | None
-    proven_gap: float | None
-    nodes: int
-    seconds: float
-
-    def sentence(self) -> str:
-        """Return the outcome in words."""
-        effort = f"({self.nodes} boxes, {self.seconds:.2g} s)"
-        listed = "1 design is" if self.designs == 1 else f"{self.designs} designs are"
-        if not self.holds:
-            proven = (
-                "" if self.proven_gap is None else f"; what could be proven is a gap of {_percent(self.proven_gap)}"
-            )
-            return f"does not hold: {len(self.findings)} finding{'s' * (len(self.findings) > 1)}{proven} {effort}"
-        if self.certificate != "global":
-            return f"holds: {listed} as saved; the certificate is {self.certificate}, so no proof is claimed or checked"
-        if not self.designs:
-            return f"holds: proven again that no design is feasible {effort}"
-        return (
-            f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
-            f"{_percent(self.claimed_gap or 0.0)} in every objective {effort}"
-        )
 
 
 def verify(
@@ -105,8 +70,8 @@ def verify(
     started = time.monotonic()
     check = checked(front, problem, catalogs, started + time_limit)
     return Verification(
-        holds=not check.findings,
         findings=tuple(check.findings),
+        open=tuple(check.open),
         certificate=front.certificate.kind,
         designs=len(front.designs),
         claimed_gap=front.certificate.gap,
@@ -121,19 +86,46 @@ def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float) ->
     check = Check(front, deadline)
     check.record()
     if front.question is not None and problem is None and catalogs is None:
-        check.question(front.question)
+        check.ask(front.question)
+        provable = check.listed()
     else:
         own, tables = problem_of(front, problem, catalogs)
         try:
-            instance = asked_again(front, own, tables)
+            check.ask(asked_again(front, own, tables))
         except (InputError, *UNREADABLE) as error:
             check.find(f"the question of the record cannot be asked: {error}")
-        else:
-            try:
-                check.question(instance)
-            except UNREADABLE as error:
-                check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+            return check
+        try:
+            provable = check.listed()
+        except UNREADABLE as error:
+            check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
+            return check
+    if provable:
+        check.claim()
     return check
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """How a limit stands at a design."""
+
+    name: str
+    value: float
+    bound: float
+    sense: str
+    scale: float
+    guard: bool = False
+    void: bool = False
+
+    @property
+    def residual(self) -> float:
+        """How far the limit is missed; not a number where a side does not exist, and then it does not hold."""
+        return float(residual(self.value, self.bound, self.sense, self.scale))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the limit is kept."""
+        return bool(holds(self.residual, self.guard))
 
 
 class Check:
@@ -142,6 +134,7 @@ class Check:
     def __init__(self, front: ParetoFront, deadline: float) -> None:
         self.front, self.deadline = front, deadline
         self.findings: list[str] = []
+        self.open: list[str] = []
         self.proven: float | None = None
         self.nodes = 0
 
@@ -182,29 +175,38 @@ class Check:
 
     # -- the designs ---------------------------------------------------------------------------
 
-    def question(self, instance: Instance) -> None:
-        """Check everything that needs the question itself."""
-        front, frame = self.front, self.front.frame
+    def ask(self, instance: Instance) -> None:
+        """Take the question that the front answers."""
         self.instance, self.model = instance, instance.model
         self._evaluate = _evaluator(instance)
+        self._refused = _refusal_functions(instance)
+
+    def listed(self) -> bool:
+        """Check what the record says of the question and of the designs; tell whether it claims what can be proven."""
+        front, frame = self.front, self.front.frame
         self._frame()
         for design in front.designs:
             self._design(design)
         if any(name not in self.model.quantity_sx for name in frame.objectives) or not frame.objectives:
             self.find(f"objectives: {', '.join(frame.objectives) or 'none'} is not what the problem can give")
-            return
+            return False
         self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in frame.objectives.values()])
         values = [[d.objectives.get(name, math.nan) for name in frame.objectives] for d in front.designs]
         self.signed = np.array(values, dtype=float).reshape(-1, len(self.senses)) * self.senses
         if len(front.designs):
             if not np.isfinite(self.signed).all():
                 self.find("an objective of a design has no value")
-                return
+                return False
             self._ranking()
             self._dominance()
         self._numbers()
-        if front.certificate.kind == "global":
-            self._claim()
+        if front.certificate.kind != "global":
+            return False
+        gap = front.certificate.gap
+        if front.designs and not (isinstance(gap, float) and 0 < gap < 1):
+            self.find("the certificate claims a proof but no gap")
+            return False
+        return True
 
     def _frame(self) -> None:
         frame, model = self.front.frame, self.model
@@ -295,15 +297,11 @@ class Check:
         limits: Mapping[str, tuple[float, float]],
         values: Mapping[str, float],
     ) -> None:
-        rules = {x.name: (x.sense, x.scale, x.guard) for x in self.model.limits}
-        rules |= {x.name: (x.sense, NO_SCALE, False) for x in self.instance.extra}
-        sides = {**limits, **{x.name: (values[x.quantity], x.limit) for x in self.instance.extra}}
-        for name, (value, bound) in sides.items():
-            sense, scale, guard = rules[name]
-            void = any(math.isnan(point.data[k]) for k in self.model.void_inputs.get(name, []))
-            r = math.nan if void else float(residual(value, bound, sense, scale))
-            used = None if void else float(utilisation(value, bound, sense))
-            if not void and not holds(r, guard):
+        for x in self._readings(point, values, limits):
+            name, value, bound, void = x.name, x.value, x.bound, x.void
+            r = math.nan if void else x.residual
+            used = None if void else float(utilisation(value, bound, x.sense))
+            if not void and not x.holds:
                 self.find(f"{label}: limit {name} does not hold")
             saved = design.limits.get(name, (math.nan, math.nan))
             told = design.utilisation.get(name)
@@ -327,13 +325,25 @@ class Check:
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
             elif len(grid) and not np.any(np.abs(grid - x) <= SAME * np.abs(grid)):
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
-        symbols = [str(s) for s in self.model.inputs]
-        given = dict(zip(symbols, [*point.variables, *point.data], strict=True))
-        for refusal in instance.joint_refusals:
-            when = expanded(refusal.when, self.model.calls)
-            used = ca.symvar(when)
-            if float(ca.Function("refused", used, [when]).call([given[str(s)] for s in used])[0]) > 0.5:
-                self.find(f"{label}: refused, {refusal.code}")
+        for code, refused in self._refusals(point):
+            if refused:
+                self.find(f"{label}: refused, {code}")
+
+    def _readings(
+        self, point: Point, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
+    ) -> Iterator[_Reading]:
+        """Yield how every limit stands at a design; behind a guard that fails the guard alone says that it is none."""
+        for x in self.model.limits:
+            void = any(math.isnan(point.data[k]) for k in self.model.void_inputs[x.name])
+            yield _Reading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
+        for extra in self.instance.extra:
+            yield _Reading(extra.name, values[extra.quantity], extra.limit, extra.sense, NO_SCALE)
+
+    def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
+        """Yield the refusals over several slots, and whether each forbids a design."""
+        inputs = [*point.variables, *point.data]
+        for code, places, function in self._refused:
+            yield code, float(function.call([inputs[k] for k in places])[0]) > 0.5
 
     def _claims_of_design(self, design: Design, label: str) -> None:
         certificate = self.front.certificate
@@ -343,7 +353,7 @@ class Check:
         if design.status is Status.OPTIMAL and not proven:
             self.find(f"{label}: status optimal, but the certificate proves no gap")
         if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + SAME)):
-            self.find(f"{label}: gap {_percent(design.gap)} is above what the certificate claims")
+            self.find(f"{label}: gap {percent(design.gap)} is above what the certificate claims")
 
     # -- the front -----------------------------------------------------------------------------
 
@@ -433,38 +443,28 @@ class Check:
         self.tree = ProofTree(self.instance, self.front.frame.objectives)
         self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
         outcome = self._prove(self._thresholds(gap))
-        if not outcome.closed:
-            self.find(self._refuted(outcome, f"no design improves one listed by more than {_percent(gap)}", "feasible"))
+        self._judge(outcome, f"no design improves one listed by more than {percent(gap)}", "feasible")
 
     # -- the claim -----------------------------------------------------------------------------
 
-    def _claim(self) -> None:
+    def claim(self) -> None:
         """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
         front = self.front
         self.tree = ProofTree(self.instance, front.frame.objectives)
         if not front.designs:
             everywhere = np.full((1, len(self.senses)), math.inf)
-            outcome = self._prove(everywhere)
-            if not outcome.closed:
-                self.find(self._refuted(outcome, "no design is feasible", "feasible"))
+            self._judge(self._prove(everywhere), "no design is feasible", "feasible")
             return
-        gap = front.certificate.gap
-        if gap is None or not 0 < gap < 1:
-            self.find("the certificate claims a proof but no gap")
-            return
+        gap = front.certificate.gap or 0.0
         self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
         if front.complete:
             outcome = self._prove(uncovered(self._thresholds(gap)))
-            if outcome.closed:
+            if self._judge(outcome, "the front is complete", "feasible and no listed design covers it"):
                 self.proven = gap
                 return
-            self.find(self._refuted(outcome, "the front is complete", "feasible and no listed design covers it"))
         outcome = self._prove(self._thresholds(gap))
-        if outcome.closed:
-            self.proven = gap
-            return
-        self.find(self._refuted(outcome, f"no design improves a listed one by more than {_percent(gap)}", ""))
-        self.proven = self._smallest_gap(gap, outcome)
+        self.proven, decisive = (gap, outcome) if outcome.closed else self._smallest_gap(gap, outcome)
+        self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "")
 
     def _is_relative(self, k: int) -> bool:
         """Tell whether objective k is surely positive and to be small, so that a gap is a share of its value."""
@@ -481,18 +481,12 @@ class Check:
         return outcome
 
     def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
+        """Tell whether a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
         values, limits, _ = self._evaluate(point)
-        for x in self.model.limits:
-            if any(math.isnan(point.data[k]) for k in self.model.void_inputs[x.name]):
-                continue
-            value, bound = limits[x.name]
-            if not holds(residual(value, bound, x.sense, x.scale), x.guard):
-                return False
-        for extra in self.instance.extra:
-            if not holds(residual(values[extra.quantity], extra.limit, extra.sense, NO_SCALE), False):
-                return False
-        signed = self._signed_values(values)
-        return bool(np.any(np.all(signed < ends, axis=1)))
+        if not np.any(np.all(self._signed_values(values) < ends, axis=1)):
+            return False
+        kept = all(x.void or x.holds for x in self._readings(point, values, limits))
+        return kept and not any(refused for _, refused in self._refusals(point))
 
     def _signed_values(self, values: Mapping[str, float]) -> np.ndarray:
         signed: np.ndarray = np.array([values[name] for name in self.front.frame.objectives]) * self.senses
@@ -518,32 +512,46 @@ class Check:
         best = int(np.argmax(share))
         return float(share[best]), best
 
-    def _smallest_gap(self, gap: float, outcome: Outcome) -> float | None:
-        """Return a gap that can be proven, near the smallest one."""
-        refuted = gap
+    def _smallest_gap(self, gap: float, outcome: Outcome) -> tuple[float | None, Outcome]:
+        """Return a gap that can be proven, near the smallest one, and the first outcome that refutes the one claimed.
+
+        A design that improves one by more than a larger gap refutes the smaller gap as well.
+        """
+        decisive, refuted = outcome, gap
         while True:
             if outcome.witness is not None:
                 refuted = max(refuted, self._improvement(outcome.witness)[0])
             gap = 2 * refuted
             if gap > WIDEST_GAP or time.monotonic() > self.deadline:
-                return None
+                return None, decisive
             outcome = self._prove(self._thresholds(gap))
             if outcome.closed:
                 break
-            refuted = max(refuted, gap)
+            decisive, refuted = (outcome if decisive.witness is None else decisive), max(refuted, gap)
         for _ in range(NARROWINGS):
             between = math.sqrt(refuted * gap)
             outcome = self._prove(self._thresholds(between))
             if outcome.closed:
                 gap = between
             else:
-                refuted = between
-        return gap
+                decisive, refuted = (outcome if decisive.witness is None else decisive), between
+        return gap, decisive
 
-    def _refuted(self, outcome: Outcome, claim: str, what: str) -> str:
+    def _judge(self, outcome: Outcome, claim: str, what: str) -> bool:
+        """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open."""
         point = outcome.witness
-        if point is None:
-            return f"the claim that {claim} could not be proven with {outcome.nodes} boxes"
+        if point is not None:
+            self.find(f"the claim that {claim} is wrong: {self._told(point)} is {what or self._gain(point)}")
+        elif not outcome.closed:
+            self.open.append(f"the claim that {claim} could not be proven again with {outcome.nodes} boxes")
+        return outcome.closed
+
+    def _gain(self, point: Point) -> str:
+        share, k = self._improvement(point)
+        return f"feasible and improves design {self.front.designs[k].rank} by {percent(share)} in every objective"
+
+    def _told(self, point: Point) -> str:
+        """Return the variables, parts, counts and choices of a design."""
         words = [
             f"{v.name} {format_quantity(float(x), v.unit)}"
             for v, x in zip(self.model.variables, point.variables, strict=True)
@@ -554,10 +562,7 @@ class Check:
                 words.append(f"{entry.name} {value:g}")
             elif entry.kind == "choice":
                 words.append(f"{entry.name} {self.model.declaration.choices[entry.name].labels[int(value)]}")
-        if not what:
-            share, k = self._improvement(point)
-            what = f"feasible and improves design {self.front.designs[k].rank} by {_percent(share)} in every objective"
-        return f"the claim that {claim} is wrong: {', '.join(words)} is {what}"
+        return ", ".join(words)
 
 
 def _evaluator(instance: Instance) -> Any:
@@ -575,6 +580,17 @@ def _evaluator(instance: Instance) -> Any:
         return values, limits, {a.code for a in model.declaration.advices if next(numbers) > 0.5}
 
     return evaluate
+
+
+def _refusal_functions(instance: Instance) -> list[tuple[str, list[int], Any]]:
+    """Return the refusals over several slots: code, positions of the inputs they read, and the condition."""
+    place = {str(symbol): k for k, symbol in enumerate(instance.model.inputs)}
+    functions = []
+    for refusal in instance.joint_refusals:
+        when = expanded(refusal.when, instance.model.calls)
+        used = ca.symvar(when)
+        functions.append((refusal.code, [place[str(s)] for s in used], ca.Function("refused", used, [when])))
+    return functions
 
 
 def uncovered(points: np.ndarray) -> np.ndarray:
@@ -625,7 +641,3 @@ def _same(a: float | None, b: float) -> bool:
 def _close(a: float, b: float) -> bool:
     """Tell whether two relative differences are the same."""
     return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= SAME
-
-
-def _percent(gap: float) -> str:
-    return f"{100 * gap:.3g} %"

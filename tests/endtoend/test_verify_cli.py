@@ -98,10 +98,15 @@ def test_a_changed_table_beside_it_is_named(copy: Path) -> None:
     assert done.stdout.startswith("- designs.csv says something else than front.json\n")
 
 
-def test_a_proof_that_is_given_up_does_not_hold(saved: Path) -> None:
+def test_a_proof_that_is_given_up_is_another_answer_than_what_does_not_hold(saved: Path, copy: Path) -> None:
     done = at_once("verify", saved, "--time-limit", "0.000001 s")
+    assert (done.returncode, done.stderr) == (6, "")
+    assert "could not be proven again" in done.stdout
+    assert "not proven again: 3 designs are as saved" in " ".join(done.stdout.split())
+    rewritten(copy, lambda content: content.update(complete=False, settings={**content["settings"], "points": 2}))
+    done = at_once("verify", copy, "--time-limit", "0.000001 s")
     assert done.returncode == 5
-    assert "could not be proven" in done.stdout
+    assert "3 designs where at most 2 were asked for" in done.stdout
 
 
 @pytest.mark.parametrize("what", ["nowhere", "empty", "foreign", "broken"])

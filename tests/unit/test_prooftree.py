@@ -306,7 +306,69 @@ def test_refusals_over_two_slots_are_kept():
     gains = np.subtract.outer(u, u)
     best = gains[gains <= 0.4].max()
     assert tree.prove(np.array([[-best - 1e-9]]), lambda point: False).closed
-    assert not tree.prove(np.array([[-best + 1e-9]]), lambda point: False).closed  # all boxes are points
+    outcome = tree.prove(np.array([[-best + 1e-9]]), lambda point: True)
+    one, two = outcome.witness.data[:2]
+    assert two - one == pytest.approx(best)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+def test_what_lies_next_to_a_pole_at_zero_is_not_lost(side):
+    class Pole(synth.DesignProblem):
+        name = "pole"
+
+        def declare(self, d):
+            x = d.variable("x", "-", min(2 * side, 0), max(2 * side, 0))
+            d.at_least("steep", side / x, 3, "-")
+            d.derive("distance", "-", (x - side * 5e-4) ** 2 + 1)
+            d.objective("distance")
+
+    _, tree = tree_of(Pole(), {"distance": "min"})
+    outcome = tree.prove(np.array([[1 + 1e-8]]), lambda point: True)
+    assert outcome.witness is not None
+    assert outcome.witness.variables[0] == pytest.approx(side * 5e-4, rel=0.2)
+    assert tree.prove(np.array([[1 - 1e-6]]), lambda point: False).closed
+
+
+class Beyond(synth.DesignProblem):
+    """Makeable values of both signs, and formulas that do not exist where a guard fails."""
+
+    name = "beyond"
+    FORMULAS = (np.sqrt, np.log, lambda g: 1 / g, lambda g: 1 / np.sqrt(g), lambda g: g * np.log(g))
+
+    def __init__(self, seed):
+        self.seed = seed
+        super().__init__()
+
+    def declare(self, d):
+        rng = np.random.default_rng(self.seed)
+        grid = np.round(np.arange(-8, 9) * 0.25, 3)  # so that a guard is often exactly at its border
+        x = d.variable("x", "-", grid[0], grid[-1], grid=grid.tolist())
+        y = d.variable("y", "-", grid[0], grid[12], grid=grid[:13].tolist())
+        n, part = d.count("n", 1, 3), d.part("part", "things")
+        a, b, c = (rng.integers(-4, 5, 3) / 2).tolist()
+        left = (a * x + b * y * n + c, x * y + c, a * x + b * y - n)[self.seed % 3]
+        d.at_least("left", left, 0, "-", guard=True)
+        behind = self.FORMULAS[self.seed % 5](left)
+        d.derive("behind", "-", behind, needs=("left",))
+        d.at_most("behind", behind, 1.5 + 0 * x, "-")
+        d.at_most("both", b * x + part.u - n, 1 + y, "-")
+        d.derive("cost", "-", a * y * n + x * x + (behind if self.seed % 2 else 0), needs=("left",))
+        d.objective("cost")
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_single_designs_are_settled_by_their_evaluation_also_where_formulas_do_not_exist(seed):
+    instance, tree = tree_of(Beyond(seed), {"cost": "min"}, catalogs={"things": THINGS})
+    makeable = np.stack([m.ravel() for m in np.meshgrid(*instance.grids(), indexing="ij")], axis=1)
+    x = np.tile(makeable, (instance.combinations, 1))
+    _, values, feasible = sample(instance, x, np.repeat(np.arange(instance.combinations), len(makeable)))
+    cost = np.where(feasible, values["cost"], np.inf)
+    best = np.min(cost)
+    room = 1e-9 * max(abs(best), 1.0)
+    ends = np.array([[best - room if np.isfinite(best) else math.inf]])
+    assert tree.prove(ends, confirmed(instance, ["cost"], ends, [])).closed
+    ends += 2 * room
+    assert (tree.prove(ends, confirmed(instance, ["cost"], ends, [])).witness is not None) == np.isfinite(best)
 
 
 # -- clusters ----------------------------------------------------------------------------------------

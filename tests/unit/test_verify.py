@@ -13,9 +13,11 @@ import pytest
 import synth
 from synth.instance import Instance
 from synth.loading import load_front
+from synth.prooftree import Point
 from synth.results import ParetoFront, PartRow
 from synth.tables import Catalogs
-from synth.verify import uncovered
+from synth.verification import Verdict
+from synth.verify import Check, uncovered
 from tests.unit.strut import NEEDED, RODS, Strut
 
 ROOT = Path(__file__).parents[2]
@@ -25,7 +27,7 @@ FEW_PLATES = {"plate": ["core 1", "core 2", "core 4"]}
 
 
 def test_nothing_is_shared_with_the_search():
-    own = {"verify", "prooftree", "enclosure", "tape"}
+    own = {"verify", "verification", "prooftree", "enclosure", "tape"}
     allowed = own | {
         "errors",
         "feasibility",
@@ -176,6 +178,31 @@ def test_a_front_of_a_family_holds_over_its_whole_catalogue(fix):
     assert verification.proven_gap == 5e-3
 
 
+class Paired(synth.DesignProblem):
+    """Two rows and a length; the lightest pairs are refused."""
+
+    name = "paired"
+
+    def declare(self, d):
+        length = d.variable("length", "mm", 100, 200)
+        one, two = d.part("one", "rods"), d.part("two", "rods")
+        d.refuse("same", one.density * two.density < 7900.5 * 7850.5, "two parts of which one is dense")
+        d.derive("mass", "kg", (one.density + two.density) * length * 1e-4)
+        d.objective("mass")
+
+
+def test_a_design_that_is_refused_refutes_nothing():
+    front = synth.synthesize(Paired(), {}, catalogs={"rods": WHOLE})
+    check = Check(front, math.inf)
+    check.ask(front.question)
+    assert check.listed()
+    rows = dict.fromkeys(("one", "two"), 0)
+    soft = Point(np.array([0.1]), [7850.0] * len(front.question.model.data_inputs), rows)
+    assert not check._lies_below(soft, np.array([[math.inf]]))
+    check.claim()
+    assert (check.findings, check.open) == ([], [])
+
+
 # -- fronts that are wrong ---------------------------------------------------------------------------
 
 
@@ -296,7 +323,7 @@ TAMPERINGS = {
         "design 4 equals design 5",
     ),
     "combinations": (lambda f: certified(f, combinations=73), "73 combinations"),
-    "a smaller gap": (lambda f: certified(f, gap=1e-6), "no design improves a listed one by more than 0.0001 %"),
+    "a smaller gap": (lambda f: certified(f, gap=1e-6), "gap 5 % is above what the certificate claims"),
     "complete": (lambda f: dataclasses.replace(f, complete=True), "the front is complete"),
     "a design that can be improved": (shifted, "improves design 1 by"),
     "no proof": (lambda f: certified(f, kind="heuristic"), "the certificate"),
@@ -324,6 +351,8 @@ def test_the_gap_that_can_be_proven_is_told(front):
     assert not verification.holds
     assert verification.claimed_gap == 1e-6
     assert 1e-6 < verification.proven_gap <= 5e-2
+    claim = "the claim that no design improves a listed one by more than 0.0001 %"
+    assert any(claim in sentence for sentence in (*verification.findings, *verification.open))
     assert "what could be proven is a gap of" in verification.sentence()
     # What is told as provable is.
     assert certified(front, gap=verification.proven_gap).verify(STRUT, RODS_TABLE).proven_gap == verification.proven_gap
@@ -331,9 +360,18 @@ def test_the_gap_that_can_be_proven_is_told(front):
 
 def test_a_proof_without_time_is_not_taken_for_one(front):
     verification = front.verify(STRUT, RODS_TABLE, time_limit=1e-9)
-    assert not verification.holds
-    assert "could not be proven" in verification.findings[-1]
+    assert (verification.verdict, verification.holds) == (Verdict.NOT_PROVEN, False)
+    assert verification.findings == ()
+    assert "could not be proven again with 0 boxes" in verification.open[-1]
     assert verification.proven_gap is None
+    assert verification.sentence().startswith("not proven again: 5 designs are as saved, nothing refutes the claim")
+
+
+def test_one_finding_refutes_whatever_stays_open(front):
+    verification = changed(front, 0, rank=2).verify(STRUT, RODS_TABLE, time_limit=1e-9)
+    assert verification.verdict is Verdict.REFUTED
+    assert verification.open
+    assert verification.sentence().startswith("does not hold: 1 finding ")
 
 
 # -- files -------------------------------------------------------------------------------------------

@@ -1,0 +1,74 @@
+"""What checking a front again has shown, and how that is told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """How a check ended."""
+
+    HOLDS = "holds"
+    REFUTED = "refuted"  # something is not as claimed
+    NOT_PROVEN = "not_proven"  # nothing is wrong, but the proof did not close within its effort
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What checking a front again has shown.
+
+    ``findings`` say in a sentence each what is not as claimed, ``open`` which claims could be neither proven again nor
+    refuted within the effort. ``proven_gap`` is the smallest gap that could be proven (None: none was claimed, or none
+    could be), ``nodes`` counts the boxes of that proof.
+    """
+
+    findings: tuple[str, ...]
+    open: tuple[str, ...]
+    certificate: str
+    designs: int
+    claimed_gap: float | None
+    proven_gap: float | None
+    nodes: int
+    seconds: float
+
+    @property
+    def verdict(self) -> Verdict:
+        """How the check ended: one finding refutes, whatever else is open."""
+        return Verdict.REFUTED if self.findings else Verdict.NOT_PROVEN if self.open else Verdict.HOLDS
+
+    @property
+    def holds(self) -> bool:
+        """Whether everything is as claimed, and proven again as far as a proof is claimed."""
+        return self.verdict is Verdict.HOLDS
+
+    def sentence(self) -> str:
+        """Return the outcome in words."""
+        effort = f"({self.nodes} boxes, {self.seconds:.2g} s)"
+        listed = "1 design is" if self.designs == 1 else f"{self.designs} designs are"
+        if not self.holds:
+            proven = "" if self.proven_gap is None else f"; what could be proven is a gap of {percent(self.proven_gap)}"
+            if self.findings:
+                count = f"{len(self.findings)} finding{'s' * (len(self.findings) > 1)}"
+                return f"does not hold: {count}{proven} {effort}"
+            saved = f"{listed} as saved" if self.designs else "no design is listed"
+            return f"not proven again: {saved}, nothing refutes the claim, but its proof did not close{proven} {effort}"
+        if self.certificate != "global":
+            return f"holds: {listed} as saved; the certificate is {self.certificate}, so no proof is claimed or checked"
+        if not self.designs:
+            return f"holds: proven again that no design is feasible {effort}"
+        return (
+            f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
+            f"{percent(self.claimed_gap or 0.0)} in every objective {effort}"
+        )
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent, for people.
+
+    Examples
+    --------
+    >>> percent(0.005)
+    '0.5 %'
+    """
+    return f"{100 * share:.3g} %"
