@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Variable
-from synth.errors import InputError
+from synth.errors import InputError, at
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.model import Evaluation, Model, part_column_value
@@ -284,7 +284,7 @@ def evaluate(
         return _evaluate(p, requirements, si, parts, catalogs, limits, objectives, in_si=True)
     if design is not None:
         if not isinstance(design, Mapping):
-            raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'")
+            raise InputError("design", design, "a Design, or a mapping with 'values' and 'parts'", ("design",))
         values, parts = design.get("values"), design.get("parts")
     values = as_mapping(values, "values", "{'mass': '20 kg'}")
     parts = as_mapping(parts, "parts", "{'slot': 'designation'}")
@@ -330,7 +330,9 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
     if asked is None:
         chosen = {o.name: o.sense for o in declared.values() if o.default}
         if not chosen:
-            raise InputError("objectives", None, "at least one of " + ", ".join(declared or model.quantity_sx))
+            raise InputError(
+                "objectives", None, "at least one of " + ", ".join(declared or model.quantity_sx), ("objectives",)
+            )
         return chosen
     if isinstance(asked, str):
         asked = [asked]
@@ -344,15 +346,16 @@ def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
                     f"objectives: {name}",
                     None,
                     f"a sense, for example {{{name}: min}}; declared are {', '.join(declared)}",
+                    ("objectives", name),
                 )
             sense = declared[name].sense
         if sense not in ("min", "max"):
-            raise InputError(f"objectives: {name}", sense, "min or max")
+            raise InputError(f"objectives: {name}", sense, "min or max", ("objectives", name))
         if name in result:
-            raise InputError("objectives", word, "each objective once")
+            raise InputError("objectives", word, "each objective once", ("objectives", str(word)))
         result[name] = str(sense)
     if not result:
-        raise InputError("objectives", None, "at least one of " + ", ".join(declared))
+        raise InputError("objectives", None, "at least one of " + ", ".join(declared), ("objectives",))
     return result
 
 
@@ -375,9 +378,10 @@ def _chosen_rows(instance: Instance, parts: Mapping[str, str]) -> dict[str, tupl
     result = {}
     for slot, part in slots.items():
         if slot not in asked:
-            raise InputError(f"parts: {slot}", None, f"a designation of table {part.table}")
+            raise InputError(f"parts: {slot}", None, f"a designation of table {part.table}", ("parts", slot))
         table = instance.catalogs.table(part.table)
-        result[slot] = (table, table.row_index(asked[slot]))
+        with at("parts", slot):
+            result[slot] = (table, table.row_index(asked[slot]))
     return result
 
 
@@ -390,21 +394,23 @@ def _read_values(
         among = [*model.quantity_sx, *d.choices]
         name = model.name_of(str(word), "values", among, "a variable, count, choice or derived quantity")
         if name in known or name in choices or name in derived:
-            raise InputError(f"values: {name}", word, "each quantity once (name and symbol mean the same)")
+            right = "each quantity once (name and symbol mean the same)"
+            raise InputError(f"values: {name}", word, right, ("values", str(word)))
         if name in d.choices:
             label = ("yes" if value else "no") if isinstance(value, bool) else str(value)
             if label not in d.choices[name].labels:
-                raise InputError(f"values: {name}", value, d.choices[name].expected(label))
+                raise InputError(f"values: {name}", value, d.choices[name].expected(label), ("values", name))
             choices[name] = label
             continue
-        si = float(value) if in_si else parse_quantity(value, model.units[name], f"values: {name}")
+        with at("values", name):
+            si = float(value) if in_si else parse_quantity(value, model.units[name], f"values: {name}")
         (derived if name in d.derived else known)[name] = si
     for name, choice in d.choices.items():
         if name not in choices:
-            raise InputError(f"values: {name}", None, "one of " + ", ".join(choice.labels))
+            raise InputError(f"values: {name}", None, "one of " + ", ".join(choice.labels), ("values", name))
     for name, count in d.counts.items():
         if name not in known:
-            raise InputError(f"values: {name}", None, f"a value, {shown_range(count)} as a rule")
+            raise InputError(f"values: {name}", None, f"a value, {shown_range(count)} as a rule", ("values", name))
     refuse_other_sign(model, known)
     return known, choices, derived
 
@@ -425,9 +431,8 @@ def _data(
             value = float(part_column_value(entry, numbers)[0])
             if np.isnan(value) and entry.required:
                 designation = table.designations[index]
-                raise InputError(
-                    f"parts: {entry.name}", designation, f"a row with a value in {' or '.join(entry.columns)}"
-                )
+                right = f"a row with a value in {' or '.join(entry.columns)}"
+                raise InputError(f"parts: {entry.name}", designation, right, ("parts", entry.name))
         elif entry.kind == "count":
             value = known[entry.name]
         else:
@@ -446,7 +451,9 @@ def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[st
             used = ca.symvar(when)
             function = ca.Function("refused", used, [when])
             if float(function(*[symbols[str(s)] for s in used])) > 0.5:
-                raise InputError(refusal.code, ", ".join(sorted(kinds)), refusal.message)
+                name = min(kinds)
+                path = ("parts" if name in model.declaration.slots else "values", name)
+                raise InputError(refusal.code, ", ".join(sorted(kinds)), refusal.message, path)
     remarks = []
     for slot, (table, index) in rows.items():
         part = model.declaration.slots[slot]
@@ -463,16 +470,16 @@ def _complete_variables(
     if len(derived) != len(missing):
         names = [model.variables[k].name for k in missing]
         if not names:
-            raise InputError("values", ", ".join(derived), "no derived quantities: all variables are given already")
+            raise InputError(
+                "values", ", ".join(derived), "no derived quantities: all variables are given already", ("values",)
+            )
         if not derived:
             v = model.variables[missing[0]]
             low, high = format_quantity(v.lower, v.unit), format_quantity(v.upper, v.unit)
-            raise InputError(
-                f"values: {v.name}", None, f"a value ({low} to {high}), or a derived quantity in its place"
-            )
-        raise InputError(
-            "values", ", ".join(derived), f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
-        )
+            right = f"a value ({low} to {high}), or a derived quantity in its place"
+            raise InputError(f"values: {v.name}", None, right, ("values", v.name))
+        right = f"exactly {len(names)} derived quantities in place of {', '.join(names)}"
+        raise InputError("values", ", ".join(derived), right, ("values",))
     variables = np.array([known.get(v.name, np.nan) for v in model.variables])
     if missing:
         variables[missing] = _solve_for(model, missing, derived, variables, data)
@@ -515,7 +522,8 @@ def _solve_for(
         return min(found, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
     wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
     ranges = ", ".join(f"{v.name} ({shown_range(v)})" for v in unknown)
-    raise InputError("values", wanted, f"quantities that some {ranges} can give, or values not far outside")
+    right = f"quantities that some {ranges} can give, or values not far outside"
+    raise InputError("values", wanted, right, ("values",))
 
 
 def _solutions(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from synth.errors import InputError
+from synth.errors import InputError, UnknownOptionError
 from synth.units import parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -151,9 +151,8 @@ class Part:
         if column.startswith("_"):
             raise AttributeError(column)
         if column not in self.known:
-            raise InputError(
-                f"table {self.table}, column {column}", None, f"a number column, which slot {self.slot} uses"
-            )
+            right = f"a number column, which slot {self.slot} uses"
+            raise InputError(f"table {self.table}, column {column}", None, right, ("catalogs", self.table, column))
         return self._symbol((column,), required=True)
 
     def optional(self, column: str) -> Any:
@@ -360,12 +359,13 @@ class Declaration:
         if default not in labels:
             raise DeclarationError(f"{self.problem}: default {default!r} of option {name} is not one of {labels}")
         if name != symbol and name in self._asked_options and symbol in self._asked_options:
-            raise InputError(f"options: {name}", symbol, "each option once (name and symbol mean the same)")
+            right = "each option once (name and symbol mean the same)"
+            raise InputError(f"options: {name}", symbol, right, ("options", symbol))
         chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
         if isinstance(chosen, bool):
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         if chosen not in labels:
-            raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels))
+            raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
         self.options[name] = Option(name, symbol, text, source, labels, default, chosen)
         return str(chosen)
 
@@ -573,7 +573,8 @@ class Declaration:
         for option in self._asked_options:
             if option not in self.options and option not in {o.symbol for o in self.options.values()}:
                 known_options = ", ".join(self.options) or "none"
-                raise InputError("options", option, f"an option of {self.problem}: {known_options}")
+                right = f"an option of {self.problem}: {known_options}"
+                raise UnknownOptionError("options", option, right, ("options", option))
 
 
 def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper: float) -> np.ndarray:

@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+from numbers import Integral
+from types import TracebackType
+from typing import Any
+
+from synth.input_limits import INPUT_LIMITS
+
+Key = str | int
+EXPECTED = 8  # times as much room for what is right: that lists names of ours
+
 
 class InputError(ValueError):
     """Something in the input is wrong and the user can put it right.
@@ -9,20 +18,93 @@ class InputError(ValueError):
     Parameters
     ----------
     field : str
-        Which field, row or file is meant, as the user wrote it.
+        Which field, row or file is meant, as people read it.
     value : object
         What stands there now; ``None`` when something is missing.
     expected : str
         What would be right, in words that can be typed.
+    path : tuple of str and int
+        The same place for programs: keys of a spec by public name, positions in lists from 0, lines of tables, for
+        example ``("requirements", "load_torque")``, ``("limits", "mass", 0)``, ``("rows", 7, "load_torque [N*m]")``.
+        Empty where it is no place in the input. Readers of a part say what they know; whoever called them puts his
+        own keys in front (:meth:`under`, :class:`at`).
     """
 
-    def __init__(self, field: str, value: object, expected: str) -> None:
+    def __init__(self, field: str, value: object, expected: str, path: tuple[Key, ...] = ()) -> None:
         self.field = field
         self.value = value
         self.expected = expected
-        shown = "is missing" if value is None else f"got {value!r}"
-        super().__init__(f"{field}: {shown}; expected {expected}")
+        self.path = path
+        got = "is missing" if value is None else f"got {shortened(repr(value))}"
+        # A field names a place in a file: each of the two may be as long as a value.
+        place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
+        right = shortened(expected, EXPECTED * INPUT_LIMITS.message)
+        super().__init__(f"{place}: {got}; expected {right}")
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str]]:
-        """Pickle by the three fields, so that worker processes can hand it on."""
-        return type(self), (self.field, self.value, self.expected)
+    def under(self, *keys: Key) -> InputError:
+        """Put keys in front of the path, as a reader that was given a part of the input; return the same error."""
+        self.path = (*keys, *self.path)
+        return self
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, object, str, tuple[Key, ...]]]:
+        """Pickle by the four fields, so that worker processes can hand it on."""
+        return type(self), (self.field, self.value, self.expected, self.path)
+
+
+class UnknownOptionError(InputError):
+    """An option that a problem does not have, as it is or with the other options; its name is the last key."""
+
+
+class at:
+    """Say where in the input one is: what is refused inside stands under these keys.
+
+    Examples
+    --------
+    >>> try:
+    ...     with at("requirements"), at("load_torque"):
+    ...         raise InputError("load_torque", "much", "a number")
+    ... except InputError as error:
+    ...     error.path
+    ('requirements', 'load_torque')
+    """
+
+    def __init__(self, *keys: Key) -> None:
+        self.keys = keys
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if isinstance(error, InputError):
+            error.under(*self.keys)
+
+
+def shortened(text: str, most: int = INPUT_LIMITS.message) -> str:
+    """Return what a message repeats of a text: beginning and end of the whole, and of every word, that is too long.
+
+    Examples
+    --------
+    >>> len(shortened("x" * 1_000_000)), shortened("load_torque"), shortened("the mass " + "x" * 125, 960)[-40:]
+    (120, 'load_torque', 'xxxxx ... xxxxxxxxxxxxxxxxxxxxxxxxxxxxxx')
+    """
+    return _cut(" ".join(_cut(word, INPUT_LIMITS.message) for word in text.split(" ")), most)
+
+
+def _cut(text: str, most: int) -> str:
+    tail = most // 4
+    return text if len(text) <= most else f"{text[: most - tail - 5]} ... {text[-tail:]}"
+
+
+def whole_number(value: Any, field: str, most: int, least: int = 1, path: tuple[Key, ...] = ()) -> int:
+    """Return a count that a user stated.
+
+    Raises
+    ------
+    InputError
+        It is no whole number, or not between the least and the most.
+    """
+    if not isinstance(value, Integral) or isinstance(value, bool) or not least <= int(value) <= most:
+        raise InputError(field, value, f"a whole number, {least} or more and at most {most}", path)
+    return int(value)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 def must_be_one_family(asked: Spec) -> None:
     """Refuse a spec of several families."""
     if asked.compares:
-        raise InputError(f"{asked.file}: family", asked.shown_family, "one family (clutchsynth run compares several)")
+        right = "one family (clutchsynth run compares several)"
+        raise InputError(f"{asked.file}: family", asked.shown_family, right, ("family",))
 
 
 def must_be_a_question(asked: Spec) -> None:
@@ -26,6 +27,7 @@ def must_be_a_question(asked: Spec) -> None:
             f"{asked.file}: values",
             ", ".join(asked.values),
             "a question without values; clutchsynth check reads a given design",
+            ("values",),
         )
 
 
@@ -37,11 +39,11 @@ def must_be_a_design(asked: Spec) -> None:
             f"{asked.file}: values",
             None,
             "the variables, counts and choices of the design (clutchsynth run takes a question)",
+            ("values",),
         )
     if asked.fix:
-        raise InputError(
-            f"{asked.file}: fix", ", ".join(asked.fix), "these under values: a given design has nothing left to fix"
-        )
+        right = "these under values: a given design has nothing left to fix"
+        raise InputError(f"{asked.file}: fix", ", ".join(asked.fix), right, ("fix",))
 
 
 def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
@@ -66,8 +68,7 @@ def _one_each(asked: Spec) -> dict[str, str]:
     for slot, rule in asked.parts.items():
         rows = [rule] if isinstance(rule, str) else list(rule)
         if len(rows) != 1:
-            raise InputError(
-                f"{asked.file}: parts: {slot}", rows, "one designation: a given design has one part in each slot"
-            )
+            right = "one designation: a given design has one part in each slot"
+            raise InputError(f"{asked.file}: parts: {slot}", rows, right, ("parts", slot))
         result[slot] = rows[0]
     return result

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.analysis import evaluate
-from synth.errors import InputError
+from synth.errors import InputError, at
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.problem import DesignProblem, load
 from synth.tables import Catalogs
@@ -156,8 +156,9 @@ def read_settings(problem: DesignProblem, settings: Mapping[str, Any] | None, ca
         if name not in declared:
             close = difflib.get_close_matches(str(name), declared, n=2)
             listed = " or ".join(close) or ", ".join(declared) or "no settings: this family has none"
-            raise InputError("settings", name, listed)
-        told[name] = _read_setting(f"settings: {name}", declared[name], value, catalogs)
+            raise InputError("settings", name, listed, ("settings", str(name)))
+        with at("settings", name):
+            told[name] = _read_setting(f"settings: {name}", declared[name], value, catalogs)
     return told
 
 

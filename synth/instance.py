@@ -16,8 +16,9 @@ import casadi as ca
 import numpy as np
 
 from synth.conditions import may_be_condition, parse_condition
-from synth.declaration import Part
-from synth.errors import InputError
+from synth.declaration import Part, Refusal
+from synth.errors import InputError, at
+from synth.input_limits import INPUT_LIMITS
 from synth.model import part_column_value
 from synth.problem import DesignProblem
 from synth.special import expanded
@@ -51,7 +52,8 @@ def catalogs_for(problem: DesignProblem, spec: Any, base: Path | None = None) ->
         if name not in used:
             close = difflib.get_close_matches(name, used, n=2, cutoff=0.4)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise InputError("catalogs", name, f"a table that is used ({', '.join(sorted(used)) or 'none'}){hint}")
+            right = f"a table that is used ({', '.join(sorted(used)) or 'none'}){hint}"
+            raise InputError("catalogs", name, right, ("catalogs", name))
     return catalogs
 
 
@@ -118,8 +120,15 @@ def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
     if value is None:
         return {}
     if not isinstance(value, Mapping):
-        raise InputError(field, value, f"names with values, for example {example}")
+        raise InputError(field, value, f"names with values, for example {example}", (field,))
     return value
+
+
+def check_number_of_limits(limits: Mapping[str, Any]) -> None:
+    """Refuse more limits than a question may have, before any of them is read."""
+    count = sum(len(texts) if isinstance(texts, (list, tuple)) else 1 for texts in limits.values())
+    if count > INPUT_LIMITS.limits:
+        raise InputError("limits", f"{count} limits", f"at most {INPUT_LIMITS.limits}", ("limits",))
 
 
 def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs) -> dict[str, Any]:
@@ -135,7 +144,8 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     for word, value in as_mapping(requirements, "requirements", "{'mass': '20 kg'}").items():
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
         if name in result:
-            raise InputError(f"requirement {name}", word, "each requirement once (name and symbol mean the same)")
+            right = "each requirement once (name and symbol mean the same)"
+            raise InputError(f"requirement {name}", word, right, ("requirements", str(word)))
         if value is not None:
             result[name] = value
     return result
@@ -187,6 +197,7 @@ class Instance:
         self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
+        check_number_of_limits(self.asked_limits)
         quantities = list(self.model.quantity_sx)
         for word, conditions in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
             if restrict or word in d.derived:
@@ -195,7 +206,8 @@ class Instance:
         among = [*quantities, *d.choices, *d.slots]
         kinds = "a variable, count, choice, slot or derived quantity"
         for name, value in self.model.by_name(pinned, "fix", among, kinds).items():
-            self._pin(name, value)
+            with at("fix", name):
+                self._pin(name, value)
         self.selection = Selection()
         if restrict:
             self._select_rows(as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}"))
@@ -216,10 +228,12 @@ class Instance:
             if r.sx is None:
                 continue
             if r.name in asked:
-                values[r.name] = parse_quantity(asked[r.name], r.unit, f"requirement {r.name}")
-                self._check_range(r.name, asked[r.name], values[r.name], r.lower, r.upper, r.unit)
+                with at("requirements", r.name):
+                    values[r.name] = parse_quantity(asked[r.name], r.unit, f"requirement {r.name}")
+                    self._check_range(r.name, asked[r.name], values[r.name], r.lower, r.upper, r.unit)
             elif r.default is None:
-                raise InputError(f"requirement {r.name}", None, f"a value in {r.unit}, for example {self._example(r)}")
+                right = f"a value in {r.unit}, for example {self._example(r)}"
+                raise InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
             elif isinstance(r.default, float):
                 values[r.name] = r.default
             else:
@@ -256,7 +270,8 @@ class Instance:
                 numbers = {c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in column.columns}
                 value = float(part_column_value(column, numbers)[0])
                 if math.isnan(value) and column.required:
-                    raise InputError(f"table {row.table}, row {designation}, column {key}", None, "a number")
+                    where = f"table {row.table}, row {designation}, column {key}"
+                    raise InputError(where, None, "a number", ("catalogs", row.table, designation, key))
                 values[str(column.sx)] = value
         self.row_values = values
         return values
@@ -266,7 +281,7 @@ class Instance:
         known = self._symbol_values()
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
             if not kinds and self._number(refusal.when, known) > 0.5:
-                raise InputError(refusal.code, self._involved(refusal.when) or self._chosen_options(), refusal.message)
+                raise self._refused(refusal)
 
     def _number(self, expression: Any, values: Mapping[str, float]) -> float:
         """Evaluate an expression of the declaration; what evaluates it is built once per model, not per question."""
@@ -281,19 +296,18 @@ class Instance:
         symbols = self.model.requirement_symbols
         return {**{symbols[n]: v for n, v in self.requirements.items()}, **self.row_values}
 
-    def _involved(self, expression: Any) -> str:
-        used = {str(s) for s in ca.symvar(expanded(expression, self.model.calls))}
-        shown = [
-            f"{r.name} = {format_quantity(self.requirements[r.name], r.unit)}"
-            for r in self.model.declaration.requirements.values()
+    def _refused(self, refusal: Refusal) -> InputError:
+        """Return the fault of what the family refuses: in requirements, or where it speaks of none in options."""
+        d, used = self.model.declaration, {str(s) for s in ca.symvar(expanded(refusal.when, self.model.calls))}
+        shown = {
+            r.name: f"{r.name} = {format_quantity(self.requirements[r.name], r.unit)}"
+            for r in d.requirements.values()
             if r.name in self.requirements and str(r.sx) in used
-        ]
-        return ", ".join(shown)
-
-    def _chosen_options(self) -> str:
-        """Return the options that are not at their default: what a refusal without requirements speaks of."""
-        options = self.model.declaration.options.values()
-        return ", ".join(f"{o.name} = {o.chosen}" for o in options if o.chosen != o.default)
+        }
+        place = "requirements" if shown else "options"
+        shown = shown or {o.name: f"{o.name} = {o.chosen}" for o in d.options.values() if o.chosen != o.default}
+        path = (place, *shown) if len(shown) == 1 else (place,)
+        return InputError(refusal.code, ", ".join(shown.values()), refusal.message, path)
 
     def moved(self, name: str, value: float) -> Instance:
         """Return this question with another value of a requirement, and of those whose default is made of it.
@@ -319,19 +333,17 @@ class Instance:
     def _add_limit(self, name: str, conditions: Any) -> None:
         model = self.model
         unit = model.units[name]
-        for text in conditions if isinstance(conditions, (list, tuple)) else [conditions]:
-            for sense, bound in self.read_limit(name, unit, text):
+        for sense, bound, place in read_limits(name, unit, conditions):
+            with at("limits", name, *place):
                 self._apply_limit(name, unit, sense, bound)
 
     def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
         """Return what the user wrote about a quantity as limits."""
         unit = self.model.units[name]
-        result = []
-        for text in texts if isinstance(texts, (list, tuple)) else [texts]:
-            for sense, bound in self.read_limit(name, unit, text):
-                label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
-                result.append(ExtraLimit(label, name, sense, bound, unit))
-        return result
+        return [
+            ExtraLimit(f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}", name, sense, bound, unit)
+            for sense, bound, _ in read_limits(name, unit, texts)
+        ]
 
     def state_limits_on_unknowns(self) -> None:
         """Let limits on variables and counts, which bound a search, be limits that a given design may miss."""
@@ -339,21 +351,6 @@ class Instance:
         for name, texts in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
             if name not in self.model.declaration.derived:
                 self.extra += self.conditions(name, texts)
-
-    @staticmethod
-    def read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
-        """Return what a text says of a quantity: sense and SI value of each limit."""
-        label = f"limits: {name}"
-        if isinstance(text, str) and ".." in text:
-            first, last = text.split("..", 1)
-            low, high = parse_quantity(first, unit, label), parse_quantity(last, unit, label)
-            if low > high:
-                raise InputError(label, text, "the smaller value first, for example '200 mm .. 260 mm'")
-            return [("at_least", low), ("at_most", high)]
-        match = CONDITION.match(text) if isinstance(text, str) else None
-        if match is None:
-            raise InputError(label, text, f"a comparison, for example '<= 260 {unit}' or '200 {unit} .. 260 {unit}'")
-        return [(SENSES[match.group(1)], parse_quantity(match.group(2), unit, label))]
 
     def _apply_limit(self, name: str, unit: str, sense: str, bound: float) -> None:
         model = self.model
@@ -418,14 +415,16 @@ class Instance:
             self.selection.offered[part.slot] = len(table)
             keep = self.offers(part, table)
             if part.slot in wanted:
-                keep &= self._part_rule(part, table, wanted[part.slot])
+                with at("parts", part.slot):
+                    keep &= self._part_rule(part, table, wanted[part.slot])
             if part.slot in self._fixed_discrete:
-                keep &= self._part_rule(part, table, [self._fixed_discrete[part.slot]])
+                with at("fix", part.slot):
+                    keep &= np.arange(len(table)) == table.row_index(str(self._fixed_discrete[part.slot]))
             keep = self._complete_rows(part, table, keep)
             rows = np.flatnonzero(keep)
             if not len(rows):
                 asked = [wanted[part.slot]] if part.slot in wanted else []
-                asked += [self._fixed_discrete[part.slot]] if part.slot in self._fixed_discrete else []
+                asked += [[self._fixed_discrete[part.slot]]] if part.slot in self._fixed_discrete else []
                 self._refuse_empty(part, table, asked)
             columns = {
                 key: part_column_value(
@@ -453,7 +452,7 @@ class Instance:
             expected = f"a row of table {part.table} that is complete ({'; '.join(lacking)})"
         else:
             expected = f"a row of table {part.table} with {' and '.join(part.where)}"
-        raise InputError(f"slot {part.slot}", names, expected)
+        raise InputError(f"slot {part.slot}", names, expected, ("parts", part.slot))
 
     @staticmethod
     def _meets(text: str, table: Table) -> np.ndarray:
@@ -483,8 +482,12 @@ class Instance:
             return parse_condition(rule).mask(table)
         if not isinstance(rule, (str, Sequence)):
             raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")
-        for designation in [rule] if isinstance(rule, str) else rule:
-            keep[table.row_index(str(designation))] = True
+        if isinstance(rule, str):
+            keep[table.row_index(rule)] = True
+            return keep
+        for k, designation in enumerate(rule):
+            with at(k):
+                keep[table.row_index(str(designation))] = True
         return keep
 
     def _complete_rows(self, part: Part, table: Table, keep: np.ndarray) -> np.ndarray:
@@ -516,7 +519,8 @@ class Instance:
                 if count.name in self._fixed_discrete:
                     asked.append(f"== {self._fixed_discrete[count.name]:g}")
                 expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
-                raise InputError(count.name, " and ".join(asked), expected)
+                place = "fix" if count.name in self._fixed_discrete else "limits"
+                raise InputError(count.name, " and ".join(asked), expected, (place, count.name))
             self.selection.counts[count.name] = values
         for choice in d.choices.values():
             indices = np.arange(len(choice.labels))
@@ -524,7 +528,7 @@ class Instance:
                 label = self._fixed_discrete[choice.name]
                 label = ("yes" if label else "no") if isinstance(label, bool) else str(label)
                 if label not in choice.labels:
-                    raise InputError(f"fix: {choice.name}", label, choice.expected(label))
+                    raise InputError(f"fix: {choice.name}", label, choice.expected(label), ("fix", choice.name))
                 indices = np.array([choice.labels.index(label)])
             self.selection.choices[choice.name] = indices.astype(float)
 
@@ -563,7 +567,8 @@ class Instance:
         if bad.all():
             shown = ", ".join(labels[:5])
             choice = name in model.declaration.choices
-            raise InputError(refusal.code, f"{name} = {shown}" if choice else shown, refusal.message)
+            place = "parts" if slot is not None else "fix" if name in self._fixed_discrete else "limits"
+            raise InputError(refusal.code, f"{name} = {shown}" if choice else shown, refusal.message, (place, name))
         if slot is not None:
             position = selection.slots.index(slot)
             selection.slots[position] = SlotRows(
@@ -671,11 +676,36 @@ class Instance:
             inside &= values <= self.upper[k] + 1e-12 * abs(self.upper[k])
             if len(values) and not inside.any():
                 low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
-                raise InputError(
-                    f"limits: {v.name}", f"{low} .. {high}", "a range that holds a makeable value (or grid: false)"
-                )
+                right = "a range that holds a makeable value (or grid: false)"
+                raise InputError(f"limits: {v.name}", f"{low} .. {high}", right, ("limits", v.name))
             result.append(values[inside])
         return result
+
+
+def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tuple[int, ...]]]:
+    """Return what the user wrote about a quantity: sense and SI value of each limit, and its position in a list."""
+    several = isinstance(texts, (list, tuple))
+    found = list[tuple[str, float, tuple[int, ...]]]()
+    for k, text in enumerate(texts if several else [texts]):
+        place = (k,) if several else ()
+        with at("limits", name, *place):
+            found += [(sense, bound, place) for sense, bound in _read_limit(name, unit, text)]
+    return found
+
+
+def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
+    """Return what a text says of a quantity: sense and SI value of each limit."""
+    label = f"limits: {name}"
+    if isinstance(text, str) and ".." in text:
+        first, last = text.split("..", 1)
+        low, high = parse_quantity(first, unit, label), parse_quantity(last, unit, label)
+        if low > high:
+            raise InputError(label, text, "the smaller value first, for example '200 mm .. 260 mm'")
+        return [("at_least", low), ("at_most", high)]
+    match = CONDITION.match(text) if isinstance(text, str) else None
+    if match is None:
+        raise InputError(label, text, f"a comparison, for example '<= 260 {unit}' or '200 {unit} .. 260 {unit}'")
+    return [(SENSES[match.group(1)], parse_quantity(match.group(2), unit, label))]
 
 
 def number(expression: Any, values: Mapping[str, float]) -> float:

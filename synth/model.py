@@ -160,18 +160,25 @@ class Model:
 
     # -- names ---------------------------------------------------------------------------------
 
-    def name_of(self, word: str, field: str, among: Sequence[str], what: str) -> str:
-        """Return the public name for a name or symbol; refuse with the closest spellings otherwise."""
+    def name_of(
+        self, word: str, field: str, among: Sequence[str], what: str, path: tuple[str, ...] | None = None
+    ) -> str:
+        """Return the public name for a name or symbol; refuse with the closest spellings otherwise.
+
+        ``path`` is where the word stands, by default a key under the field.
+        """
+        path = (field, word) if path is None else path
         spellings = self.declaration.names()
         name = spellings.get(word)
         if name in among:
             return str(name)
         if name is not None:
-            raise InputError(field, word, f"{what}; {name} is {self.kind_of(name)}")
+            raise InputError(field, word, f"{what}; {name} is {self.kind_of(name)}", path)
         allowed = [s for s, n in spellings.items() if n in among]
         close = difflib.get_close_matches(word, allowed, n=3, cutoff=0.6)
         hint = f" (did you mean {' or '.join(close)}?)" if close else ""
-        raise InputError(field, word, f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them")
+        right = f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them"
+        raise InputError(field, word, right, path)
 
     def by_name(self, mapping: Mapping[Any, Any], field: str, among: Sequence[str], what: str) -> dict[str, Any]:
         """Return a mapping of names or symbols by public name; each may be given once."""
@@ -179,7 +186,8 @@ class Model:
         for word, value in mapping.items():
             name = self.name_of(str(word), field, among, what)
             if name in result:
-                raise InputError(f"{field}: {name}", str(word), "each name once (name and symbol mean the same)")
+                right = "each name once (name and symbol mean the same)"
+                raise InputError(f"{field}: {name}", str(word), right, (field, str(word)))
             result[name] = value
         return result
 

@@ -21,10 +21,11 @@ from synth.analysis import make_design, part_row, with_ties
 from synth.batch_nlp import MISSED, Tasks
 from synth.clock import Clock, Stopped
 from synth.cover import cover
-from synth.errors import InputError
+from synth.errors import InputError, whole_number
 from synth.feasibility import Status
 from synth.files import csv_text, save_files
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance
 from synth.purposes import Cover
 from synth.question import combination_of, question_of
@@ -165,8 +166,7 @@ def near_equals(
     """
     reference = _chosen(front, design)
     share = _share(within)
-    if not isinstance(count, (int, np.integer)) or isinstance(count, bool) or count < 1:
-        raise InputError("count", count, "a whole number of designs, at least 1")
+    whole_number(count, "count", INPUT_LIMITS.listed, path=("count",))
     instance = question_of(front, problem, catalogs)
     search = _Enumeration(instance, reference, front, share, seed, progress, time_limit)
     return search.run(int(count))

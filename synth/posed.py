@@ -20,7 +20,7 @@ import casadi as ca
 
 from synth.declaration import Choice, Declaration, Limit, Part
 from synth.description import declared_ranges
-from synth.instance import SIGNS, Instance
+from synth.instance import SIGNS, check_number_of_limits, read_limits
 from synth.problem import DesignProblem
 from synth.scatter import LEAST, MOST, RATE, SLIDING, Asked, Member, Scattered, read_remaining, scattered
 from synth.structure import Shape, classify
@@ -142,16 +142,16 @@ class _Corners:
         self.own = self._of_the_user(problem.own_limits)
 
     def _of_the_user(self, limits: Mapping[str, Any]) -> list[_Limit]:
+        check_number_of_limits(limits)
         found = []
         for word, texts in limits.items():
             name = self.d.names().get(str(word), "")
             if name not in self.d.derived:
                 continue  # bounds of variables and counts; what is unknown is refused elsewhere
             unit = self.d.derived[name].unit
-            for text in texts if isinstance(texts, (list, tuple)) else [texts]:
-                for sense, bound in Instance.read_limit(name, unit, text):
-                    label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
-                    found.append(_Limit(label, sense, name, bound, unit))
+            for sense, bound, _ in read_limits(name, unit, texts):
+                label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
+                found.append(_Limit(label, sense, name, bound, unit))
         return found
 
     def wanted(self) -> list[tuple[_Limit, Position]]:

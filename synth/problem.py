@@ -145,15 +145,17 @@ def load(problem: str | type[DesignProblem] | DesignProblem, /, **options: str) 
     """
     if isinstance(problem, DesignProblem):
         if options:
-            raise InputError("options", sorted(options), "no options here: the instance was made with its own")
+            right = "no options here: the instance was made with its own"
+            raise InputError("options", sorted(options), right, ("options",))
         return problem
     if isinstance(problem, type) and issubclass(problem, DesignProblem):
         return problem(**options)
     if not isinstance(problem, str):
-        raise InputError("family", problem, "the name of a family, or a subclass or instance of DesignProblem")
+        right = "the name of a family, or a subclass or instance of DesignProblem"
+        raise InputError("family", problem, right, ("family",))
     for point in entry_points(group=ENTRY_POINT_GROUP):
         if point.name == problem:
             return load(point.load(), **options)
     close = difflib.get_close_matches(problem, families(), n=2)
     hint = f"a family (did you mean {' or '.join(close)}?)" if close else "one of " + ", ".join(families())
-    raise InputError("family", problem, hint)
+    raise InputError("family", problem, hint, ("family",))

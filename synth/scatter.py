@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.declaration import Declaration
-from synth.errors import InputError
+from synth.errors import InputError, at, whole_number
+from synth.input_limits import INPUT_LIMITS
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -29,8 +30,7 @@ CATALOGUE, NEW_AND_WORN = "catalogue range", "new and worn"
 # Columns of a table of friction pairs: what slides, and the ends of its scatter; mu_static moves with it in proportion.
 SLIDING, LEAST, MOST = "mu_dynamic", "mu_min", "mu_max"
 WORN = re.compile(r"^(?:.*_)?wear$")
-MOST_SCATTERED = 8
-SAMPLES, LEAST_SAMPLES, MOST_SAMPLES = 4096, 64, 2**20
+SAMPLES, LEAST_SAMPLES = 4096, 64
 CONFIDENCE = 0.95
 AROUND = re.compile(r"^\s*(?:\+\s*/?\s*-|±)\s*(.+)$", re.DOTALL)
 NUMBER = re.compile(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\s*$")
@@ -176,33 +176,35 @@ def read_block(robust: Any, where: str = "robust") -> Asked:
     if isinstance(robust, Asked):
         return robust
     if not isinstance(robust, Mapping):
-        raise InputError(where, robust, "names with ranges, for example {'friction': 'catalogue range'}")
+        raise InputError(where, robust, "names with ranges, for example {'friction': 'catalogue range'}", ("robust",))
     block = {str(key): value for key, value in robust.items()}
     tolerance = block.get("tolerance") or {}
     if not isinstance(tolerance, Mapping):
         expected = "variables with tolerances, for example {'length': '+-0.1 mm'}"
-        raise InputError(f"{where}: tolerance", tolerance, expected)
+        raise InputError(f"{where}: tolerance", tolerance, expected, ("robust", "tolerance"))
     ranges = {key: value for key, value in block.items() if key not in KEYS[2:]}
     for key, value in [*ranges.items(), *((f"tolerance: {k}", v) for k, v in tolerance.items())]:
         if not isinstance(value, str):
-            raise InputError(f"{where}: {key}", value, f"a range with its unit, for example {EXAMPLE}")
+            path = ("robust", *key.split(": ", 1)) if key not in ranges else ("robust", key)
+            raise InputError(f"{where}: {key}", value, f"a range with its unit, for example {EXAMPLE}", path)
     if not ranges and not tolerance:
-        raise InputError(where, "nothing that scatters", "at least one range, for example 'friction: catalogue range'")
+        right = "at least one range, for example 'friction: catalogue range'"
+        raise InputError(where, "nothing that scatters", right, ("robust",))
+    _check_number(len(ranges) + len(tolerance), where)
     mode = block.get("mode", LIMITS)
     if mode not in (LIMITS, RATE):
-        raise InputError(f"{where}: mode", mode, f"{LIMITS} (limits hold over the range) or {RATE} (designs are rated)")
-    samples = _whole(
-        block.get("samples", SAMPLES), f"{where}: samples", "a power of 2 from 64 to 1048576, such as 4096"
-    )
-    if not LEAST_SAMPLES <= samples <= MOST_SAMPLES or samples & (samples - 1):
-        raise InputError(f"{where}: samples", samples, "a power of 2 from 64 to 1048576, such as 4096")
-    seed = _whole(block.get("seed", 0), f"{where}: seed", "a whole number, at least 0")
-    if seed < 0:
-        raise InputError(f"{where}: seed", seed, "a whole number, at least 0")
+        right = f"{LIMITS} (limits hold over the range) or {RATE} (designs are rated)"
+        raise InputError(f"{where}: mode", mode, right, ("robust", "mode"))
+    with at("robust", "samples"):
+        samples = _samples(block.get("samples", SAMPLES), f"{where}: samples")
+    seed = whole_number(block.get("seed", 0), f"{where}: seed", INPUT_LIMITS.seed, least=0, path=("robust", "seed"))
+    with at("robust", "confidence"):
+        confidence = _confidence(block.get("confidence", CONFIDENCE), f"{where}: confidence")
+    with at("robust", "scenarios"):
+        scenarios = _scenarios(block.get("scenarios") or {}, f"{where}: scenarios")
     return Asked(
         MappingProxyType(ranges), MappingProxyType({str(k): v for k, v in tolerance.items()}), mode, samples, seed,
-        _confidence(block.get("confidence", CONFIDENCE), f"{where}: confidence"),
-        _scenarios(block.get("scenarios") or {}, f"{where}: scenarios"),
+        confidence, scenarios,
     )  # fmt: skip
 
 
@@ -237,9 +239,17 @@ def name_in_block(key: str, names: Mapping[str, str]) -> str:
     return f"{names.get(slot, slot)}.{column}" if dot else names.get(key, key)
 
 
-def _whole(value: Any, field: str, expected: str) -> int:
-    if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
-        raise InputError(field, value, expected)
+def _check_number(ranges: int, where: str) -> None:
+    if ranges > INPUT_LIMITS.scattered:
+        right = f"at most {INPUT_LIMITS.scattered} things that scatter"
+        raise InputError(where, f"{ranges} ranges", right, ("robust",))
+
+
+def _samples(value: Any, field: str) -> int:
+    number = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not number or not LEAST_SAMPLES <= value <= INPUT_LIMITS.samples or value & (value - 1):
+        right = f"a power of 2 from {LEAST_SAMPLES} to {INPUT_LIMITS.samples}, such as {SAMPLES}"
+        raise InputError(field, value, right)
     return int(value)
 
 
@@ -261,7 +271,7 @@ def _scenarios(value: Any, field: str) -> Mapping[str, tuple[tuple[float, ...], 
             and all(isinstance(x, (int, float)) and not isinstance(x, bool) and 0 <= x <= 1 for x in p)
             for p in points
         ):
-            raise InputError(f"{field}: {name}", points, expected)
+            raise InputError(f"{field}: {name}", points, expected, (str(name),))
         found[str(name)] = tuple(tuple(float(x) for x in p) for p in points)
     return MappingProxyType(found)
 
@@ -280,22 +290,25 @@ def scattered(asked: Asked, d: Declaration, where: str = "robust") -> list[Scatt
     reader = _Reader(d, where)
     found: list[Scattered] = []
     for key, text in asked.ranges.items():
-        if key == "friction":
-            found += reader.friction(text)
-        elif key == "wear":
-            found.append(reader.wear(text))
-        else:
-            found.append(reader.named(key, text))
-    found += [reader.tolerance(key, text) for key, text in asked.tolerance.items()]
+        with at("robust", key):
+            if key == "friction":
+                found += reader.friction(text)
+            elif key == "wear":
+                found.append(reader.wear(text))
+            else:
+                found.append(reader.named(key, text))
+    for key, text in asked.tolerance.items():
+        with at("robust", "tolerance", key):
+            found.append(reader.tolerance(key, text))
+    _check_number(len(found), where)  # friction may be that of several slots
     keys = [(member.key, x.name) for x in found for member in x.members]
     for k, (moved, name) in enumerate(keys):
         if any(moved == other for other, _ in keys[:k]):
-            raise InputError(f"{where}: {name}", name, "each thing that scatters once")
-    if len(found) > MOST_SCATTERED:
-        raise InputError(where, f"{len(found)} ranges", f"at most {MOST_SCATTERED} things that scatter")
+            raise InputError(f"{where}: {name}", name, "each thing that scatters once", ("robust", name))
     for name, points in asked.scenarios.items():
         if any(len(p) != len(found) for p in points):
-            raise InputError(f"{where}: scenarios: {name}", points, f"positions of {len(found)} ranges each")
+            right = f"positions of {len(found)} ranges each"
+            raise InputError(f"{where}: scenarios: {name}", points, right, ("robust", "scenarios", name))
     return found
 
 
@@ -454,7 +467,8 @@ def check_rows(found: Sequence[Scattered], slots: Iterable[SlotRows], where: str
         if not np.any((nominal >= x.range.low) & (nominal <= x.range.high)):
             low, high = (format_quantity(float(f(nominal)), x.unit) for f in (np.nanmin, np.nanmax))
             held = low if low == high else f"one from {low} to {high}"
-            raise InputError(f"{where}: {x.name}", x.text, f"a range that holds the nominal {first.column}, {held}")
+            right = f"a range that holds the nominal {first.column}, {held}"
+            raise InputError(f"{where}: {x.name}", x.text, right, ("robust", x.name))
 
 
 def check_values(
@@ -478,16 +492,17 @@ def check_values(
         for member in x.members:
             if member.kind != "requirement":
                 continue
-            r, field = d.requirements[member.name], f"{where}: {x.name}"
+            r, field, path = d.requirements[member.name], f"{where}: {x.name}", ("robust", x.name)
             if member.name not in values:
-                raise InputError(field, x.text, f"requirement {member.name} to be given as well: its nominal value")
+                right = f"requirement {member.name} to be given as well: its nominal value"
+                raise InputError(field, x.text, right, path)
             own = values[member.name]
             low, high = (x.moved(member, lambda m: values[m.name], p, None) for p in (0.0, 1.0))
             slack = 1e-9 * max(abs(low), abs(high))
             if not low - slack <= own <= high + slack:
-                raise InputError(field, x.text, f"a range that holds the nominal {format_quantity(own, r.unit)}")
+                right = f"a range that holds the nominal {format_quantity(own, r.unit)}"
+                raise InputError(field, x.text, right, path)
             if low < r.lower - slack or high > r.upper + slack:
                 shown = [format_quantity(end, r.unit) for end in (low, high)]
-                raise InputError(
-                    field, x.text, f"a range that {d.problem} allows; this one is {shown[0]} .. {shown[1]}"
-                )
+                right = f"a range that {d.problem} allows; this one is {shown[0]} .. {shown[1]}"
+                raise InputError(field, x.text, right, path)

@@ -16,10 +16,11 @@ from synth.conflicts import explain_infeasible
 from synth.cover import Covered, best, cover
 from synth.dives import dive
 from synth.elasticity import elasticities
-from synth.errors import InputError
+from synth.errors import InputError, whole_number
 from synth.feasibility import Status
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
 from synth.gap import GAP_EXPECTED, is_gap
+from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.pareto import rank, spread_subset
@@ -264,26 +265,20 @@ def check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, pr
         One of them is not what ``synthesize`` takes.
     """
 
-    def whole(value: Any) -> bool:
-        return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-
     def real(value: Any) -> bool:
         return isinstance(value, (int, float, np.floating)) and not isinstance(value, bool) and math.isfinite(value)
 
-    if not whole(points) or points < 1:
-        raise InputError("points", points, "a whole number of designs, at least 1")
+    whole_number(points, "points", INPUT_LIMITS.points, path=("points",))
     if not is_gap(gap):
-        raise InputError("gap", gap, GAP_EXPECTED)
+        raise InputError("gap", gap, GAP_EXPECTED, ("gap",))
     if not isinstance(grid, (bool, np.bool_)):
-        raise InputError("grid", grid, "true or false")
+        raise InputError("grid", grid, "true or false", ("grid",))
     if progress is not None and not callable(progress):
         raise InputError("progress", progress, "a function of one mapping, or none")
-    if not whole(workers) or workers < 1:
-        raise InputError("workers", workers, "a whole number, at least 1")
-    if not whole(seed) or seed < 0:
-        raise InputError("seed", seed, "a whole number, at least 0")
+    whole_number(workers, "workers", INPUT_LIMITS.workers, path=("workers",))
+    whole_number(seed, "seed", INPUT_LIMITS.seed, least=0, path=("seed",))
     if time_limit is not None and (not real(time_limit) or time_limit <= 0):
-        raise InputError("time_limit", time_limit, "a positive number of seconds")
+        raise InputError("time_limit", time_limit, "a positive number of seconds", ("time_limit",))
 
 
 def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str, float] | None) -> list[float]:
@@ -292,10 +287,10 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
     for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
         number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan
         if not (math.isfinite(number) and number >= 0):
-            raise InputError(f"weights: {name}", weight, "a number that is not negative")
+            raise InputError(f"weights: {name}", weight, "a number that is not negative", ("weights", name))
         values[name] = float(number)
     if not any(values.values()):
-        raise InputError("weights", dict(asked), "at least one weight above 0")
+        raise InputError("weights", dict(asked), "at least one weight above 0", ("weights",))
     return list(values.values())
 
 

@@ -71,9 +71,8 @@ def refuse_other_sign(model: Model, values: Mapping[str, float]) -> None:
         ):
             if wrong:
                 shown = format_quantity(value, unknown.unit)
-                raise InputError(
-                    f"values: {unknown.name}", shown, f"a value {expected} (searched is {shown_range(unknown)})"
-                )
+                right = f"a value {expected} (searched is {shown_range(unknown)})"
+                raise InputError(f"values: {unknown.name}", shown, right, ("values", unknown.name))
 
 
 def refuse_not_computable(
@@ -106,6 +105,7 @@ def refuse_not_computable(
                 f"values: {', '.join(told)}",
                 "; ".join(told.values()),
                 f"values for which {name} can be computed",
+                ("values", *told) if len(told) == 1 else ("values",),
             )
 
 

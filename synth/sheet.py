@@ -13,7 +13,8 @@ from typing import Any
 
 from synth import scatter
 from synth.declaration import Declaration
-from synth.errors import InputError
+from synth.errors import InputError, at
+from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs, as_mapping
 from synth.problem import DesignProblem, families, load
 from synth.tables import Catalogs
@@ -90,8 +91,13 @@ def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
     """
     entries: Sequence[Any] = families() if isinstance(asked, str) and asked == ANY else asked
     if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence) or not entries:
-        raise InputError("family", asked, f"'{ANY}', or a list of families")
-    found = [_applicant(entry, sheet, catalogs) for entry in entries]
+        raise InputError("family", asked, f"'{ANY}', or a list of families", ("family",))
+    if len(entries) > INPUT_LIMITS.families:
+        raise InputError("family", f"{len(entries)} entries", f"at most {INPUT_LIMITS.families}", ("family",))
+    found = []
+    for k, entry in enumerate(entries):
+        with at("family", k):
+            found.append(_applicant(entry, sheet, catalogs))
     _tell_apart(found)
     _check_names(found, sheet)
     _check_own(found, sheet)
@@ -108,7 +114,7 @@ def refuse_all(found: Sequence[Applicant], sheet: Sheet) -> None:
         shown = ", ".join(sheet["requirements"]) or None
         reasons = " and ".join(near.misfits)
         expected = f"a sheet that one of the families can serve; the nearest is {near.label}, but it {reasons}"
-        raise InputError("requirements", shown, expected)
+        raise InputError("requirements", shown, expected, ("requirements",))
 
 
 def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
@@ -118,7 +124,7 @@ def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
         family = entry.get("family")
         for key in entry:
             if key not in ("family", *KEYS):
-                raise InputError("family", key, f"family, {', '.join(KEYS)}")
+                raise InputError("family", key, f"family, {', '.join(KEYS)}", (str(key),))
         own = sheet_of(**{key: entry[key] for key in KEYS if key in entry})
     problem = load(family)
     if own["options"]:
@@ -157,7 +163,7 @@ def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
                     "a requirement that families understand in common, by name; what concerns one family alone is "
                     "stated under that family"
                 )
-            raise InputError(key, name, expected)
+            raise InputError(key, name, expected, (key, name))
 
 
 def _hint(word: str, known: Iterable[str]) -> str:
@@ -201,7 +207,8 @@ def _check_tables(found: Sequence[Applicant], catalogs: Catalogs) -> None:
     used = {part.table for part in parts}
     for name in catalogs.added:
         if name not in used:
-            raise InputError("catalogs", name, f"a table that one of the families uses ({', '.join(sorted(used))})")
+            right = f"a table that one of the families uses ({', '.join(sorted(used))})"
+            raise InputError("catalogs", name, right, ("catalogs", name))
 
 
 def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
@@ -247,11 +254,11 @@ def common_objectives(found: Sequence[Applicant], asked: Any) -> dict[str, str]:
         asked = [asked]
     pairs = list(asked.items()) if isinstance(asked, Mapping) else [(name, None) for name in asked]
     if not pairs:
-        raise InputError("objectives", None, "at least one")
+        raise InputError("objectives", None, "at least one", ("objectives",))
     result: dict[str, str] = {}
     for name, sense in pairs:
         if name in result:
-            raise InputError("objectives", name, "each objective once")
+            raise InputError("objectives", name, "each objective once", ("objectives", str(name)))
         result[name] = _sense(serving, str(name), sense)
     for one in serving:
         has = _units(one)
@@ -271,17 +278,19 @@ def _sense(serving: Sequence[Applicant], name: str, sense: Any) -> str:
         known = {n for one in serving for n in _units(one)}
         close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
         hint = f"; did you mean {' or '.join(close)}?" if close else ""
-        raise InputError("objectives", name, f"a quantity of the families, by name{hint}")
+        raise InputError("objectives", name, f"a quantity of the families, by name{hint}", ("objectives", name))
     kinds = {parse_unit(_units(one)[name]).kind for one in has}
     if len(kinds) > 1:
-        raise InputError("objectives", name, "a quantity that is measured alike in all families")
+        right = "a quantity that is measured alike in all families"
+        raise InputError("objectives", name, right, ("objectives", name))
     if sense is None:
         offered = {one.declaration.objectives[name].sense for one in has if name in one.declaration.objectives}
         if len(offered) != 1:
-            raise InputError(f"objectives: {name}", None, f"a sense, for example {{{name}: min}}")
+            right = f"a sense, for example {{{name}: min}}"
+            raise InputError(f"objectives: {name}", None, right, ("objectives", name))
         return offered.pop()
     if sense not in ("min", "max"):
-        raise InputError(f"objectives: {name}", sense, "min or max")
+        raise InputError(f"objectives: {name}", sense, "min or max", ("objectives", name))
     return str(sense)
 
 

@@ -14,8 +14,9 @@ from typing import Any
 
 import yaml
 
-from synth.errors import InputError
+from synth.errors import InputError, at, whole_number
 from synth.gap import GAP_EXPECTED, is_gap
+from synth.input_limits import INPUT_LIMITS
 
 LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
 
@@ -76,7 +77,8 @@ class Spec:
         for key, value in given.items():
             if key not in FIELDS:
                 raise InputError("flag", key, _hint(key))
-            given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
+            with at(key):
+                given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
         return replace(self, **given)
 
     def search_settings(self) -> dict[str, Any]:
@@ -139,7 +141,11 @@ def _family(where: str, value: Any) -> Any:
         return _text(where, value)
     if not value:
         raise InputError(where, _kind(value), "a name, 'any', or a list with at least one name")
-    return tuple(_one_family(f"{where}, entry {k}", entry) for k, entry in enumerate(value, start=1))
+    entries = []
+    for k, entry in enumerate(value):
+        with at(k):
+            entries.append(_one_family(f"{where}, entry {k + 1}", entry))
+    return tuple(entries)
 
 
 def _one_family(where: str, entry: Any) -> Any:
@@ -147,13 +153,14 @@ def _one_family(where: str, entry: Any) -> Any:
         return _text(where, entry)
     for key in entry:
         if key not in OWN:
-            raise InputError(f"{where}: key", key, f"one of {', '.join(OWN)}")
+            raise InputError(f"{where}: key", key, f"one of {', '.join(OWN)}", (str(key),))
     if entry.get("family") is None:
-        raise InputError(f"{where}: family", None, "the name of a family")
-    return MappingProxyType({
-        key: _text(where, value) if key == "family" else FIELDS[key](f"{where}: {key}", value)
-        for key, value in entry.items()
-    })  # fmt: skip
+        raise InputError(f"{where}: family", None, "the name of a family", ("family",))
+    checked = {}
+    for key, value in entry.items():
+        with at(key):
+            checked[key] = _text(where, value) if key == "family" else FIELDS[key](f"{where}: {key}", value)
+    return MappingProxyType(checked)
 
 
 def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
@@ -164,9 +171,8 @@ def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
             raise InputError(where, _kind(value), f"a mapping, for example '{example}'")
         for key in value:
             if not isinstance(key, str):
-                raise InputError(
-                    where, key, "names on the left of the colons (in quotes if YAML takes them for a number)"
-                )
+                right = "names on the left of the colons (in quotes if YAML takes them for a number)"
+                raise InputError(where, key, right, (str(key),))
         return MappingProxyType(dict(value))
 
     return check
@@ -178,7 +184,8 @@ def _options(where: str, value: Any) -> Mapping[str, str]:
         if isinstance(chosen, bool):
             options[name] = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         elif not isinstance(chosen, str):
-            raise InputError(f"{where}: {name}", _kind(chosen), "one of the words that clutchsynth describe lists")
+            right = "one of the words that clutchsynth describe lists"
+            raise InputError(f"{where}: {name}", _kind(chosen), right, (name,))
     return MappingProxyType(options)
 
 
@@ -187,7 +194,7 @@ def _scalars(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
             if isinstance(entry, (Mapping, list, tuple)):
-                raise InputError(f"{where}: {name}", _kind(entry), f"one value, for example '{example}'")
+                raise InputError(f"{where}: {name}", _kind(entry), f"one value, for example '{example}'", (name,))
         return checked
 
     return check
@@ -199,7 +206,8 @@ def _lists(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
         for name, entry in checked.items():
             entries = entry if isinstance(entry, (list, tuple)) else [entry]
             if not entries or not all(isinstance(x, str) for x in entries):
-                raise InputError(f"{where}: {name}", _kind(entry), f"text or a list of texts, for example '{example}'")
+                right = f"text or a list of texts, for example '{example}'"
+                raise InputError(f"{where}: {name}", _kind(entry), right, (name,))
         return checked
 
     return check
@@ -229,7 +237,7 @@ def _catalogs(where: str, value: Any) -> Any:
     for table, source in value.items():
         entries = source if isinstance(source, (list, tuple)) else [source]
         if not isinstance(table, str) or not all(isinstance(x, str) for x in entries):
-            raise InputError(f"{where}: {table}", _kind(source), expected)
+            raise InputError(f"{where}: {table}", _kind(source), expected, (str(table),))
     return MappingProxyType(dict(value))
 
 
@@ -237,17 +245,13 @@ def _weights(where: str, value: Any) -> Mapping[str, float]:
     weights = _mapping("mass: 2")(where, value)
     for name, weight in weights.items():
         if not _is_number(weight) or weight < 0:
-            raise InputError(f"{where}: {name}", _kind(weight), "a number, zero or more")
+            raise InputError(f"{where}: {name}", _kind(weight), "a number, zero or more", (name,))
     return weights
 
 
-def _whole(least: int) -> Callable[[str, Any], int | None]:
+def _whole(least: int, most: int) -> Callable[[str, Any], int | None]:
     def check(where: str, value: Any) -> int | None:
-        if value is None:
-            return None
-        if not isinstance(value, int) or isinstance(value, bool) or value < least:
-            raise InputError(where, _kind(value), f"a whole number, {least} or more")
-        return value
+        return None if value is None else whole_number(_kind(value), where, most, least)
 
     return check
 
@@ -290,12 +294,12 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
     "weights": _weights,
     "robust": _mapping("friction: catalogue range"),
     "values": _scalars("friction_surfaces: 10"),
-    "points": _whole(1),
+    "points": _whole(1, INPUT_LIMITS.points),
     "gap": _gap,
     "grid": _grid,
-    "seed": _whole(0),
+    "seed": _whole(0, INPUT_LIMITS.seed),
     "time_limit": _seconds,
-    "workers": _whole(1),
+    "workers": _whole(1, INPUT_LIMITS.workers),
 }
 
 
@@ -329,11 +333,15 @@ def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
         raise InputError(file, _kind(content), "a spec: lines such as 'family: multi_plate_clutch'")
     for key in content:
         if key not in FIELDS:
-            raise InputError(f"{file}: key", key, _hint(key))
+            raise InputError(f"{file}: key", key, _hint(key), (str(key),))
     if content.get("family") is None:
-        raise InputError(f"{file}: family", None, "the name of a family; clutchsynth families lists them")
-    checked = {key: check(f"{file}: {key}", content.get(key)) for key, check in FIELDS.items() if key != "values"}
-    checked["values"] = FIELDS["values"](f"{file}: values", content["values"]) if "values" in content else None
+        right = "the name of a family; clutchsynth families lists them"
+        raise InputError(f"{file}: family", None, right, ("family",))
+    checked: dict[str, Any] = {"values": None}
+    for key, check in FIELDS.items():
+        if key != "values" or key in content:
+            with at(key):
+                checked[key] = check(f"{file}: {key}", content.get(key))
     return Spec(**checked, file=file, folder=folder)
 
 
@@ -428,11 +436,11 @@ def read_content(path: str | Path, what: str) -> Any:
 
 
 def _read_text(file: Path, shown: str, what: str) -> str:
-    if file.is_dir():
-        raise InputError(what, shown, "a file; this is a folder")
     try:
         with file.open("rb") as stream:
             raw = stream.read(LARGEST_FILE + 1)
+    except IsADirectoryError as error:
+        raise InputError(what, shown, "a file; this is a folder") from error
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a possible file name"
         raise InputError(what, shown, f"a file that can be read ({reason})") from error
@@ -464,10 +472,14 @@ def _parse_json(text: str, shown: str) -> Any:
 
     try:
         return json.loads(text, object_pairs_hook=pairs, parse_constant=constant)
+    except InputError:
+        raise
     except json.JSONDecodeError as error:
         raise InputError(f"{shown}, line {error.lineno}", _Described(error.msg), "JSON") from error
     except RecursionError as error:
         raise InputError(shown, _Described("brackets nested too deeply"), "JSON of a spec") from error
+    except ValueError as error:  # of a number
+        raise InputError(shown, _Described("a number of thousands of digits"), "numbers that can be meant") from error
 
 
 def _parse_yaml(text: str, shown: str) -> Any:

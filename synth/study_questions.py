@@ -243,10 +243,11 @@ class Steps:
         if not faults:
             return questions
         first, fault = next(iter(faults.items()))
-        same = len({(e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
+        same = len({(e.path, e.field, e.expected, repr(e.value)) for e in faults.values()}) == 1
         if same and len(faults) == len(self.values) > 1:
             raise fault
-        raise InputError(f"vary, {self.stated(self.values[first])}: {fault.field}", fault.value, fault.expected)
+        where = f"vary, {self.stated(self.values[first])}: {fault.field}"
+        raise InputError(where, fault.value, fault.expected, fault.path)
 
 
 def steps_of(

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.errors import InputError
+from synth.errors import InputError, at
 from synth.units import Unit, check_number, from_si, header, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -675,32 +675,30 @@ def _build(
     name: str,
     fields: Sequence[_Field],
     rows: Sequence[tuple[str, Sequence[object]]],
+    places: Sequence[int],
     origin: str,
     *,
     strict: bool,
     catalogue: bool,
 ) -> Table:
-    """Check every cell and make the table."""
+    """Check every cell and make the table; ``places`` are the lines (rows of a frame) for the paths of faults."""
     data: dict[str, FloatArray | tuple[str, ...]] = {}
     columns = {field.column.name: field.column for field in fields}
     for field in fields:
-        column, cells = field.column, [(label, row[field.position]) for label, row in rows]
-        for label, cell in cells:
-            where = f"{label}, column {column.name}"
-            if strict and isinstance(cell, str) and cell != cell.strip():
-                raise InputError(where, cell, "a cell without blanks at its ends")
-            if strict and column.required and cell == "":
-                raise InputError(where, None, f"a value: {column.description}")
-        if column.numeric:
-            numbers = [
-                _number_cell(cell, column, field.unit, f"{label}, column {column.name}") for label, cell in cells
-            ]
-            data[column.name] = np.array(numbers, dtype=np.float64)
-        else:
-            data[column.name] = tuple(_text_cell(cell, f"{label}, column {column.name}") for label, cell in cells)
+        column, values = field.column, list[Any]()
+        for (label, row), place in zip(rows, places, strict=True):
+            with at(place, column.name):
+                cell, where = row[field.position], f"{label}, column {column.name}"
+                if strict and isinstance(cell, str) and cell != cell.strip():
+                    raise InputError(where, cell, "a cell without blanks at its ends")
+                if strict and column.required and cell == "":
+                    raise InputError(where, None, f"a value: {column.description}")
+                read = _number_cell(cell, column, field.unit, where) if column.numeric else _text_cell(cell, where)
+                values.append(read)
+        data[column.name] = np.array(values, dtype=np.float64) if column.numeric else tuple(values)
     labels = [label for label, _ in rows]
     if catalogue:
-        _check_designations(data.get("designation"), labels)
+        _check_designations(data.get("designation"), labels, places)
     if strict:
         for label, word in zip(labels, data.get("confidence", ()), strict=False):
             if word not in CONFIDENCE:
@@ -713,16 +711,18 @@ def _build(
     return Table(name, columns, data, labels, origin, np.full(len(rows), not strict))
 
 
-def _check_designations(designations: object, labels: Sequence[str]) -> None:
+def _check_designations(designations: object, labels: Sequence[str], places: Sequence[int]) -> None:
     seen: dict[str, str] = {}
-    for label, designation in zip(labels, designations if isinstance(designations, tuple) else (), strict=True):
+    known = designations if isinstance(designations, tuple) else ()
+    for label, place, designation in zip(labels, places, known, strict=True):
         where = f"{label}, column designation"
-        if not designation:
-            raise InputError(where, None, "a unique name of the row")
-        if re.search(r"[,;\r\n]", designation):
-            raise InputError(where, designation, "a name without comma, semicolon or line break")
-        if designation in seen:
-            raise InputError(where, designation, f"a name of its own (it stands in {seen[designation]} already)")
+        with at(place, "designation"):
+            if not designation:
+                raise InputError(where, None, "a unique name of the row")
+            if re.search(r"[,;\r\n]", designation):
+                raise InputError(where, designation, "a name without comma, semicolon or line break")
+            if designation in seen:
+                raise InputError(where, designation, f"a name of its own (it stands in {seen[designation]} already)")
         seen[designation] = label
 
 
@@ -779,10 +779,11 @@ def load_table(
     for line, cells in body:
         if len(cells) != len(head):
             right = f"{len(head)} cells as in the header (decimal points, and quotes around a text that has a comma)"
-            raise InputError(f"{path.name}, line {line}", f"{len(cells)} cells", right)
+            raise InputError(f"{path.name}, line {line}", f"{len(cells)} cells", right, (line,))
         rows.append((f"{path.name}, line {line}", cells))
     catalogue = any(field.column.name == "designation" for field in fields)
-    return _build(name, fields, rows, SHIPPED if shipped else path.name, strict=shipped, catalogue=catalogue)
+    lines = [line for line, _ in body]
+    return _build(name, fields, rows, lines, SHIPPED if shipped else path.name, strict=shipped, catalogue=catalogue)
 
 
 def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name: str = "table") -> Table:
@@ -820,7 +821,7 @@ def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name:
         for i, label in enumerate(frame.index)
     ]
     catalogue = any(field.column.name == "designation" for field in fields)
-    return _build(name, fields, rows, "DataFrame", strict=False, catalogue=catalogue)
+    return _build(name, fields, rows, range(len(rows)), "DataFrame", strict=False, catalogue=catalogue)
 
 
 # ---- catalogues -----------------------------------------------------------------------------------------------------
@@ -926,28 +927,30 @@ class Catalogs:
             except (OSError, ValueError):
                 files = None
             if files is None:
-                raise InputError("catalogs", str(spec), "a folder that exists")
+                raise InputError("catalogs", str(spec), "a folder that exists", ("catalogs",))
             if not files:
-                raise InputError("catalogs", str(spec), "a folder with CSV files named like the tables they replace")
+                wanted = "a folder with CSV files named like the tables they replace"
+                raise InputError("catalogs", str(spec), wanted, ("catalogs",))
             return {name: (False, [path]) for name, path in files.items()}
         if not isinstance(spec, Mapping):
-            raise InputError("catalogs", spec, right)
+            raise InputError("catalogs", spec, right, ("catalogs",))
         found: dict[str, tuple[bool, list[Any]]] = {}
         for name, value in spec.items():
             if not isinstance(name, str):
-                raise InputError("catalogs", name, "the name of a table")
+                raise InputError("catalogs", name, "the name of a table", ("catalogs", str(name)))
             where = f"catalogs: {name}"
-            if isinstance(value, (list, tuple)):
-                if len(value) < 2 or value[0] != "+":
-                    raise InputError(where, value, "a list such as ['+', 'more.csv'] to extend the shipped table")
-                if name not in self._shipped:
-                    raise InputError(where, name, f"a shipped table to extend, {_close(name, self._shipped)}")
-                found[name] = (True, list(value[1:]))
-            else:
-                found[name] = (False, [value])
-            for source in found[name][1]:
-                if not isinstance(source, (str, Path)) and not _is_frame(source):
-                    raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
+            with at("catalogs", name):
+                if isinstance(value, (list, tuple)):
+                    if len(value) < 2 or value[0] != "+":
+                        raise InputError(where, value, "a list such as ['+', 'more.csv'] to extend the shipped table")
+                    if name not in self._shipped:
+                        raise InputError(where, name, f"a shipped table to extend, {_close(name, self._shipped)}")
+                    found[name] = (True, list(value[1:]))
+                else:
+                    found[name] = (False, [value])
+                for source in found[name][1]:
+                    if not isinstance(source, (str, Path)) and not _is_frame(source):
+                        raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
         return found
 
     def files(self) -> dict[str, Any]:
@@ -1007,17 +1010,20 @@ class Catalogs:
     def _load(self, name: str) -> Table:
         if name not in self._spec:
             if name not in self._shipped:
-                raise InputError("table", name, f"a known table, one of {', '.join(self.names())}")
+                right = f"a known table, one of {', '.join(self.names())}"
+                raise InputError("table", name, right, ("catalogs", name))
             path = self._shipped[name]
             return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
         extend, sources = self._spec[name]
-        tables = [self._user_table(name, source) for source in sources]
+        with at("catalogs", name):
+            tables = [self._user_table(name, source) for source in sources]
         if not extend:
             return tables[0]
         path = self._shipped[name]
         table = _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
-        for more in tables:
-            table = table.extended(more)
+        with at("catalogs", name):
+            for more in tables:
+                table = table.extended(more)
         return table
 
     def _user_table(self, name: str, source: Any) -> Table:

@@ -81,7 +81,7 @@ def blamed_on(file: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(f"{file}: {error.field}", error.value, error.expected) from error
+        raise InputError(f"{file}: {error.field}", error.value, error.expected, error.path) from error
 
 
 def check_output(folder: Path) -> None:

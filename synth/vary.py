@@ -9,17 +9,18 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth import scatter
-from synth.errors import InputError
+from synth.errors import InputError, at, shortened
+from synth.input_limits import INPUT_LIMITS
 from synth.model import Model
 from synth.problem import DesignProblem
 from synth.units import parse_quantity
 
-MOST_STEPS = 1000
 DIGITS = 12
 KEY = re.compile(r"^\s*(?:(weights|parts|options|robust)\.)?([^\s<>=]+)\s*(<=|>=|==|<|>)?\s*$")
 TEXT = re.compile(r"^\s*([^<>=]+?)\s*(<=|>=|==|=|<|>)\s*(\S.*?)\s*$", re.DOTALL)
 NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$", re.DOTALL)
 COMMA = re.compile(r"^\s*([+-]?\d+),(\d+)(\s*[^\d\s,].*)?$", re.DOTALL)  # one comma, without a blank, in digits alone
+TIGHT = re.compile(r"(\d+),(?=(\d+))")
 RANGE = "'200:300:10 mm' (from, to, step), '500, 600, 700 N*m', or in Python ('200 mm', '300 mm', 11)"
 SIGN = {"<": "<=", ">": ">=", "=": "=="}
 PLACES = {"weight": "weights.", "part": "parts.", "option": "options.", "scatter": "robust."}
@@ -105,16 +106,24 @@ def read_vary(vary: Any, problem: DesignProblem, model: Model, chosen: Sequence[
         When a name or a value cannot be meant.
     """
     if not isinstance(vary, Mapping) or not vary:
-        raise InputError("vary", vary, "names with values, for example {'load_torque': '500:700:50 N*m'}")
+        raise InputError("vary", vary, "names with values, for example {'load_torque': '500:700:50 N*m'}", ("vary",))
     if len(vary) > 2:
-        raise InputError("vary", ", ".join(map(str, vary)), "one or two things at a time")
-    found = [_read_one(str(key), values, problem, model, chosen) for key, values in vary.items()]
+        raise InputError("vary", ", ".join(map(str, vary)), "one or two things at a time", ("vary",))
+    found = []
+    for key, values in vary.items():
+        with at("vary", str(key)):
+            found.append(_read_one(str(key), values, problem, model, chosen))
     if len({(x.kind, x.name, x.sign) for x in found}) < len(found):
-        raise InputError("vary", found[0].label, "each thing once (name and symbol mean the same)")
-    count = math.prod(len(x.values) for x in found)
-    if count > MOST_STEPS:
-        raise InputError("vary", count, f"at most {MOST_STEPS} steps")
+        raise InputError("vary", found[0].label, "each thing once (name and symbol mean the same)", ("vary",))
+    with at("vary"):
+        _check_number("vary", math.prod(len(x.values) for x in found))
     return found
+
+
+def _check_number(field: str, steps: float) -> None:
+    """Refuse more steps than a study may have, before any of them is made."""
+    if steps > INPUT_LIMITS.steps:
+        raise InputError(field, f"{steps} steps", f"at most {INPUT_LIMITS.steps} steps")
 
 
 def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chosen: Sequence[str]) -> Varied:
@@ -132,14 +141,14 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
         raise InputError("vary", key, f"{place}.{word} without {sign}")
     d = model.declaration
     if place == "weights":
-        name = model.name_of(word, "vary", list(chosen), "a chosen objective")
+        name = model.name_of(word, "vary", list(chosen), "a chosen objective", ())
         _, numbers, remark = _numbers(key, values, "-")
         return Varied("weight", name, "", "-", numbers, remark)
     if place == "parts":
-        name = model.name_of(word, "vary", list(d.slots), "a slot")
+        name = model.name_of(word, "vary", list(d.slots), "a slot", ())
         return Varied("part", name, "", "", _words(key, values, several=True))
     if place == "options":
-        name = model.name_of(word, "vary", list(d.options), "an option")
+        name = model.name_of(word, "vary", list(d.options), "an option", ())
         words = _words(key, values, several=False)
         for label in words:
             if label not in d.options[name].choices:
@@ -150,7 +159,7 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
             raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
         return Varied("scatter", scatter.name_in_block(word, d.names()), "", "", _ranges(key, values))
     if sign:
-        name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity")
+        name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity", ())
         unit = model.units[name]
         return Varied("limit", name, SIGN.get(sign, sign), *_numbers(key, values, unit))
     spelled = d.names().get(word)
@@ -160,7 +169,7 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
     for kind, members in (("parts", d.slots), ("options", d.options)):
         if spelled in members:
             raise InputError("vary", key, f"{kind}.{word}")
-    name = model.name_of(word, "vary", list(d.requirements), "a requirement")
+    name = model.name_of(word, "vary", list(d.requirements), "a requirement", ())
     return Varied("requirement", name, "", *_numbers(key, values, d.requirements[name].unit))
 
 
@@ -179,6 +188,7 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
         elif len(pieces) > 1:
             raise InputError(field, values, f"three numbers from:to:step, as in {RANGE}")
         else:
+            _check_number(field, values.count(",") + 1)
             _refuse_decimal_comma(field, values)
             found = [_number(field, x, declared, seen, values) for x in values.split(",")]
     elif isinstance(values, tuple) and len(values) == 3 and _whole(values[2]):
@@ -187,11 +197,13 @@ def _numbers(key: str, values: Any, declared: str) -> tuple[str, tuple[Value, ..
             raise InputError(field, values, f"a list, {list(values)}, or ends with a unit: {RANGE}")
         if count < 2:
             raise InputError(field, values, "a count of at least 2 as the third entry: ('200 mm', '300 mm', 11)")
+        _check_number(field, count)
         low, high = (_number(field, x, declared, seen, values) for x in (first, last))
         found = [float(f"{low + (high - low) * k / (count - 1):.{DIGITS}g}") for k in range(count)]
     elif isinstance(values, (list, tuple)) and not isinstance(values, str):
         if isinstance(values, tuple) and len(values) == 3 and not isinstance(values[2], (str, int, float)):
             raise InputError(field, values, f"a list of values, or {RANGE}")
+        _check_number(field, len(values))
         found = [_number(field, x, declared, seen, values) for x in values]
     else:
         raise InputError(field, values, f"values such as {RANGE}")
@@ -228,11 +240,13 @@ def _number(field: str, value: Any, declared: str, seen: list[str], whole: Any) 
 
 
 def _refuse_decimal_comma(field: str, text: str) -> None:
-    """Refuse what looks like one number with a decimal comma; two values so close together lead upwards."""
+    """Refuse what may be one number with a decimal comma: two numbers of three digits, upwards, are none."""
+    if re.search(r",\s", text) and any(_may_be_decimal(*pair) for pair in TIGHT.findall(text)):
+        raise InputError(field, text, "decimal points (1.5, 2.5), or a blank after every comma between two values")
     match = COMMA.match(text)
-    if match is None or int(match.group(2)) >= int(match.group(1)):
+    if match is None or not _may_be_decimal(match.group(1).lstrip("+-"), match.group(2)):
         return
-    whole, decimals, unit = match.group(1), match.group(2), match.group(3) or ""
+    whole, decimals, unit = (shortened(x or "") for x in match.groups())
     raise InputError(
         field,
         text,
@@ -241,16 +255,21 @@ def _refuse_decimal_comma(field: str, text: str) -> None:
     )
 
 
+def _may_be_decimal(whole: str, decimals: str) -> bool:
+    """Tell whether digits on both sides of a comma may be one number; ``500,600`` is none that anybody types."""
+    return not (len(decimals) >= len(whole) >= 3 and int(decimals) >= int(whole))
+
+
 def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     """Return what from:to:step stands for; the end belongs to it where a step meets it."""
     first, last, step = numbers
     if step == 0 or (last - first) * step < 0:
         raise InputError(field, text, f"a step that leads from the first value to the last, as in {RANGE}")
-    count = math.floor((last - first) / step * (1 + 1e-12) + 1e-9) + 1
+    steps = (last - first) / step * (1 + 1e-12) + 1e-9
+    _check_number(field, math.floor(steps) + 1 if math.isfinite(steps) else steps)
+    count = math.floor(steps) + 1
     if count == 1 and first != last:
         raise InputError(field, text, f"a step that is not larger than the whole range, as in {RANGE}")
-    if count > MOST_STEPS:
-        raise InputError(field, text, f"at most {MOST_STEPS} steps")
     return [float(f"{first + k * step:.{DIGITS}g}") for k in range(count)]
 
 
@@ -275,6 +294,7 @@ def _words(key: str, values: Any, several: bool) -> tuple[Value, ...]:
     entries = [x.strip() for x in values.split(",")] if isinstance(values, str) else values
     if not isinstance(entries, (list, tuple)) or not entries:
         raise InputError(field, values, "words with commas between them, or a list of them")
+    _check_number(field, len(entries))
     found: list[Value] = []
     for entry in entries:
         if isinstance(entry, str) and entry.strip():
@@ -297,6 +317,7 @@ def _ranges(key: str, values: Any) -> tuple[Value, ...]:
     entries = values.split(",") if isinstance(values, str) else values
     if not isinstance(entries, (list, tuple)) or not all(isinstance(x, str) and x.strip() for x in entries):
         raise InputError(field, values, "ranges as text, such as '+-10 %' or '60 .. 80 N*m', or 'none'")
+    _check_number(field, len(entries))
     for entry in reversed(entries):
         more, unit = _one_range(field, entry.strip(), unit)
         found[:0] = more

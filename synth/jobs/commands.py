@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from synth.errors import InputError
+from synth.errors import InputError, whole_number
+from synth.input_limits import INPUT_LIMITS
 from synth.interrupts import heard_again
 from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, objectives, tell
 from synth.terminal_options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
@@ -106,8 +107,8 @@ def batch_job(
 
 def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
     """Plan a batch, work it off, write it, and return the exit code that it has."""
-    if workers is not None and workers < 1:
-        raise InputError("--workers", workers, "a whole number, at least 1")
+    if workers is not None:
+        whole_number(workers, "--workers", INPUT_LIMITS.workers, path=("workers",))
     with heard_again() as check:
         try:
             from synth.jobs.console import batch_display, print_summary, print_table_remarks

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.analysis import chosen_objectives
-from synth.errors import InputError
+from synth.errors import InputError, UnknownOptionError, shortened
 from synth.instance import Instance, catalogs_for
 from synth.jobs.cells import READERS
 from synth.jobs.school import place
@@ -21,7 +21,7 @@ from synth.problem import DesignProblem, families, load
 from synth.spec import read_content
 from synth.units import check_number, parse_quantity, parse_unit, split_header
 
-CARRY = "carry"
+CARRY, REQUIREMENTS = "carry", "requirements"
 DIGITS = re.compile(r"([0-9]+)")
 LETTER = re.compile(r"[^\W\d_]|[/%°]")  # then the cell has a unit of its own
 
@@ -46,10 +46,20 @@ class Fault:
     value: str | None
     expected: str
 
+    def __post_init__(self) -> None:
+        """Keep no more of a cell than a message repeats."""
+        if self.value is not None:
+            object.__setattr__(self, "value", shortened(self.value))
+
+    @classmethod
+    def of(cls, line: int, column: str, error: InputError) -> Fault:
+        """Return what is wrong with the content of a column."""
+        return cls(line, column, None if error.value is None else str(error.value), error.expected)
+
     def sentence(self) -> str:
         """Return the fault in words."""
-        shown = "is missing" if self.value is None else f"got {self.value!r}"
-        return f"line {self.line}{f', column {self.column}' if self.column else ''}: {shown}; expected {self.expected}"
+        where = f"line {self.line}{f', column {self.column}' if self.column else ''}"
+        return str(InputError(where, self.value, self.expected))
 
 
 @dataclass(frozen=True)
@@ -267,7 +277,7 @@ class Questioner:
                 try:
                     given[name] |= READERS[name](text, f"column {column.title}")
                 except InputError as error:
-                    faults.append(Fault(line, column.title, str(error.value), error.expected))
+                    faults.append(Fault.of(line, column.title, error))
         for column, word in variant.columns:
             text = cells[column.position].strip()
             if not text:
@@ -329,7 +339,7 @@ class Questioner:
             try:
                 stated = dict(READERS[OPTIONS](text, ""))  # type: ignore[arg-type]
             except InputError as error:
-                raise _Wrong([Fault(line, self.structural[OPTIONS].title, str(error.value), error.expected)]) from None
+                raise _Wrong([Fault.of(line, self.structural[OPTIONS].title, error)]) from None
             places = dict.fromkeys(stated, self.structural[OPTIONS])
         spellings = self.universe.options.get(family, {})
         for column in self.columns:
@@ -343,19 +353,19 @@ class Questioner:
             stated = {**self.own_options, **stated}
         ignored: list[str] = []
         found = self._known_variant(family, stated)
-        while isinstance(found, InputError) and found.field == "options" and str(found.value) in places:
+        while isinstance(found, UnknownOptionError) and found.path[-1] in places:
             # An option that another option takes away is not applied, where a column gives it.
-            column = places[str(found.value)]
+            column = places[str(found.path[-1])]
             if column.name == OPTIONS:
                 break
-            del stated[str(found.value)]
+            del stated[str(found.path[-1])]
             ignored.append(column.title)
             found = self._known_variant(family, stated)
         if isinstance(found, InputError):
-            name = found.field.removeprefix("option ").removeprefix("options: ")
-            column_of = places.get(name) or places.get(str(found.value)) or self.structural.get(OPTIONS)
+            named = str(found.path[-1]) if found.path else ""
+            column_of = places.get(named) or self.structural.get(OPTIONS)
             title = column_of.title if column_of is not None else ""
-            raise _Wrong([Fault(line, title, str(found.value), found.expected)])
+            raise _Wrong([Fault.of(line, title, found)])
         return found, stated, ignored
 
     def _known_variant(self, family: str, options: Mapping[str, str]) -> _Variant | InputError:
@@ -369,7 +379,7 @@ class Questioner:
             problem = self.problem(family, options)
             declaration = problem.model(frozenset(), catalogs_for(problem, self.catalogs)).declaration
         except InputError as error:
-            if error.field == "catalogs":
+            if error.path[:1] == ("catalogs",):
                 raise
             return error
         words = words_of(declaration, problem.simulation_settings)
@@ -430,20 +440,16 @@ class Questioner:
 
     def _located(self, line: int, error: InputError, titles: Mapping[str, str]) -> Fault:
         """Say in which column stands what the search refuses."""
-        value = None if error.value is None else str(error.value)
-        kind, _, name = error.field.replace("requirement ", "requirement: ").partition(": ")
-        if name in titles and kind in ("requirement", FIX):
-            return Fault(line, titles[name], value, error.expected)
-        if kind == "requirement":
-            return Fault(line, name, value, error.expected)
-        if error.field in titles:
-            return Fault(line, titles[error.field], value, error.expected)
+        kind, name = (*map(str, error.path[:2]), "", "")[:2]
+        if name in titles and kind in (REQUIREMENTS, FIX):
+            return Fault.of(line, titles[name], error)
+        if kind == REQUIREMENTS and name:
+            return Fault.of(line, name, error)
+        where = name if kind in (LIMITS, FIX, PARTS) else error.field
+        value = "" if error.value is None else str(error.value)
+        shown = ": ".join(x for x in dict.fromkeys((where, value)) if x)
         if kind in (LIMITS, FIX, PARTS):
-            shown = f"{name}: {value}" if name and value else name or value
             return Fault(line, self.structural[kind].title if kind in self.structural else kind, shown, error.expected)
-        shown = f"{error.field}: {value}" if value else error.field
-        if kind.startswith(("table ", "slot ")) and PARTS in self.structural:
-            return Fault(line, self.structural[PARTS].title, shown, error.expected)
         return Fault(line, "", shown, error.expected)
 
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.errors import InputError
+from synth.errors import InputError, whole_number
 from synth.fingerprint import code_digest, problem_digest
+from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs, as_mapping
 from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.outputs import write_outputs
@@ -292,7 +293,8 @@ class BatchJob:
         fault = rows[0].faults[0]
         where = f"{self.table.name}, line {fault.line}{f', column {fault.column}' if fault.column else ''}"
         others = f" (none of {count} rows can be asked)" if count > 1 else ""
-        raise InputError(where, fault.value, f"{fault.expected}{others}")
+        path = ("rows", fault.line, fault.column) if fault.column else ("rows", fault.line)
+        raise InputError(where, fault.value, f"{fault.expected}{others}", path)
 
     def _content(self) -> dict[str, Any]:
         """Return what is kept with the job: how it is solved, and what its columns are."""
@@ -394,8 +396,8 @@ def work_off(
     str
         Why it was stopped; empty when the job is done.
     """
-    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool) or workers < 1):
-        raise InputError("workers", workers, "a whole number, at least 1")
+    if workers is not None:
+        whole_number(workers, "workers", INPUT_LIMITS.workers, path=("workers",))
     if sum(store.open_units(job)):
         executor: Any
         if scheduler is not None:

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
+from synth.input_limits import INPUT_LIMITS
 
 EXCEL = (".xlsx", ".xlsm")
-MOST_CELLS = 2000  # columns that anybody has typed
 
 
 @dataclass(frozen=True)
@@ -145,8 +145,8 @@ def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
         raise InputError(where, titles[0], "commas between the columns (and decimal points)")
     if not titles:
         raise InputError(where, None, "a header such as 'family,load_torque [N*m]'")
-    if len(titles) > MOST_CELLS:
-        raise InputError(where, f"{len(titles)} columns", f"at most {MOST_CELLS}")
+    if len(titles) > INPUT_LIMITS.columns:
+        raise InputError(where, f"{len(titles)} columns", f"at most {INPUT_LIMITS.columns}")
     for title in titles:
         if not title:
             raise InputError(where, "a column without a name", "a name for each column")

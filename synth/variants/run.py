@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.errors import InputError
+from synth.errors import InputError, whole_number
 from synth.files import csv_text, write_atomically
+from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.run import DATABASE, BatchResult
@@ -194,13 +195,9 @@ def size_range(
 
 
 def _check(variants: Any, candidates: Any, gap: Any, time_limit: Any) -> None:
-    def whole(value: Any) -> bool:
-        return isinstance(value, int) and not isinstance(value, bool) and value >= 1
-
-    if variants is not None and not whole(variants):
-        raise InputError("variants", variants, "a whole number, at least 1")
-    if not whole(candidates):
-        raise InputError("candidates", candidates, "a whole number, at least 1")
+    if variants is not None:
+        whole_number(variants, "variants", INPUT_LIMITS.listed, path=("variants",))
+    whole_number(candidates, "candidates", INPUT_LIMITS.listed, path=("candidates",))
     if not isinstance(gap, (int, float)) or isinstance(gap, bool) or not 0 <= gap < 1:
         raise InputError("gap", gap, "a fraction from 0 to below 1, for example 0.001")
     if not isinstance(time_limit, (int, float)) or isinstance(time_limit, bool) or not 0 < time_limit < math.inf:

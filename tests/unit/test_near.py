@@ -215,7 +215,8 @@ def test_a_saved_front_answers_as_the_one_in_memory(tmp_path):
         ({"within": "0 %"}, ["within", "more than 0"]),
         ({"within": "200 %"}, ["within", "at most 50 %"]),
         ({"within": "2 mm"}, ["within", "2 mm"]),
-        ({"count": 0}, ["count", "at least 1"]),
+        ({"count": 0}, ["count", "1 or more"]),
+        ({"count": 10**9}, ["count", "at most 10000"]),
     ],
 )
 def test_careless_input_is_refused(front, more, words):

@@ -1,0 +1,51 @@
+"""The most that a user may ask for at once: one record, so that every door refuses the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputLimits:
+    """Maxima of what users state, all counts; ``docs/specs.md`` lists them.
+
+    Parameters
+    ----------
+    message : int
+        Characters of the input that a message repeats in one place.
+    points : int
+        Designs of a front.
+    limits : int
+        Limits of one question, on all quantities together.
+    steps : int
+        Steps of a study.
+    seed : int
+        What random choices begin with.
+    workers : int
+        Processes or threads.
+    samples : int
+        Points at which the yield of a design is counted.
+    scattered : int
+        Things that scatter at a time.
+    columns : int
+        Columns of a table of rows.
+    families : int
+        Families that are compared.
+    listed : int
+        Near-equal designs, variants or candidates for them.
+    """
+
+    message: int = 120
+    points: int = 10_000
+    limits: int = 200
+    steps: int = 1000
+    seed: int = 2**64 - 1
+    workers: int = 1024
+    samples: int = 2**20
+    scattered: int = 8
+    columns: int = 2000
+    families: int = 100
+    listed: int = 10_000
+
+
+INPUT_LIMITS = InputLimits()
