@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
+from synth.count_domain import stated
 from synth.declaration import Variable
 from synth.errors import InputError, at
 from synth.feasibility import Status, holds, residual, utilisation
@@ -57,7 +58,7 @@ def _restated(instance: Instance) -> dict[str, Any]:
     """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
     restated: dict[str, Any] = dict(instance.problem.restated)
     if instance.asked_limits:
-        restated["limits"] = {n: c if isinstance(c, str) else list(c) for n, c in instance.asked_limits.items()}
+        restated["limits"] = stated(instance.asked_limits)
     files = instance.catalogs.files()
     if files:
         restated["catalogs"] = files
@@ -303,10 +304,10 @@ def _evaluate(
 ) -> Design:
     problem = load(p)
     instance = Instance(problem, requirements, catalogs_for(problem, catalogs), limits=limits, restrict=False)
-    instance.state_limits_on_unknowns()
     model = instance.model
     rows = _chosen_rows(instance, parts)
     known, choices, derived = _read_values(model, values, in_si)
+    instance.state_limits_on_unknowns(known)
     data = _data(instance, rows, known, choices)
     remarks = _refuse_discrete(instance, data, rows)
     variables = _complete_variables(model, known, derived, data)
@@ -314,7 +315,7 @@ def _evaluate(
     part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
     result = instance.model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
-    refuse_not_computable(instance, result, found, data)
+    refuse_not_computable(model, result, found, variables, data)
     return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found)
 
 

@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from synth.conditions import may_be_condition, parse_condition
+from synth.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.declaration import Part, Refusal
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
@@ -126,7 +127,7 @@ def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
 
 def check_number_of_limits(limits: Mapping[str, Any]) -> None:
     """Refuse more limits than a question may have, before any of them is read."""
-    count = sum(len(texts) if isinstance(texts, (list, tuple)) else 1 for texts in limits.values())
+    count = sum(len(texts) if is_list(texts) and not isinstance(texts, str) else 1 for texts in limits.values())
     if count > INPUT_LIMITS.limits:
         raise InputError("limits", f"{count} limits", f"at most {INPUT_LIMITS.limits}", ("limits",))
 
@@ -197,6 +198,7 @@ class Instance:
         self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
         self._fixed_discrete: dict[str, Any] = {}
         self._count_bounds: list[tuple[str, str, float]] = []
+        self._count_sets: list[tuple[str, np.ndarray]] = []
         check_number_of_limits(self.asked_limits)
         quantities = list(self.model.quantity_sx)
         for word, conditions in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
@@ -336,6 +338,9 @@ class Instance:
         for sense, bound, place in read_limits(name, unit, conditions):
             with at("limits", name, *place):
                 self._apply_limit(name, unit, sense, bound)
+        if self._asks_set(name, conditions):
+            with at("limits", name):
+                self._allow(name, conditions, "limits")
 
     def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
         """Return what the user wrote about a quantity as limits."""
@@ -345,12 +350,34 @@ class Instance:
             for sense, bound, _ in read_limits(name, unit, texts)
         ]
 
-    def state_limits_on_unknowns(self) -> None:
-        """Let limits on variables and counts, which bound a search, be limits that a given design may miss."""
-        quantities = list(self.model.quantity_sx)
-        for name, texts in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
-            if name not in self.model.declaration.derived:
-                self.extra += self.conditions(name, texts)
+    def state_limits_on_unknowns(self, values: Mapping[str, float]) -> None:
+        """Let limits on variables and counts, which bound a search, be limits that a given design may miss.
+
+        Of a set of allowed values the one nearest to that of the design is the limit.
+        """
+        model, quantities = self.model, list(self.model.quantity_sx)
+        for name, texts in model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
+            if name in model.declaration.derived:
+                continue
+            self.extra += self.conditions(name, texts)
+            if self._asks_set(name, texts):
+                steps = values_of_set(model.declaration.counts[name], texts, "limits")
+                nearest = float(steps[np.argmin(np.abs(steps - values[name]))])
+                self.extra.append(
+                    ExtraLimit(f"{name} in {shown_set(steps)}", name, "equal", nearest, model.units[name])
+                )
+
+    def _asks_set(self, name: str, conditions: Any) -> bool:
+        """Tell whether what is asked of a quantity holds a set of allowed values, which only a count can have."""
+        if not is_list(conditions) or (len(conditions) and all(map(compares, entries(conditions)))):
+            return False
+        if name not in self.model.declaration.counts:
+            example = f"comparisons, for example '<= 260 {self.model.units[name]}'; a set of values is for counts"
+            raise InputError(f"limits: {name}", conditions, example, ("limits", name))
+        return True
+
+    def _allow(self, name: str, values: Any, field: str) -> None:
+        self._count_sets.append((name, values_of_set(self.model.declaration.counts[name], values, field)))
 
     def _apply_limit(self, name: str, unit: str, sense: str, bound: float) -> None:
         model = self.model
@@ -384,6 +411,12 @@ class Instance:
 
     def _pin(self, name: str, value: Any) -> None:
         model, d = self.model, self.model.declaration
+        if name in d.counts and is_list(value):
+            self._allow(name, value, "fix")
+            return
+        if is_list(value) and not isinstance(value, str):
+            more = " (parts takes a list of designations)" if name in d.slots else ""
+            raise InputError(f"fix: {name}", value, f"one value; a set of values is for counts{more}")
         if name in d.slots or name in d.choices:
             self._fixed_discrete[name] = value
             return
@@ -510,12 +543,16 @@ class Instance:
             for name, sense, bound in self._count_bounds:
                 if name == count.name:
                     values = values[_compare(values, sense, bound)]
+            for name, steps in self._count_sets:
+                if name == count.name:
+                    values = values[np.isin(values, steps)]
             if count.name in self._fixed_discrete:
                 values = values[np.abs(values - self._fixed_discrete[count.name]) < 1e-9]
             if not len(values):
                 low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
                 signs = {"at_most": "<=", "at_least": ">=", "equal": "=="}
                 asked = [f"{signs[s]} {b:g}" for n, s, b in self._count_bounds if n == count.name]
+                asked += [f"in {shown_set(steps)}" for n, steps in self._count_sets if n == count.name]
                 if count.name in self._fixed_discrete:
                     asked.append(f"== {self._fixed_discrete[count.name]:g}")
                 expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
@@ -683,11 +720,13 @@ class Instance:
 
 
 def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tuple[int, ...]]]:
-    """Return what the user wrote about a quantity: sense and SI value of each limit, and its position in a list."""
-    several = isinstance(texts, (list, tuple))
+    """Return the comparisons that the user wrote about a quantity: sense, SI value, and the position in a list."""
+    several = is_list(texts)
     found = list[tuple[str, float, tuple[int, ...]]]()
-    for k, text in enumerate(texts if several else [texts]):
-        place = (k,) if several else ()
+    for k, text in enumerate(entries(texts)):
+        if several and not compares(text):
+            continue  # a value of a set
+        place = (k,) if several and not isinstance(texts, str) else ()
         with at("limits", name, *place):
             found += [(sense, bound, place) for sense, bound in _read_limit(name, unit, text)]
     return found

@@ -13,6 +13,7 @@ import numpy as np
 from synth.analysis import chosen_objectives, found_designs, make_frame, offered, with_ties
 from synth.clock import Clock, Stopped
 from synth.conflicts import explain_infeasible
+from synth.count_domain import stated
 from synth.cover import Covered, best, cover
 from synth.dives import dive
 from synth.elasticity import elasticities
@@ -92,9 +93,9 @@ def synthesize(
     parts : mapping, optional
         Slot -> list of designations, or a condition on columns.
     limits : mapping, optional
-        Quantity -> "<= 260 mm", "200 mm .. 260 mm", "== 4", or a list of them.
+        Quantity -> "<= 260 mm", "200 mm .. 260 mm", "== 4", or a list of them; count -> a set, [8, 12, 16].
     fix : mapping, optional
-        Pins variables, counts, choices, parts.
+        Pins variables, counts, choices, parts; counts to a set as well.
     weights : mapping, optional
         Objective -> weight >= 0 for the ranking; 1 where missing.
     gap : float
@@ -224,8 +225,8 @@ def pose(
         "seed": seed,
         "weights": weight_of,
         "parts": {k: v if isinstance(v, str) else list(v) for k, v in (parts or {}).items()},
-        "limits": {k: v if isinstance(v, str) else list(v) for k, v in (limits or {}).items()},
-        "fix": {k: v if isinstance(v, (str, int, float, bool)) else str(v) for k, v in (fix or {}).items()},
+        "limits": stated(limits),
+        "fix": stated(fix),
     }
     return Question(instance, chosen, weight_of, settings)
 

@@ -13,7 +13,6 @@ from synth.errors import InputError
 from synth.units import format_quantity
 
 if TYPE_CHECKING:
-    from synth.instance import Instance
     from synth.model import Evaluation, Model
 
 END = 1e-9  # relative: what is this close to the end of a range is within it
@@ -76,9 +75,9 @@ def refuse_other_sign(model: Model, values: Mapping[str, float]) -> None:
 
 
 def refuse_not_computable(
-    instance: Instance, result: Evaluation, told: Mapping[str, str], data: Sequence[float]
+    model: Model, result: Evaluation, told: Mapping[str, str], variables: np.ndarray, data: Sequence[float]
 ) -> None:
-    """Refuse values outside of the range for which some formula has no number, though no guard or missing cell says so.
+    """Refuse values outside of the range for which some formula has no number that it has at the end of the range.
 
     Parameters
     ----------
@@ -86,27 +85,32 @@ def refuse_not_computable(
         Of the one design.
     told : mapping
         What ``outside`` returned.
+    variables : array (variables,)
+        SI.
     data : list of numbers
-        The data inputs; a cell that a table lacks is not-a-number.
+        The data inputs.
 
     Raises
     ------
     InputError
     """
-    if not told:
+    lost = [name for name, value in result.values.items() if not math.isfinite(value[0])]
+    if not told or not lost:
         return
-    model = instance.model
-    missing = [len(model.variables) + k for k, x in enumerate(data) if math.isnan(x)]
-    lacking = model.program.dependence(missing) if missing else None
-    for name, node in model.quantity_node.items():
+    ends = np.array([min(max(x, v.lower), v.upper) for v, x in zip(model.variables, variables, strict=True)])
+    counts, within = model.declaration.counts, list(data)
+    for k, entry in enumerate(model.data_inputs):
+        if entry.kind == "count":
+            steps = counts[entry.name].values
+            within[k] = float(steps[np.argmin(np.abs(steps - data[k]))])
+    nearest = model.evaluate(ends[None, :], within)
+    for name in lost:
+        # A guard that fails tells why in its own words.
         guarded = any(not result.holds[guard][0] for guard in model.guards_of(name))
-        if not math.isfinite(result.values[name][0]) and not guarded and not (lacking is not None and lacking[node]):
-            raise InputError(
-                f"values: {', '.join(told)}",
-                "; ".join(told.values()),
-                f"values for which {name} can be computed",
-                ("values", *told) if len(told) == 1 else ("values",),
-            )
+        if math.isfinite(nearest.values[name][0]) and not guarded:
+            expected = f"values for which {name} can be computed"
+            path = ("values", *told) if len(told) == 1 else ("values",)
+            raise InputError(f"values: {', '.join(told)}", "; ".join(told.values()), expected, path)
 
 
 def widened(unknowns: Sequence[Variable], factor: float) -> tuple[np.ndarray, np.ndarray]:

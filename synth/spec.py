@@ -189,10 +189,14 @@ def _options(where: str, value: Any) -> Mapping[str, str]:
     return MappingProxyType(options)
 
 
-def _scalars(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
+def _scalars(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
+    """Return a check of names with one value; ``sets``: or a list of numbers and texts."""
+
     def check(where: str, value: Any) -> Mapping[str, Any]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
+            if sets and isinstance(entry, (list, tuple)) and all(isinstance(x, str) or _is_number(x) for x in entry):
+                continue
             if isinstance(entry, (Mapping, list, tuple)):
                 raise InputError(f"{where}: {name}", _kind(entry), f"one value, for example '{example}'", (name,))
         return checked
@@ -200,12 +204,15 @@ def _scalars(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
     return check
 
 
-def _lists(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
+def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
+    """Return a check of names with a text or a list of texts; ``sets``: numbers may stand in lists as well."""
+
     def check(where: str, value: Any) -> Mapping[str, Any]:
         checked = _mapping(example)(where, value)
         for name, entry in checked.items():
-            entries = entry if isinstance(entry, (list, tuple)) else [entry]
-            if not entries or not all(isinstance(x, str) for x in entries):
+            listed = isinstance(entry, (list, tuple))
+            entries = entry if listed else [entry]
+            if not entries or not all(isinstance(x, str) or (sets and listed and _is_number(x)) for x in entries):
                 right = f"text or a list of texts, for example '{example}'"
                 raise InputError(f"{where}: {name}", _kind(entry), right, (name,))
         return checked
@@ -287,8 +294,8 @@ FIELDS: dict[str, Callable[[str, Any], Any]] = {
     "options": _options,
     "requirements": _scalars("load_torque: 600 N*m"),
     "objectives": _objectives,
-    "limits": _lists("outer_diameter: '<= 260 mm'"),
-    "fix": _scalars("ramp_time: 2 s"),
+    "limits": _lists("outer_diameter: '<= 260 mm'", sets=True),
+    "fix": _scalars("ramp_time: 2 s", sets=True),
     "parts": _lists("friction_pair: [designation]"),
     "catalogs": _catalogs,
     "weights": _weights,

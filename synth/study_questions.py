@@ -10,6 +10,7 @@ from typing import Any
 
 from synth import scatter
 from synth.analysis import chosen_objectives
+from synth.count_domain import entries
 from synth.errors import InputError
 from synth.instance import SENSES, catalogs_for
 from synth.posed import posed
@@ -108,7 +109,7 @@ class Asked:
         spellings, kept = self._names(), list[str]()
         for word, texts in (self.limits or {}).items():
             if spellings.get(str(word)) == varied.name:
-                for text in texts if isinstance(texts, (list, tuple)) else [texts]:
+                for text in entries(texts):
                     low, dots, high = str(text).partition("..")
                     for one in [f">= {low.strip()}", f"<= {high.strip()}"] if dots else [str(text)]:
                         sign = re.match(r"^\s*(<=|>=|==|=|<|>)", one)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.analysis import chosen_objectives
+from synth.count_domain import is_list
 from synth.errors import InputError, UnknownOptionError, shortened
 from synth.instance import Instance, catalogs_for
 from synth.jobs.cells import READERS
@@ -313,7 +314,7 @@ class Questioner:
     @staticmethod
     def _value(column: Column, word: Word, text: str) -> tuple[str, float]:
         """Return a cell with its unit, and its number in SI (0 for words); refuse what is no number of the kind."""
-        if word.unit is None:
+        if word.unit is None or (word.kind == "count" and is_list(text)):
             return text, 0.0
         stated = text
         if column.unit not in (None, "-"):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from synth.count_domain import stated_value
 from synth.errors import InputError, whole_number
 from synth.fingerprint import code_digest, problem_digest
 from synth.input_limits import INPUT_LIMITS
@@ -194,7 +195,7 @@ class BatchJob:
             asked = self.settings["objectives"]
             self.settings["objectives"] = [asked] if isinstance(asked, str) else list(asked)
         self.common = {
-            name: {str(key): _stated(value) for key, value in as_mapping(given, name, "{'mass': '...'}").items()}
+            name: {str(key): stated_value(value) for key, value in as_mapping(given, name, "{'mass': '...'}").items()}
             for name, given in common.items()
         }
         self.catalog_spec = str(Path(catalogs).resolve()) if isinstance(catalogs, (str, Path)) else catalogs
@@ -470,10 +471,3 @@ def resume(
 def cores() -> int:
     """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _stated(value: Any) -> Any:
-    """Return a restriction as JSON can keep it."""
-    if isinstance(value, (list, tuple)):
-        return [str(entry) for entry in value]
-    return value if isinstance(value, (str, int, float, bool)) else str(value)

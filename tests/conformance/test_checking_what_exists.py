@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import synth
+from synth.instance import Instance, as_catalogs
 from synth.special import expanded
 from synth.units import format_quantity
 from tests.conformance.cases import CASES, answer
@@ -55,16 +56,27 @@ def moved_out(instance):
         yield c.name, c.values[0] + step / 2
 
 
+def evaluated(problem, requirements, values, parts):
+    """Return the design, or the sentence that refuses it."""
+    try:
+        return synth.evaluate(problem, requirements, values=values, parts=parts)
+    except synth.InputError as refusal:
+        return refusal
+
+
 def test_sizes_outside_of_the_range_are_computed(found):
     family, case, instance, design = found
     model, tried, finite = instance.model, 0, 0
     spec = design.to_spec()
     for name, value in moved_out(instance):
         stated = format_quantity(value, model.units[name], None)
-        other = synth.evaluate(
-            synth.load(family, **case.options), case.requirements,
-            values={**spec["values"], name: stated}, parts=spec["parts"],
-        )  # fmt: skip
+        values = {**spec["values"], name: stated}
+        other = evaluated(synth.load(family, **case.options), case.requirements, values, spec["parts"])
+        if isinstance(other, synth.InputError):
+            # What no formula gives a number for although the end of the range does: told with the value it is about.
+            assert other.field == f"values: {name}"
+            assert "can be computed" in other.expected
+            continue
         tried += 1
         assert set(other.outside) == {name}
         assert other.values[name] == pytest.approx(value, rel=1e-12)
@@ -75,5 +87,37 @@ def test_sizes_outside_of_the_range_are_computed(found):
                 assert x == pytest.approx(reference[quantity], rel=1e-9, abs=1e-300), (name, quantity)
         assert not [n for n, x in other.values.items() if math.isnan(x) and not other.violated]
     assert tried >= len(model.variables) + len(model.declaration.counts)
-    assert finite > 10 * tried
+    assert finite > 10 * tried  # computed, and checked by CasADi
     assert np.isfinite(list(by_casadi(instance, design).values())).all()
+
+
+def test_sets_of_counts_are_kept_to(found):
+    family, case, instance, design = found
+    counts = instance.model.declaration.counts
+    for name, count in counts.items():
+        steps = count.values
+        near = int(np.argmin(np.abs(steps - design.values[name])))
+        allowed = sorted({float(steps[near]), float(steps[0]), float(steps[-1])})
+        own = {n: v for n, v in (case.settings.get("limits") or {}).items() if n not in (name, count.symbol)}
+        for key in ("limits", "fix"):
+            other = {n: v for n, v in (case.settings.get("fix") or {}).items() if n not in (name, count.symbol)}
+            asked = {"limits": own, "fix": other}
+            asked[key] = {**asked[key], name: allowed}
+            posed = Instance(
+                synth.load(family, **case.options), case.requirements, as_catalogs(None), case.settings.get("parts"),
+                asked["limits"], asked["fix"],
+            )  # fmt: skip
+            assert posed.selection.counts[name].tolist() == [x for x in allowed if x in instance_steps(instance, name)]
+    if counts:
+        name = next(iter(counts))
+        held = synth.evaluate(
+            instance.problem, case.requirements, design.to_spec(), limits={name: [design.values[name]]}
+        )
+        assert f"{name} in [{design.values[name]:g}]" in held.utilisation
+        assert not held.violated
+
+
+def instance_steps(instance, name):
+    """Return the steps of a count that nothing but a set could leave out."""
+    refused = {e["designation"] for e in instance.selection.left_out if e["slot"] == name}
+    return [x for x in instance.model.declaration.counts[name].values if f"{x:g}" not in refused]

@@ -98,6 +98,8 @@ def test_not_a_number_is_told_but_not_what_a_guard_or_a_missing_cell_explains():
     with pytest.raises(synth.InputError, match=r"values: z: got '-0\.1'; expected a value at least 0"):
         spread(z=-0.1)
     assert spread(y=-3).outside == {"y": "-3, searched is -1 to 1"}
+    with pytest.raises(synth.InputError, match=r"values: y, z: .* root can"):
+        spread(y=4.5, z=5)  # of two outside the one that matters may be either
     thin = spread(x=0.4, rod="odd")
     assert set(thin.outside) == {"x"}
     assert thin.violated == ("open",)
