@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from synth.errors import InputError, UnknownOptionError
+from synth.margins import within
 from synth.units import parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -617,4 +618,5 @@ def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper:
         values = steps / per_unit if per_unit and abs(per_unit * grid - 1) < 1e-9 else steps * grid
     else:
         values = np.sort(np.asarray(grid, dtype=float))
-    return values[(values >= lower - 1e-12 * abs(lower)) & (values <= upper + 1e-12 * abs(upper))]
+    inside: np.ndarray = values[within(values, lower, upper, 1e-12)]
+    return inside

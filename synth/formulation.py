@@ -15,6 +15,7 @@ from synth.declaration import Refusal
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
+from synth.margins import above, below
 from synth.model import Evaluation
 from synth.native import COMPILED_FROM
 from synth.native_tree import CapTables
@@ -420,12 +421,12 @@ class Formulation:
         np.minimum(high[:, :n], self.upper, out=high[:, :n])
         for k, grid in enumerate(self.grids):
             if len(grid):
-                first = np.searchsorted(grid, low[:, k] * (1 - SNAP) - PINNED)
-                last = np.searchsorted(grid, high[:, k] * (1 + SNAP) + PINNED, side="right") - 1
+                first = np.searchsorted(grid, below(low[:, k], SNAP, PINNED))
+                last = np.searchsorted(grid, above(high[:, k], SNAP, PINNED), side="right") - 1
                 alive &= first <= last
                 low[:, k] = grid[np.minimum(first, len(grid) - 1)]
                 high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
-        alive &= ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
+        alive &= ~np.any(low > above(high, SNAP, PINNED), axis=1)
         np.maximum(high, low, out=high)
         return alive
 
@@ -480,8 +481,8 @@ class Formulation:
         for k, grid in enumerate(self.grids):
             rows = np.flatnonzero(variable == k)
             if len(grid) and len(rows):
-                first = np.searchsorted(grid, low[rows] * (1 - SNAP) - PINNED)
-                last = np.searchsorted(grid, high[rows] * (1 + SNAP) + PINNED, side="right") - 1
+                first = np.searchsorted(grid, below(low[rows], SNAP, PINNED))
+                last = np.searchsorted(grid, above(high[rows], SNAP, PINNED), side="right") - 1
                 cut = (first + last) // 2
                 left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
         return left, right
@@ -553,7 +554,7 @@ class Formulation:
                 r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
                 held[rows] |= holds(r, guard, np.where(exact, TOLERANCE, self._tolerances[rows, None]))
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & self.not_refused(combinations)
-        feasible &= np.all(variables >= self.lower * (1 - np.sign(self.lower) * 1e-12), axis=1)
+        feasible &= np.all(variables >= below(self.lower, PINNED), axis=1)
         return np.flatnonzero(feasible), phi
 
     def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ from synth.count_domain import compares, entries, is_list, shown_set, values_of_
 from synth.declaration import Part, Refusal
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
+from synth.margins import above, within
 from synth.model import part_column_value
 from synth.problem import DesignProblem
 from synth.special import expanded
@@ -252,8 +253,7 @@ class Instance:
 
     @staticmethod
     def _check_range(name: str, typed: Any, value: float, lower: float, upper: float, unit: str) -> None:
-        slack = 1e-12
-        if value < lower - slack * abs(lower) or value > upper + slack * abs(upper):
+        if not within(value, lower, upper, 1e-12):
             low, high = format_quantity(lower, unit), format_quantity(upper, unit)
             expected = (
                 f"{low} to {high}"
@@ -434,7 +434,7 @@ class Instance:
 
     def _check_range_of_variable(self, k: int, typed: Any, value: float) -> None:
         v = self.model.variables[k]
-        if not v.lower - 1e-12 * abs(v.lower) <= value <= v.upper + 1e-12 * abs(v.upper):
+        if not within(value, v.lower, v.upper, 1e-12):
             allowed = f"{format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}"
             raise InputError(f"fix: {v.name}", typed, allowed)
 
@@ -709,8 +709,7 @@ class Instance:
         result = []
         for k, v in enumerate(self.model.variables):
             values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
-            inside = values >= self.lower[k] - 1e-12 * abs(self.lower[k])
-            inside &= values <= self.upper[k] + 1e-12 * abs(self.upper[k])
+            inside = within(values, self.lower[k], self.upper[k], 1e-12)
             if len(values) and not inside.any():
                 low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
                 right = "a range that holds a makeable value (or grid: false)"
@@ -763,7 +762,7 @@ def _contradict(first: str, one: float, second: str, other: float) -> bool:
     """Tell whether two limits on one quantity leave nothing between them."""
     lows = [b for s, b in ((first, one), (second, other)) if s in ("at_least", "equal")]
     highs = [b for s, b in ((first, one), (second, other)) if s in ("at_most", "equal")]
-    return bool(lows and highs and max(lows) > min(highs) + 1e-9 * abs(min(highs)))
+    return bool(lows and highs and max(lows) > above(min(highs), 1e-9))
 
 
 def _compare(values: np.ndarray, sense: str, bound: float) -> np.ndarray:

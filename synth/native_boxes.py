@@ -19,6 +19,7 @@ import numpy as np
 
 from synth import native_rules as rules
 from synth.contractor import CONSTANT, Assign, Check, Code, Contractor, Enclose, Hold, Kill, Narrow, Root, Statement
+from synth.margins import MARGINS
 from synth.native import FLAGS, library, switched_on
 from synth.native_source import EXPRESSIONS, VECTORS
 from synth.native_tree import TREE, CapTables, Grown, Halves, bind, grow
@@ -346,7 +347,7 @@ def source(code: Code) -> str | None:
     statements = [*sweeps.first, *sweeps.later]
     try:
         parts = [
-            VECTORS, rules.COMMON, _sizes(code),
+            VECTORS, MARGINS, rules.COMMON, _sizes(code),
             *_specials(statements, owner.program),
             *_rules(statements, owner),
             _loading(code), _tighten(code), DRIVER, TREE,
@@ -563,15 +564,15 @@ static vi snap(const Batch *b, vd V[][2]) {
         if (size) {
             const double *grid = b->grids[i];
             for (int l = 0; l < LANES; l++) {
-                const long long first = not_below(grid, size, low[l] * (1.0 - b->snap) - b->pinned);
-                const long long last = above(grid, size, high[l] * (1.0 + b->snap) + b->pinned) - 1;
+                const long long first = not_below(grid, size, end_below(low[l], b->snap, b->pinned));
+                const long long last = above(grid, size, end_above(high[l], b->snap, b->pinned)) - 1;
                 if (first > last) dead[l] = -1;
                 low[l] = grid[first < size ? first : size - 1];
                 high[l] = grid[last > 0 ? last : 0];
             }
             high = v_max(high, low);
         }
-        dead |= low > high * (1.0 + b->snap) + b->pinned;
+        dead |= low > ends_above(high, b->snap, b->pinned);
         V[i][0] = low;
         V[i][1] = v_max(high, low);
     }

@@ -244,8 +244,8 @@ static void middle_of(const Batch *b, int i, double low, double high, double *en
     const long long size = b->grid_sizes[i];
     if (size) {
         const double *grid = b->grids[i];
-        const long long first = not_below(grid, size, low * (1.0 - b->snap) - b->pinned);
-        const long long last = above(grid, size, high * (1.0 + b->snap) + b->pinned) - 1;
+        const long long first = not_below(grid, size, end_below(low, b->snap, b->pinned));
+        const long long last = above(grid, size, end_above(high, b->snap, b->pinned)) - 1;
         const long long cut = (first + last) / 2;
         *end = grid[cut];
         *start = grid[cut + 1 < size ? cut + 1 : size - 1];

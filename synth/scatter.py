@@ -19,6 +19,7 @@ import numpy as np
 from synth.declaration import Declaration
 from synth.errors import InputError, at, whole_number
 from synth.input_limits import INPUT_LIMITS
+from synth.margins import within
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -387,7 +388,7 @@ class _Reader:
         if name in self.d.requirements:
             r = self.d.requirements[name]
             span = self._range(text, r.unit, field)
-            if span.kind == "ends" and (span.low < r.lower - 1e-12 * abs(r.lower) or span.high > r.upper * (1 + 1e-12)):
+            if span.kind == "ends" and not all(within(x, r.lower, r.upper, 1e-12) for x in (span.low, span.high)):
                 low, high = (format_quantity(x, r.unit) if math.isfinite(x) else "any" for x in (r.lower, r.upper))
                 raise InputError(field, text, f"a range within {low} .. {high}")
             return Scattered(name, r.unit, span, (Member("requirement", name),), text)

@@ -10,6 +10,7 @@ import numpy as np
 from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
 from synth.formulation import SNAP, Boxes, Candidate, Formulation, rows_of
+from synth.margins import below
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
 from synth.settle import settle_variables
@@ -377,7 +378,7 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
     high = np.tile(form.propagation.high[: form.n], (len(variables) * count, 1))
     for k, grid in enumerate(form.grids):
         if len(grid):
-            place = np.searchsorted(grid, variables[:, k] * (1 - SNAP))[:, None] + steps[None, :, k]
+            place = np.searchsorted(grid, below(variables[:, k], SNAP))[:, None] + steps[None, :, k]
             low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()
     return low, high, np.repeat(np.arange(len(variables)), count)
 

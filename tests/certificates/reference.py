@@ -103,7 +103,8 @@ class Reference:
         if not v.grid or not self.case.grid:
             return None
         values = np.array(v.grid) * v.factor
-        return values[(values >= low * (1 - 1e-12)) & (values <= high * (1 + 1e-12))]
+        reach = 1e-12 * np.maximum(np.abs(low), np.abs(high))
+        return values[(values >= low - reach) & (values <= high + reach)]
 
     def _rows(self) -> dict[str, np.ndarray]:
         result = {}
@@ -456,6 +457,6 @@ class Reference:
                 labels = np.array(self.case.choices[name])
                 same &= labels[values.astype(int)] == design.choices[name]
             else:
-                same &= np.abs(values - design.values[name]) <= 1e-9 * np.abs(values)
+                same &= np.abs(values - design.values[name]) <= 1e-9 * np.abs(values) + 1e-15
         found = np.flatnonzero(same)
         return int(found[0]) if len(found) else None
