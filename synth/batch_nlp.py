@@ -18,6 +18,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from synth import deadline
 from synth.derivatives import RowFunctions
 from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Problems
 from synth.lanes import InteriorPoint
@@ -179,9 +180,10 @@ class BatchNlp:
         """
         count = len(tasks.weights)
         columns = [np.asarray(x, dtype=float) for x in data]
-        chunk = NATIVE_CHUNK if self.compiled and workers > 1 else CHUNK
+        chunk = NATIVE_CHUNK if self.compiled else CHUNK
 
         def solved(first: int) -> Solutions:
+            deadline.check()
             rows = slice(first, min(first + chunk, count))
             return self._solve_part(
                 Tasks(
@@ -195,7 +197,10 @@ class BatchNlp:
         begins = range(0, max(count, 1), chunk)
         if self.compiled and min(workers, len(begins)) > 1:
             with ThreadPoolExecutor(min(workers, len(begins))) as threads:
-                parts = list(threads.map(solved, begins))
+                parts = []
+                for part in threads.map(solved, begins):
+                    deadline.check()  # the threads themselves know of none
+                    parts.append(part)
         else:
             parts = [solved(first) for first in begins]
         return Solutions(

@@ -8,15 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from synth import deadline
+from synth.deadline import Stopped
 from synth.formulation import Boxes
 
-
-class Stopped(Exception):
-    """The time limit is reached, or the user interrupted."""
-
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
-        super().__init__(reason)
+__all__ = ["Clock", "Stopped"]
 
 
 @dataclass
@@ -26,6 +22,7 @@ class Clock:
     deadline: float = np.inf
     report: Callable[[int], None] = lambda open_boxes: None
     open: list[Boxes] = field(default_factory=list)
+    beyond: Sequence[np.ndarray] = ()  # lower corners, in phi, of what is open and in no box yet
 
     def check(self, boxes: Sequence[Boxes] = ()) -> None:
         """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""
@@ -33,3 +30,4 @@ class Clock:
         self.report(sum(len(b) for b in boxes))
         if time.monotonic() > self.deadline:
             raise Stopped("time limit")
+        deadline.check()

@@ -25,11 +25,15 @@ LEVELS = 3  # generations that are taken at once
 
 @dataclass(frozen=True)
 class Covered:
-    """What a cover left open, how many boxes were looked into, and whether it stopped because enough is known."""
+    """What a cover left open, how many boxes were looked into, and why it stopped.
+
+    ``full``: enough is known; ``spent``: its time was over.
+    """
 
     open: Boxes
     looked: int
     full: bool = False
+    spent: bool = False
 
     @property
     def closed(self) -> bool:
@@ -81,26 +85,56 @@ def cover(
         if enough is not None and len(form.archive) > enough:
             return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
         batch, queue = queue.take(slice(0, BATCH)), queue.take(slice(BATCH, None))
-        looked += len(batch)
-        batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
-        batch = batch.take(purpose.room(form.phi_of(batch.bounds), batch.cell) > 0)
-        if not len(batch):
-            continue
-        seeker.look(batch)
-        for _ in range(2 if len(batch) < FEW else 1):
-            # A small batch costs as much as a larger one, so that it is split twice at once.
-            batch, small = form.split(batch)
-            if len(small):
-                stuck = Boxes.joined([stuck, seeker.settle(small)])
-        grown = _grown(form, batch, purpose, seeker, effort - looked) if not every else None
-        if grown is not None:
-            looked += grown.looked
-            batch = grown.halves
-            if len(grown.small):
-                stuck = Boxes.joined([stuck, seeker.settle(grown.small)])
-        fresh.append(batch)
+        children, small, seen = further(form, batch, purpose, seeker, every, effort - looked)
+        looked += seen
+        if len(small):
+            stuck = Boxes.joined([stuck, small])
+        if len(children):
+            fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
     return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+
+
+def further(
+    form: Formulation, batch: Boxes, purpose: Tabled, seeker: Seeker, every: bool, effort: float
+) -> tuple[Boxes, Boxes, int]:
+    """Tighten boxes, look for designs in them and split them.
+
+    Parameters
+    ----------
+    form, purpose
+        As for :func:`cover`.
+    batch : Boxes
+    seeker : Seeker
+    every : bool
+        Whether the purpose speaks of more than the first objectives.
+    effort : float
+        Boxes that may be looked into.
+
+    Returns
+    -------
+    tuple
+        What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
+    """
+    looked, none = len(batch), batch.take(slice(0, 0))
+    batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
+    batch = batch.take(purpose.room(form.phi_of(batch.bounds), batch.cell) > 0)
+    if not len(batch):
+        return none, none, looked
+    seeker.look(batch)
+    stuck = []
+    for _ in range(2 if len(batch) < FEW else 1):
+        # A small batch costs as much as a larger one, so that it is split twice at once.
+        batch, small = form.split(batch)
+        if len(small):
+            stuck.append(seeker.settle(small))
+    grown = _grown(form, batch, purpose, seeker, effort - looked) if not every else None
+    if grown is not None:
+        looked += grown.looked
+        batch = grown.halves
+        if len(grown.small):
+            stuck.append(seeker.settle(grown.small))
+    return batch, Boxes.joined(stuck) if stuck else none, looked
 
 
 def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:

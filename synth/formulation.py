@@ -10,7 +10,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth import deadline
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
+from synth.compilation import switched_on
 from synth.declaration import Refusal
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
@@ -353,6 +355,7 @@ class Formulation:
             return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
         kept = []
         for first in range(0, len(boxes), CHUNK):
+            deadline.check()
             rows = slice(first, min(first + CHUNK, len(boxes)))
             own = caps if caps is None or caps.ndim == 1 else caps[rows]
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
@@ -676,7 +679,7 @@ class Formulation:
         rows = self.rows()
         large = self.instance.combinations * self.alike >= COMPILED_FROM
         long = self.work > COMPILE_NLP_AFTER
-        code: Code = "own" if self.compiled and (large or long) else "general"
+        code: Code = "arrays" if not switched_on() else "own" if self.compiled and (large or long) else "general"
         made: BatchNlp = self.model.function(
             ("batch", rows, code, edge), lambda: BatchNlp(self.model.program, self.n, rows, code, edge)
         )

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from synth import deadline
 from synth.derivatives import RowFunctions
 from synth.interior_point import (
     ARMIJO,
@@ -93,6 +94,7 @@ class InteriorPoint:
                     lanes = fresh if lanes is None else lanes.joined(fresh)
                     waiting = upto
                 assert lanes is not None
+                deadline.check()
                 lanes.advance(self.point)
                 self.steps += 1
                 lanes = lanes.without_finished(ends)

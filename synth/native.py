@@ -12,7 +12,6 @@ import os
 import platform
 import shutil
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -20,12 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from synth.compilation import compile_shared, switched_on
 from synth.derivatives import RowFunctions
 from synth.interior_point import Ends, Problems
 from synth.native_source import source
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
-COMPILE_SECONDS = 300
 # Compiling takes seconds, so that it pays for large questions only. What decides is the question, never what happens
 # to be compiled already: the last digits of the two ways differ, and the same question must go the same way.
 COMPILED_FROM = 5000  # combinations
@@ -101,11 +100,6 @@ def native(functions: RowFunctions) -> Solver | None:
     return None if loaded is None else Solver(functions, loaded)
 
 
-def switched_on() -> bool:
-    """Tell whether compiled code is wanted."""
-    return os.environ.get("CLUTCHSYNTH_NATIVE") != "0"
-
-
 def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
     """Return a C source as loaded code; None where it cannot be compiled, kept or loaded.
 
@@ -117,6 +111,11 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL |
         The translation unit.
     flags : list of str
         For the compiler.
+
+    Raises
+    ------
+    Stopped
+        Time is over before it is compiled.
     """
     compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
     if compiler is None or folder is None:
@@ -125,7 +124,7 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL |
     path = folder / f"{name}_{key}.so"
     try:
         if not path.exists():
-            _compile(compiler[0], text, path, flags)
+            compile_shared(compiler[0], text, path, flags)
         return ctypes.CDLL(str(path))
     except (OSError, subprocess.SubprocessError):
         return None
@@ -164,13 +163,3 @@ def _machine() -> str:
         lines = [platform.processor()]
     flags = next((line for line in lines if line.startswith(("flags", "Features"))), "")
     return "\n".join([platform.machine(), platform.system(), flags])
-
-
-def _compile(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:
-    """Compile beside the final place and move there at once: another process sees all of it or nothing."""
-    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-        origin, made = Path(folder) / "code.c", Path(folder) / "code.so"
-        origin.write_text(text)
-        command = [compiler, *flags, "-o", str(made), str(origin), "-lm"]
-        subprocess.run(command, capture_output=True, timeout=COMPILE_SECONDS, check=True)
-        made.replace(path)

@@ -18,9 +18,10 @@ import casadi as ca
 import numpy as np
 
 from synth import native_rules as rules
+from synth.compilation import switched_on
 from synth.contractor import CONSTANT, Assign, Check, Code, Contractor, Enclose, Hold, Kill, Narrow, Root, Statement
 from synth.margins import MARGINS
-from synth.native import FLAGS, library, switched_on
+from synth.native import FLAGS, library
 from synth.native_source import EXPRESSIONS, VECTORS
 from synth.native_tree import TREE, CapTables, Grown, Halves, bind, grow
 from synth.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation

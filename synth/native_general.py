@@ -13,9 +13,10 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
+from synth.compilation import switched_on
 from synth.derivatives import RowFunctions
 from synth.interior_point import Ends, Layout, Problems
-from synth.native import Solver, library, switched_on
+from synth.native import Solver, library
 from synth.native_source import EXPRESSIONS, filled, settings
 from synth.program import COMPARISONS, OP_SELECT
 

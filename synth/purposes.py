@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.formulation import TIE, Archive, Candidate, Formulation
 from synth.native_tree import CapTables
 
 ROWS = 1024
@@ -263,15 +263,3 @@ def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple
 def reaches_beyond(purpose: Purpose, bounded: int) -> bool:
     """Tell whether a search speaks of more than the first objectives."""
     return max(purpose.columns) >= bounded or bool(np.any(np.isfinite(purpose.plain[bounded:])))
-
-
-def proven_slack(form: Formulation, purpose: Cover, open_boxes: Boxes) -> float:
-    """Return the multiple of the slack at which the known designs cover all open boxes; infinite if none does."""
-    columns, worst = purpose.columns, 0.0
-    known = purpose.known.phi[:, columns] / purpose.slack
-    if not len(known):
-        return np.inf
-    for first in range(0, len(open_boxes), 1024):
-        lower = form.phi_of(open_boxes.bounds[first : first + 1024])[:, columns] / purpose.slack
-        worst = max(worst, float(np.max(known[None, :, :] - lower[:, None, :], axis=2).min(axis=1).max()))
-    return worst

@@ -127,7 +127,9 @@ class Certificate:
     """How far a front is proven.
 
     ``kind`` is ``global`` (valid bounds prove the gap), ``exhaustive`` (every combination that no valid
-    bound excludes was solved from several starts) or ``heuristic``.
+    bound excludes was solved from several starts) or ``heuristic``. ``gap`` is what bounds prove, whatever the kind;
+    None where they prove nothing, or there is no design. ``budget`` is the time, in seconds, that ended the search
+    where it was the default budget; such a search may end otherwise on another machine.
     """
 
     kind: str
@@ -136,6 +138,7 @@ class Certificate:
     excluded_by_bound: int
     solved: int
     unresolved: int = 0
+    budget: float | None = None
 
     def sentence(self) -> str:
         """Return the certificate in words."""
@@ -147,12 +150,14 @@ class Certificate:
                 f"proven: over all {n} combinations of parts and counts no design improves one listed here "
                 f"by more than {100 * (self.gap or 0):.3g} % in every objective"
             )
+        end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
         if self.kind == "exhaustive":
             return (
                 f"exhaustive: of {n} combinations {self.excluded_by_bound} are excluded by bounds; every other one "
-                f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds)"
+                f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
+                f"which prove a gap of {_percent(self.gap)}{end})"
             )
-        return f"not proven: stopped before all of {n} combinations were covered; gap {_percent(self.gap)}"
+        return f"not proven: stopped before all of {n} combinations were covered; gap {_percent(self.gap)}{end}"
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,21 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from synth import deadline
 from synth.analysis import chosen_objectives, found_designs, make_frame, offered, with_ties
+from synth.best_first import best_first
 from synth.clock import Clock, Stopped
+from synth.compilation import meanwhile, switched_off
 from synth.conflicts import explain_infeasible
 from synth.count_domain import stated
 from synth.cover import Covered, best, cover
 from synth.dives import dive
+from synth.effort import SearchEffort
 from synth.elasticity import elasticities
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
@@ -28,7 +32,8 @@ from synth.pareto import rank, spread_subset
 from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.propagation import Lessons
-from synth.purposes import Cover, Staircase, proven_slack
+from synth.proven_gap import Bound, least_gap
+from synth.purposes import Cover, Purpose, Staircase, Tabled
 from synth.rating import Rater
 from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
@@ -43,6 +48,7 @@ TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easie
 SOON, QUICKLY = 150_000, 50_000
 MANY = 7  # variables
 EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
+FURTHER = SearchEffort()  # for what all this leaves open
 FILL_EFFORT = 100_000
 TIE_EFFORT = 2_000
 COARSE = 0.1
@@ -54,6 +60,7 @@ POLISHINGS = 3
 MARGIN = 0.99
 ROWS = 256  # of a large comparison at a time
 ROUNDED = 2e-9
+LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
 SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
 OUTER_TRIALS = 576
@@ -124,18 +131,23 @@ def synthesize(
     InputError
         For everything that is wrong with the input, in one sentence.
     """
+    begun = time.monotonic()
     check_settings(points, gap, grid, workers, seed, progress, time_limit)
+
+    def left() -> float | None:
+        return None if time_limit is None else max(time_limit - (time.monotonic() - begun), LEAST_SECONDS)
 
     def asked(problem: Any) -> Question:
         return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
 
     block = read_remaining(robust)
     if block is None:
-        return asked(p).answer(workers, progress, time_limit)
+        question = asked(p)
+        return question.answer(workers, progress, left())
     problem = load(p)
     catalogs = catalogs_for(problem, catalogs)
     rater = Rater(problem, requirements, catalogs, limits, block)
-    return robust_front(lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, time_limit)
+    return robust_front(lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, left())
 
 
 @dataclass(frozen=True)
@@ -332,6 +344,8 @@ class FrontSearch:
         self.workers, self.m = workers, len(chosen)
         self.form = self._formulation(conflict=False)
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
+        self.budget = FURTHER.seconds if time_limit is None else math.inf  # s left for what a first effort leaves open
+        self.budget_spent = self.reporting = False
         self.stage, self.done = "", 0.0
         self.seed, self.rng = seed, np.random.default_rng(seed)
         self.outer_trials = 0
@@ -341,7 +355,10 @@ class FrontSearch:
         self.closed = True
         self.exhausted = True
         self.unresolved = 0
-        self.proven: list[np.ndarray] = []  # slacks within which known designs cover everything
+        self.bounds: list[Bound] = []  # what is proven of all designs, each on its own
+        # What was found and proven without compiled code, while the compiler was at work.
+        self.meanwhile: list[Candidate] = []
+        self.bounded_meanwhile: list[Bound] = []
         self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.complete = False
@@ -350,7 +367,8 @@ class FrontSearch:
         self.open_combinations = float(instance.combinations)
         self.purpose = self._purpose(None)
         self.covering: Cover | None = None  # the finest cover that is finished
-        self.current: Cover | None = None  # the one that is under way
+        self.under_way: np.ndarray | None = None  # the slack of the tree that is under way, if it speaks of all designs
+        self.stairs: Staircase | None = None  # the proof of designs that is under way
         self.proven_designs = set[bytes]()
         self.looked = 0
         self.by_steps = False  # whether a front at once has turned out to cost too much
@@ -388,24 +406,18 @@ class FrontSearch:
         designs: list[Design] = []
         explanation = None
         try:
-            self._timed("bounds", self._root)
-            if len(self.pool):
-                self._timed("coarse", self._coarse)
-            if len(self.pool):
-                if self.m == 1 or not self.form.log_goals[: self.m].all():
-                    self._timed("extremes", self._extremes)
-                if self.m > 1:
-                    self._timed("front", self._cover)
-            if len(self.form.archive):
-                if self.m > 1:
-                    self._timed("front", self._choose)
-                self.solves_to_find = self.form.nlp_solves
-                designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
-            elif explained:
-                searched = set(self.form.solved_combinations)
-                explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
-                # What was solved only to explain does not change how the combinations were excluded.
-                self.form.solved_combinations = searched
+            with deadline.until(self.clock.deadline), meanwhile(self._look_meanwhile):
+                self.find()
+                if len(self.form.archive):
+                    if self.m > 1:
+                        self._timed("front", self._choose)
+                    self.solves_to_find, self.reporting = self.form.nlp_solves, True
+                    designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
+                elif explained:
+                    searched = set(self.form.solved_combinations)
+                    explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
+                    # What was solved only to explain does not change how the combinations were excluded.
+                    self.form.solved_combinations = searched
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:
@@ -415,32 +427,73 @@ class FrontSearch:
             designs = self._designs(frame, weights, settle=False) if self.front else []
         return self._result(frame, designs, settings, explanation, interrupted)
 
+    def find(self) -> None:
+        """Find the designs that are known when the front is chosen."""
+        self._timed("bounds", self._root)
+        if len(self.pool):
+            self._timed("coarse", self._coarse)
+        if len(self.pool):
+            if self.m == 1 or not self.form.log_goals[: self.m].all():
+                self._timed("extremes", self._extremes)
+            if self.m > 1:
+                self._timed("front", self._cover)
+
+    def _look_meanwhile(self, ready: Callable[[], bool]) -> None:
+        """Search without compiled code until the compiler is done: what is found counts if time is over before.
+
+        The search that waits goes on as if nothing had happened, so that its result does not depend on how long the
+        compiler takes.
+        """
+        aside: FrontSearch | None = None
+        try:
+            with switched_off(), deadline.until(self.clock.deadline, ready):
+                aside = FrontSearch(
+                    self.instance, self.chosen, self.points, self.gap, self.seed, self.progress, None, 1,
+                    self.effort, self.recalled,
+                )  # fmt: skip
+                for c in (*self.form.archive, *self.meanwhile):
+                    aside.form.archive.add(*rows_of([c]))
+                aside.find()
+        except Stopped:
+            deadline.check()
+        finally:
+            if aside is not None:
+                aside._note_open()
+                self.meanwhile, self.bounded_meanwhile = list(aside.form.archive), aside.bounds
+
     def _stop_early(self) -> None:
         """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""
-        if self.closed:
-            self.proven = [] if self.covering is None else [self.covering.slack]
-            if self.current is not None and self.clock.open:
-                self.proven.append(self._covering_slack(self.current, Boxes.joined(self.clock.open)))
+        for c in self.meanwhile:
+            self.form.candidates(c.variables[None, :], np.array([c.combination]), exact=True)
+        self.bounds += self.bounded_meanwhile
+        if self.reporting and self.closed:
+            # The designs stand; only what the objectives do not see is left as it is.
+            self.bounds.append(Bound(self.purpose.slack, np.empty((0, self.m))))
+            self.closed = self.exhausted = self.complete = False
+            return
+        self._note_open()
         self.closed = self.exhausted = self.complete = False
-        some = self._spread(list(self.form.archive), self._more_than_asked)
+        proven = self.stairs.finished() if self.stairs is not None and len(self.form.archive) else []
+        some = self._spread(proven or list(self.form.archive), self._more_than_asked)
         self.front = self._spread(distinct(some, self.m), self.points)
 
-    def _covering_slack(self, purpose: Cover, left: Boxes) -> np.ndarray:
-        """Return the slack within which known designs cover all, where a cover left some boxes open."""
-        multiple = proven_slack(self.form, self.purpose, left)
-        slack: np.ndarray = np.maximum(purpose.slack, multiple * self.purpose.slack)
-        return slack
+    def _note_open(self) -> None:
+        """Note what is proven where a tree was stopped: what its open boxes still allow."""
+        slack, m = self.under_way, self.m
+        if slack is None or (not self.clock.open and not self.clock.beyond):
+            return
+        boxes = [self.form.phi_of(b.bounds)[:, :m] for b in self.clock.open]
+        corners = list(self.clock.beyond) or boxes
+        self.bounds.append(Bound(slack, np.concatenate([c.reshape(-1, m) for c in corners])))
 
     def _proven_gap(self) -> float | None:
         """Return the gap that bounds prove of the designs listed, where it is not the one asked for; none, if any."""
-        if not self.front or not self.proven:
+        if not self.front or not self.bounds:
             return None
         phi = np.array([c.phi[: self.m] for c in self.front])
         sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
-        signed = ~self.form.log_goals[: self.m]
-        gaps = [np.where(signed, s / np.maximum(sizes, 1e-9), -np.expm1(-s)).max() for s in self.proven]
-        least = max(float(min(gaps)), self.gap)
-        return least if least < 1 else None
+        least = least_gap(self.bounds, phi, self.form.log_goals[: self.m], np.maximum(sizes, 1e-9))
+        return None if least is None else max(least, self.gap)
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
         begin = time.monotonic()
@@ -469,9 +522,15 @@ class FrontSearch:
 
     def _root(self) -> None:
         self.clock.check()
-        self.pool = self.form.root()
+        self._set_pool()
         if not len(self.pool):
             self.open_combinations = 0.0
+
+    def _set_pool(self) -> None:
+        """Begin with the box of everything; what it allows is the first that is proven."""
+        self.pool = self.form.root()
+        corners = self.form.phi_of(self.pool.bounds)[:, : self.m]
+        self.bounds.append(Bound(np.zeros(self.m), corners))
 
     # -- one best design -----------------------------------------------------------------------
 
@@ -491,14 +550,23 @@ class FrontSearch:
             self._begin_again(conflict=True)
             found, outcome, slack = self._best_within(k, plain, found, self.effort)
         if not outcome.closed and effort is None:
-            purpose = Cover([k], np.array([slack]), plain, Archive([k], self.form.n, len(self.form.goals)))
-            if found is not None:
-                purpose.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
-            self._exhaust(outcome.open, purpose)
+            purpose = self._for_best(k, plain, slack, found)
+            left = self._close(outcome.open, purpose)
+            while not len(left) and (finer := self._finer(k, slack, purpose.known)) is not None:
+                slack = finer
+                purpose = self._for_best(k, plain, slack, purpose.known[0])
+                left = self._close(self.pool, purpose)
             found = purpose.known[0] if len(purpose.known) else None
         elif before == 0 and found is None:
             self.open_combinations = 0.0
         return found
+
+    def _for_best(self, k: int, plain: np.ndarray, slack: float, known: Candidate | None) -> Cover:
+        """Return the search for the design that is best in one objective."""
+        purpose = Cover([k], np.array([slack]), plain, Archive([k], self.form.n, len(self.form.goals)))
+        if known is not None:
+            purpose.take(*rows_of([known]))
+        return purpose
 
     def _best_within(
         self, k: int, plain: np.ndarray, start: Candidate | None, effort: float
@@ -507,31 +575,79 @@ class FrontSearch:
         form = self.form
         sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), SMALLEST_SIZE)
         slack = float(self._slack(sizes)[k])
-        found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
-        while self.m == 1 and found is not None and outcome.closed and not form.log_goals[k]:
+        found, outcome = self._tree_for_best(k, plain, slack, start, effort)
+        while found is not None and outcome.closed:
             # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
-            finer = float(self._slack(np.maximum(np.abs(found.phi), SMALLEST_SIZE))[k])
-            if finer >= slack:
+            finer = self._finer(k, slack, [found])
+            if finer is None:
                 break
             slack = finer
-            found, outcome = best(form, self.pool, k, plain, slack, self.clock, self.rng, found, effort)
+            found, outcome = self._tree_for_best(k, plain, slack, found, effort)
         return found, outcome, slack
 
-    def _exhaust(self, left: Boxes, purpose: Cover) -> None:
-        """Solve what bounds could not exclude: every combination from several starts, or those that Optuna draws."""
+    def _tree_for_best(
+        self, k: int, plain: np.ndarray, slack: float, start: Candidate | None, effort: float
+    ) -> tuple[Candidate | None, Covered]:
+        self._begin_tree(np.array([slack]) if self.m == 1 else None)
+        found = best(self.form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
+        self.under_way = None
+        return found
+
+    def _finer(self, k: int, slack: float, known: Archive | Sequence[Candidate]) -> float | None:
+        """Return the slack that the gap means at the best value known; None where the slack is as fine as that."""
+        if self.m > 1 or not len(known) or self.form.log_goals[k]:
+            return None
+        finer = float(self._slack(np.maximum(np.abs(known[0].phi), SMALLEST_SIZE))[k])
+        return finer if finer < slack else None
+
+    def _begin_tree(self, slack: np.ndarray | None) -> None:
+        """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""
+        self.under_way = slack
+        self.clock.open, self.clock.beyond = [], ()
+
+    def _close(self, left: Boxes, purpose: Tabled) -> Boxes:
+        """Go on with boxes that a first effort has left open; return what stays open, and note what is proven then.
+
+        Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
+        to be solved, Optuna draws some of them.
+        """
+        solved = False
+        if self.thorough and len(left):
+            solved = self._solve_few(left, purpose)
+            left = self._go_on(left, purpose)
+        if not len(left):
+            return left
         self.closed = False
         self.unresolved += len(left)
-        if not self.thorough:
+        if self.thorough and not solved and not self._solve_few(left, purpose):
+            journal = study_file(self.instance, self.chosen, self.seed)
+            self._say("parts", 0.0)
+            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, OUTER_TRIALS)
             self.exhausted = False
-            return
-        combinations = self.form.cells.all_members(left.cell, EXHAUSTIVE_LIMIT + 1)
-        if len(combinations) <= EXHAUSTIVE_LIMIT:
+        self.exhausted = self.exhausted and self.thorough
+        if len(purpose.columns) == self.m:
+            self.bounds.append(Bound(purpose.slack, self.form.phi_of(left.bounds)[:, : self.m]))
+        return left
+
+    def _solve_few(self, boxes: Boxes, purpose: Purpose) -> bool:
+        """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
+        combinations = self.form.cells.all_members(boxes.cell, EXHAUSTIVE_LIMIT + 1)
+        few = len(combinations) <= EXHAUSTIVE_LIMIT
+        if few:
             solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
-            return
-        self.exhausted = False
-        journal = study_file(self.instance, self.chosen, self.seed)
-        self._say("parts", 0.0)
-        self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, OUTER_TRIALS)
+        return few
+
+    def _go_on(self, left: Boxes, purpose: Tabled) -> Boxes:
+        """Go on with boxes while they keep closing and there is time; return what stays open."""
+        self._begin_tree(purpose.slack if len(purpose.columns) == self.m else None)
+        begun = time.monotonic()
+        effort = replace(FURTHER, seconds=self.budget)
+        outcome = best_first(self.form, left, purpose, self.clock, self.rng, effort)
+        self.budget -= time.monotonic() - begun
+        self.budget_spent |= outcome.spent
+        self.looked += outcome.looked
+        self.under_way = None
+        return outcome.open
 
     def _extremes(self) -> None:
         """Find the design that is best in each objective, before the front: its ranges are needed, or it is all."""
@@ -570,7 +686,7 @@ class FrontSearch:
             self.form.propagation.taught_by(known.propagation.lessons())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
         self.purpose = self._purpose(None)
-        self.pool = self.form.root()
+        self._set_pool()
 
     def _look_round(self) -> bool:
         """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
@@ -596,13 +712,11 @@ class FrontSearch:
             # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
             self.by_steps = self.effort < EFFORT or len(form.archive) < self.points
             outcome = self._in_steps(fine) if self.by_steps else self._covered(fine, self.effort)
-        left = outcome.open
-        if len(left):
-            self._exhaust(left, fine)
-            left = left.take(fine.room(form.phi_of(left.bounds)) > 0)
-            self.closed = not len(left)
-            if not self.closed:
-                self.proven = [self._covering_slack(fine, left)]
+        left = self._close(outcome.open, fine)
+        if len(outcome.open) and not len(left):
+            self.covering = fine
+            self.bounds.append(Bound(fine.slack, np.empty((0, self.m))))
+        form = self.form
         self.open_combinations = float(form.cells.size(left.cell).sum())
 
     def _dive(self) -> bool:
@@ -632,22 +746,22 @@ class FrontSearch:
 
     def _covered(self, purpose: Cover, effort: float, enough: int | None = None) -> Covered:
         """Cover everything with one slack; if the time runs out, the boxes that are open tell what is proven."""
-        self.clock.open = []
-        self.current = purpose
+        self._begin_tree(purpose.slack)
         outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
-        self.current = None
         return self._noted(purpose, outcome)
 
     def _in_steps(self, purpose: Cover) -> Covered:
         """Cover everything with one slack, one objective capped step by step."""
-        # The boxes of a step are not all that is open: if the time runs out, they tell nothing.
+        self._begin_tree(purpose.slack)
         return self._noted(purpose, cover_by_steps(self.form, self.pool, purpose, self.clock, self.rng, self.effort))
 
     def _noted(self, purpose: Cover, outcome: Covered) -> Covered:
         """Count the boxes; what is covered with one slack stays known if the time runs out later."""
+        self.under_way = None
         self.looked += outcome.looked
         if outcome.closed:
             self.covering = purpose
+            self.bounds.append(Bound(purpose.slack, np.empty((0, self.m))))
         return outcome
 
     def _multiple(self, purpose: Cover) -> float:
@@ -736,20 +850,22 @@ class FrontSearch:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
         form, proven = self.form, self.proven_designs
         stairs = Staircase(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
+        self.stairs = stairs
         if self.by_steps:
+            self._begin_tree(None)  # the boxes of one step are not all that is open
             outcome = prove_by_steps(form, self.pool, stairs, self.clock, self.rng, self.effort)
         else:
+            self._begin_tree(stairs.slack)
             outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
         self.looked += outcome.looked
+        left = self._close(outcome.open, stairs)
+        self.stairs, self.under_way = None, None
         replaced = any(a is not b for a, b in zip(stairs.designs, self.front, strict=True))
-        if not outcome.closed:
-            self._exhaust(outcome.open, self.purpose)
-            self.proven = [] if self.covering is None else [self.covering.slack]
         finished = stairs.finished()
         self.front = distinct(finished, self.m)
-        if outcome.closed:
+        if not len(left):
             proven.update(c.phi.tobytes() for c in finished)
-        return not outcome.closed or not replaced or len(self.front) >= self.points
+        return bool(len(left)) or not replaced or len(self.front) >= self.points
 
     # -- afterwards ----------------------------------------------------------------------------
 
@@ -850,7 +966,8 @@ class FrontSearch:
         gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
         solved = len(self.form.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
-        certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved)
+        spent = FURTHER.seconds if self.budget_spent and kind != "global" else None
+        certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved, spent)
         statistics = {
             **offered(self.instance),
             "excluded_by_bound": excluded,

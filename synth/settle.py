@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from synth import deadline
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.formulation import TIE, Boxes, Candidate, Formulation
@@ -87,6 +88,7 @@ def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, va
     """Return the feasible ones of some points."""
     rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
     for first in range(0, len(whose), EVALUATED_AT_ONCE):
+        deadline.check()
         part = slice(first, first + EVALUATED_AT_ONCE)
         own, values = form.feasible_rows(variables[part], combinations[part])
         rows.append(first + own)
@@ -104,6 +106,7 @@ def _other_values(
     own = [np.empty(0, dtype=np.int64)]
     places = [np.empty(0, dtype=np.int64)]
     for part in _slices(len(combinations), len(grid)):
+        deadline.check()
         columns = list(variables[part].T[:, :, None])
         columns[k] = grid[None, :]
         rows, there = np.nonzero(form.promising(columns, combinations[part, None], phi[part]))
@@ -121,6 +124,7 @@ def _other_parts(
     """Return designs with one other part that promise to be as good: whose, combination, variables."""
     own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for part in _slices(len(combinations), len(form.instance.neighbours(combinations[0]))):
+        deadline.check()
         others = form.instance.neighbours(combinations[part])
         keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
         own.append(part.start + np.nonzero(keep)[0])

@@ -50,16 +50,24 @@ def cover_by_steps(
     proof = PROOF * purpose.slack[SOUGHT]
     choice = purpose.slack[SOUGHT] - proof
     plain = np.full(len(form.goals), np.inf)
+    corner = [form.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
+    clock.beyond = [np.array(corner)]
     # The other end first: good designs there are often not far from good in both.
     first, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
     looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
     Seeker(form, purpose, rng, False).beside(clock)
+    if end.closed and first is not None:
+        corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - purpose.slack[CAPPED])
     while True:
+        # What is better in the capped objective than all steps so far is open, and as bad in the other as the last one.
+        clock.beyond = [np.array(corner), *(form.phi_of(b.bounds)[:, : len(corner)] for b in left)]
         found, outcome = best(form, pool, SOUGHT, plain.copy(), proof, clock, rng, effort=effort)
         looked += outcome.looked
         left.append(form.lean(outcome.open))
         if found is None:
             break
+        if outcome.closed:
+            corner[SOUGHT] = max(corner[SOUGHT], found.phi[SOUGHT] - proof)
         _stretch(form, found, choice)
         phi = form.archive.phi
         good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)

@@ -15,6 +15,7 @@ import pytest
 
 import synth
 from synth import propagation, search
+from synth.effort import SearchEffort
 from synth.search import pose
 from synth.steps import cover_by_steps
 from synth.tables import Catalogs
@@ -123,6 +124,7 @@ def of_two(structure: str, seed: int, points: int) -> Case:
 def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, monkeypatch, effort, points, structure, seed):
     monkeypatch.setattr(search, "EFFORT_WITH_FEW_PARTS", effort)
     monkeypatch.setattr(search, "EFFORT_WITH_MANY", effort)
+    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=60.0 if points == 20 else 0.0, spell=100, patience=2))
     monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 0)  # what stays open is left to chance, and said so
     monkeypatch.setattr("synth.steps.NARROW", 20.0 if points == 5 else 0.0)
     case = of_two(structure, seed, points)

@@ -6,6 +6,7 @@ import pytest
 import synth
 from synth import outer, search
 from synth.clock import Clock, Stopped
+from synth.effort import SearchEffort
 from synth.formulation import Archive, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.outer import search_parts, study_file
@@ -21,6 +22,7 @@ def small(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(search, "EFFORT", 1)
     monkeypatch.setattr(search, "COARSE_EFFORT", 1)
+    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=0.0))
     monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 1)
     monkeypatch.setattr(search, "OUTER_TRIALS", TRIALS)
     monkeypatch.setattr(outer, "BATCH", 4)

@@ -1,0 +1,141 @@
+"""The tree that goes on where a first effort has left boxes open: what promises most comes first.
+
+A first effort takes the boxes that were split last, so that few wait at a time; what it leaves open tells little. Here
+the boxes from which a design could gain most are split first, so that the gap that is proven becomes smaller all the
+time, whenever it ends.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from synth.clock import Clock
+from synth.cover import BATCH, Covered, further
+from synth.effort import SearchEffort
+from synth.formulation import Boxes, Formulation
+from synth.purposes import Purpose, Tabled, reaches_beyond
+from synth.seeker import Seeker
+
+STEPS_PER_DOUBLING = 2  # levels of room
+MOST_LEVELS = 64
+MOST_BATCHES = 64  # of a level, before they are joined
+
+
+class OpenBoxes:
+    """Boxes that wait, in levels of how much better than needed each could be.
+
+    Parameters
+    ----------
+    form : Formulation
+    purpose : Purpose
+    most : int
+        When more boxes wait, those of the lowest level are taken first.
+    """
+
+    def __init__(self, form: Formulation, purpose: Purpose, most: int) -> None:
+        self.form, self.purpose, self.most = form, purpose, most
+        self.levels: list[list[Boxes]] = [[] for _ in range(MOST_LEVELS)]
+        self.counts = np.zeros(MOST_LEVELS, dtype=np.int64)
+
+    def __len__(self) -> int:
+        return int(self.counts.sum())
+
+    def add(self, boxes: Boxes) -> None:
+        """Take boxes; those of no use are dropped."""
+        room = self.purpose.room(self.form.phi_of(boxes.bounds), boxes.cell)
+        useful = room > 0
+        boxes, room = boxes.take(useful), room[useful]
+        with np.errstate(all="ignore"):
+            doublings = np.log2(room / float(self.purpose.slack.min()))
+        highest = MOST_LEVELS - 1
+        level = np.clip(np.nan_to_num(STEPS_PER_DOUBLING * doublings, nan=highest, posinf=highest), 0, highest)
+        level = np.ceil(level).astype(int)
+        for k in np.unique(level).tolist():
+            own = boxes.take(level == k)
+            self.levels[k].append(own)
+            self.counts[k] += len(own)
+            if len(self.levels[k]) > MOST_BATCHES:
+                self.levels[k] = [Boxes.joined(self.levels[k])]
+
+    def next(self) -> Boxes:
+        """Take a batch of the boxes with most room; of those with least where too many wait."""
+        filled = np.flatnonzero(self.counts)
+        taken, count = list[Boxes](), 0
+        for k in (filled if len(self) > self.most else filled[::-1]).tolist():
+            level = self.levels[k]
+            while level and count < BATCH:
+                own = level.pop()
+                if count + len(own) > BATCH:
+                    left = count + len(own) - BATCH
+                    level.append(own.take(slice(0, left)))
+                    own = own.take(slice(left, None))
+                taken.append(own)
+                count += len(own)
+                self.counts[k] -= len(own)
+        return Boxes.joined(taken)
+
+    @property
+    def batches(self) -> list[Boxes]:
+        """All that wait."""
+        return [b for own in self.levels for b in own]
+
+    @property
+    def highest(self) -> int:
+        """The level of the boxes with most room; -1 where none waits."""
+        return int(np.flatnonzero(self.counts).max(initial=-1))
+
+
+def best_first(
+    form: Formulation,
+    boxes: Boxes,
+    purpose: Tabled,
+    clock: Clock,
+    rng: np.random.Generator,
+    effort: SearchEffort,
+    over: Callable[[], bool] | None = None,
+) -> Covered:
+    """Go on with boxes that are open until they are closed, no longer close, or the budget of time is spent.
+
+    Parameters
+    ----------
+    form, boxes, purpose, clock, rng
+        As for :func:`synth.cover.cover`.
+    effort : SearchEffort
+    over : callable, optional
+        Tells whether the budget is spent; by default it begins with the call.
+
+    Returns
+    -------
+    Covered
+        ``spent`` where it was the budget that ended it.
+    """
+    end = time.monotonic() + effort.seconds
+    over = (lambda: time.monotonic() > end) if over is None else over
+    every = reaches_beyond(purpose, form.bounded)
+    form.focus()
+    seeker, looked, spent = Seeker(form, purpose, rng, every), 0, False
+    boxes = boxes if every else form.lean(boxes)
+    waiting, stuck = OpenBoxes(form, purpose, effort.most_waiting), boxes.take(slice(0, 0))
+    waiting.add(boxes)
+    least, idle, mark = (waiting.highest, len(waiting)), 0, effort.spell
+    while len(waiting):
+        clock.check([*waiting.batches, stuck])
+        if over():
+            spent = True
+            break
+        if looked >= mark:
+            mark = looked + effort.spell
+            now = waiting.highest, len(waiting)
+            idle = 0 if now[0] < least[0] or now[1] < least[1] else idle + 1
+            least = min(least[0], now[0]), min(least[1], now[1])
+            if idle >= effort.patience or len(stuck) > effort.most_stuck:
+                break
+        children, small, seen = further(form, waiting.next(), purpose, seeker, every, np.inf)
+        looked += seen
+        waiting.add(children)
+        stuck = Boxes.joined([stuck, small]) if len(small) else stuck
+    left = Boxes.joined([stuck, *waiting.batches])
+    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)

@@ -1,0 +1,132 @@
+"""A C compiler that works beside the program, and is ended with it.
+
+What is compiled is part of how a question is answered: the last digits depend on it. A search that needs it waits, so
+that the same question always goes the same way; while it waits it may do something else, see :func:`meanwhile`.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from pathlib import Path
+
+from synth import deadline
+
+MOST_SECONDS = 300.0
+TURN = 0.02  # s between looks at the compiler
+PREFIX = "compiling_"  # of the folders it works in, beside what is finished
+
+_other_work: ContextVar[Callable[[Callable[[], bool]], None] | None] = ContextVar("other_work", default=None)
+_off: ContextVar[bool] = ContextVar("off", default=False)
+
+
+@contextmanager
+def meanwhile(work: Callable[[Callable[[], bool]], None]) -> Iterator[None]:
+    """Do some work whenever the block waits for the compiler.
+
+    ``work`` is given a function that tells whether the compiler is done, and should soon return when it is.
+    """
+    before = _other_work.set(work)
+    try:
+        yield
+    finally:
+        _other_work.reset(before)
+
+
+@contextmanager
+def switched_off() -> Iterator[None]:
+    """Let the block do without compiled code."""
+    before = _off.set(True)
+    try:
+        yield
+    finally:
+        _off.reset(before)
+
+
+def switched_on() -> bool:
+    """Tell whether compiled code is wanted."""
+    return os.environ.get("CLUTCHSYNTH_NATIVE") != "0" and not _off.get()
+
+
+def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:
+    """Compile a C source into a shared library.
+
+    It is made beside its final place and moved there at once: another process sees all of it or nothing. Whatever ends
+    the wait ends the compiler, and nothing of it is left.
+
+    Parameters
+    ----------
+    compiler : str
+    text : str
+        The translation unit.
+    path : Path
+        Of the library.
+    flags : list of str
+
+    Raises
+    ------
+    OSError, subprocess.SubprocessError
+        It cannot be compiled, or not written.
+    Stopped
+        Time is over.
+    """
+    _clear_away(path.parent)
+    folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=path.parent))
+    process: subprocess.Popen[bytes] | None = None
+    try:
+        origin, made = folder / "code.c", folder / "code.so"
+        origin.write_text(text)
+        command = [compiler, *flags, "-o", str(made), str(origin), "-lm"]
+        # In a session of its own: it is not the terminal that ends it but we, with all that it has started.
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            start_new_session=True, env={**os.environ, "TMPDIR": str(folder)},
+        )  # fmt: skip
+        _wait(process)
+        if process.returncode != 0:
+            raise subprocess.CalledProcessError(process.returncode, command)
+        made.replace(path)
+    finally:
+        if process is not None:
+            _end(process)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _wait(process: subprocess.Popen[bytes]) -> None:
+    """Wait for a compiler, and do other work meanwhile, if there is any."""
+    begun, work = time.monotonic(), _other_work.get()
+    if work is not None:
+        without = _other_work.set(None)  # what is done meanwhile waits for nothing
+        try:
+            work(lambda: process.poll() is not None)
+        finally:
+            _other_work.reset(without)
+    while process.poll() is None:
+        deadline.check()
+        if time.monotonic() > begun + MOST_SECONDS:
+            raise subprocess.TimeoutExpired(process.args, MOST_SECONDS)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(TURN)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a compiler that is still at work, with the programs that it has started."""
+    if process.poll() is None:
+        with suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+def _clear_away(folder: Path) -> None:
+    """Remove what programs that were killed have left behind."""
+    for left in folder.glob(f"{PREFIX}*"):
+        with suppress(OSError):
+            if time.time() - left.stat().st_mtime > 2 * MOST_SECONDS:
+                shutil.rmtree(left, ignore_errors=True)

@@ -1,0 +1,137 @@
+"""The tree that goes on: it closes what a first effort leaves open, and else tells the gap that is proven."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import synth
+from synth import search
+from synth.best_first import OpenBoxes, best_first
+from synth.clock import Clock, Stopped
+from synth.cover import best, cover
+from synth.effort import SearchEffort
+from synth.formulation import Formulation
+from synth.instance import Instance, catalogs_for
+from synth.proven_gap import Bound, least_gap
+from synth.purposes import Cover
+from tests.unit.spring import OPTIMUM, TensionSpring
+from tests.unit.strut import NEEDED, RODS, Strut
+
+EFFORT = SearchEffort(seconds=np.inf)
+
+
+def prepared():
+    instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
+    return Formulation(instance, {"mass": "min", "flexibility": "min"}, 2)
+
+
+@pytest.fixture
+def form():
+    return prepared()
+
+
+def whole(form, slack):
+    return Cover([0, 1], np.full(2, slack), np.full(2, np.inf), form.archive)
+
+
+def test_it_closes_what_a_cover_leaves_open(form):
+    purpose = whole(form, 0.01)
+    begun = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
+    assert len(begun.open)
+    ended = best_first(form, begun.open, purpose, Clock(), np.random.default_rng(0), EFFORT)
+    assert ended.closed
+    assert not ended.spent
+
+
+def test_boxes_with_most_room_come_first_until_too_many_wait(form):
+    purpose = whole(form, 0.01)
+    cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
+    left = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100).open
+    room = purpose.room(form.phi_of(left.bounds))
+    assert room.min() < 0.01 < room.max() / 2
+    # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
+    for most, low, high in ((10**6, room.max() / 2, room.max()), (0, 0.0, 0.01)):
+        waiting = OpenBoxes(form, purpose, most)
+        waiting.add(left)
+        assert len(waiting) == len(left) == sum(len(b) for b in waiting.batches)
+        batch = waiting.next()
+        first = purpose.room(form.phi_of(batch.bounds))[0]
+        assert low <= first <= high
+        assert len(waiting) + len(batch) == len(left)
+
+
+def test_what_does_not_close_ends_by_the_count_of_boxes(form):
+    effort = SearchEffort(seconds=np.inf, spell=200, patience=2, most_waiting=500, most_stuck=5)
+    ends = []
+    for own in (prepared(), prepared()):
+        purpose = whole(own, 1e-9)  # less than numbers can tell
+        found = best_first(own, own.root(), purpose, Clock(), np.random.default_rng(0), effort)
+        ends.append((found.looked, len(found.open)))
+    assert ends[0] == ends[1]
+    assert ends[0][1] > 0
+    purpose = whole(form, 1e-9)
+    spent = best_first(form, form.root(), purpose, Clock(), np.random.default_rng(0), SearchEffort(seconds=0.0))
+    assert spent.spent
+    assert not spent.closed
+    with pytest.raises(Stopped, match="time limit"):
+        best_first(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
+
+
+def test_the_gap_of_open_boxes_is_what_they_allow(form):
+    plain = np.full(2, np.inf)
+    found, ended = best(form, form.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
+    assert ended.closed
+    form.archive.__init__([0, 1], form.n, 2)
+    left = cover(form, form.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open
+    assert len(left)
+    corners, logs = form.phi_of(left.bounds)[:, :1], np.array([True])
+    gap = least_gap([Bound(np.array([1e-3]), corners)], found.phi[None, :1], logs, np.ones(1))
+    assert gap == pytest.approx(max(1 - np.exp(corners.min() - found.phi[0]), 1 - np.exp(-1e-3)))
+
+
+def test_nothing_is_bounded_without_bounds():
+    logs, one = np.array([True]), np.ones((1, 1))
+    assert least_gap([], one, logs, np.ones(1)) is None
+    assert least_gap([Bound(np.zeros(1), np.array([[-np.inf]]))], one, logs, np.ones(1)) is None
+    signed = Bound(np.zeros(1), np.array([[-3.0]]))  # more than all of the range, and a bound nevertheless
+    assert least_gap([signed], one, ~logs, np.ones(1)) == 4.0
+
+
+def test_two_objectives_must_both_improve():
+    corners = np.log([[1.0, 9.0], [4.0, 4.0]])
+    listed = np.log([[2.0, 10.0], [8.0, 5.0]])
+    bound = Bound(np.zeros(2), corners)
+    gaps = bound.gaps(listed, np.ones(2, dtype=bool), np.ones(2))
+    np.testing.assert_allclose(gaps, [0.1, 0.2])  # by the first box; by the second
+
+
+# -- whole questions -------------------------------------------------------------------------------
+
+
+def test_the_tension_spring_is_proven():
+    front = synth.synthesize(TensionSpring, {}, gap=1e-5)
+    assert front.certificate.kind == "global"
+    assert front.certificate.budget is None
+    assert front.designs[0].objectives["volume"] == pytest.approx(OPTIMUM, rel=2e-6)
+
+
+@pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
+def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(monkeypatch, objectives):
+    trees = ("FIRST_EFFORT", "COARSE_EFFORT", "SOON", "TOGETHER", "EFFORT", "EFFORT_WITH_MANY", "EFFORT_WITH_FEW_PARTS")
+    for name in trees:
+        monkeypatch.setattr(search, name, 50 if len(objectives) > 1 else 1)
+    proven = synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5)
+    assert proven.certificate.kind == "global"  # what the first effort leaves open is closed
+    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=0.0))
+    left = synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5)
+    assert left.certificate.kind == "exhaustive"
+    assert left.certificate.budget == 0.0
+    assert 1e-3 <= left.certificate.gap < 1
+    assert "budget" in left.certificate.sentence()
+    assert not left.interrupted
+
+
+def test_a_front_that_is_stopped_at_once_knows_the_gap_of_the_whole():
+    front = synth.synthesize(Strut(), NEEDED, catalogs={"rods": RODS}, points=5, time_limit=0.3)
+    assert front.certificate.gap is not None or not front.designs

@@ -1,0 +1,161 @@
+"""The C compiler beside the program: ended with it, nothing half-written, and no word in what comes out."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+import synth
+from synth import compilation, deadline, native, propagation, search
+from synth.compilation import compile_shared, meanwhile, switched_off, switched_on
+from synth.deadline import Stopped
+from tests.unit.strut import NEEDED, RODS, Strut
+
+SOURCE = "int one(void) { return 1; }"
+
+
+def compiler(folder: Path, seconds: float) -> str:
+    """Return a compiler that first starts a program of its own and then takes its time."""
+    path = folder / "slow_cc"
+    path.write_text(
+        '#!/bin/sh\nwhile [ "$1" != -o ]; do shift; done\n'
+        f'sh -c "echo \\$\\$ > {folder}/child; exec sleep {seconds}"\ncp {folder}/finished "$2"\n'
+    )
+    path.chmod(0o755)
+    (folder / "finished").write_text("compiled")
+    return str(path)
+
+
+def alive(pid: int) -> bool:
+    """Tell whether a process is still at work."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def test_what_is_compiled_is_moved_to_its_place_at_once(tmp_path):
+    place = tmp_path / "cache" / "code.so"
+    place.parent.mkdir()
+    compile_shared(compiler(tmp_path, 0.1), SOURCE, place, [])
+    assert place.read_text() == "compiled"
+    assert list(place.parent.iterdir()) == [place]
+
+
+def begun(tmp_path: Path) -> int:
+    """Wait until the compiler has begun; return the number of the program that it has started."""
+    child = tmp_path / "child"
+    while not (child.exists() and child.read_text().strip()):
+        time.sleep(0.01)
+    return int(child.read_text())
+
+
+@pytest.mark.parametrize("how", ["time limit", "interrupted"])
+def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
+    folder, children = tmp_path / "cache", []
+    folder.mkdir()
+
+    def work(ready):
+        children.append(begun(tmp_path))
+        if how == "interrupted":
+            raise KeyboardInterrupt
+
+    end = time.monotonic() + (0.5 if how == "time limit" else 60.0)
+    with meanwhile(work), deadline.until(end), pytest.raises((Stopped, KeyboardInterrupt)):
+        compile_shared(compiler(tmp_path, 600), SOURCE, folder / "code.so", [])
+    assert children
+    assert not alive(children[0])
+    assert not list(folder.iterdir())
+
+
+def test_what_is_done_meanwhile_is_told_when_the_compiler_is_done(tmp_path):
+    told = []
+
+    def work(ready):
+        begun(tmp_path)
+        told.append(ready())
+        while not ready():
+            time.sleep(0.01)
+        told.append(ready())
+
+    with meanwhile(work):
+        compile_shared(compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [])
+    assert told == [False, True]
+
+
+def test_what_killed_programs_have_left_is_cleared_away(tmp_path):
+    old, new = tmp_path / f"{compilation.PREFIX}old", tmp_path / f"{compilation.PREFIX}new"
+    old.mkdir()
+    new.mkdir()
+    os.utime(old, (0, 0))
+    compile_shared(compiler(tmp_path, 0), SOURCE, tmp_path / "code.so", [])
+    assert not old.exists()
+    assert new.exists()
+
+
+def test_compiled_code_can_be_switched_off_for_a_block(monkeypatch):
+    monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+    with switched_off():
+        assert not switched_on()
+        assert native.library("test", SOURCE) is None
+    assert switched_on()
+
+
+# -- beside a search -------------------------------------------------------------------------------
+
+
+def ask(**more):
+    return synth.synthesize(Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
+
+
+@pytest.fixture
+def never_done(tmp_path, monkeypatch):
+    """Let everything be compiled from the first, by a compiler that is never done; its folder."""
+    monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
+    path = compiler(tmp_path, 600)
+    monkeypatch.setattr(native, "_compiler", lambda: (path, "slow"))
+    return tmp_path / "home" / "clutchsynth"
+
+
+def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_done):
+    begin = time.monotonic()
+    front = ask(time_limit=4.0)
+    assert front.interrupted == "time limit"
+    assert front.designs
+    assert all(not d.violated for d in front.designs)
+    assert front.certificate.kind == "heuristic"
+    assert front.certificate.gap is not None
+    assert time.monotonic() - begin < 60  # generous: it would be ten minutes
+    assert not list(never_done.glob("*"))
+
+
+@pytest.mark.skipif(native._compiler() is None, reason="no C compiler")
+def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatch):
+    monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    looked = []
+    aside = search.FrontSearch._look_meanwhile
+
+    def counted(self, ready):
+        aside(self, ready)
+        looked.append(len(self.meanwhile))
+
+    monkeypatch.setattr(search.FrontSearch, "_look_meanwhile", counted)
+    # While it is compiled, and with what has been compiled.
+    first, second = (ask().files()["designs.csv"] for _ in range(2))
+    assert looked
+    assert first == second
+
+
+def test_a_compiler_that_takes_too_long_is_given_up(tmp_path, monkeypatch):
+    monkeypatch.setattr(compilation, "MOST_SECONDS", 0.2)
+    with pytest.raises(subprocess.TimeoutExpired):
+        compile_shared(compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [])
