@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from synth.errors import InputError
-from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, tell
+from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_written
 from synth.terminal_options import Folder, FrontFolder, Quiet, Seed, TimeLimit
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ def near_equals(
     check_output(folder)
     if folder.resolve() == source.resolve():
         raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
+    claim_output(folder, NEAR_EQUALS)
     from synth.choice_console import print_near_equals
     from synth.console import output, progress_display
     from synth.loading import load_front
@@ -45,10 +48,10 @@ def near_equals(
     front = load_front(source)
     with progress_display(quiet) as progress:
         found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
-    found.save(folder)
+    target = found.save(folder)
     if not quiet:
         print_near_equals(found, output())
-        print(f"written to {folder}: {', '.join(sorted(found.files()))}")
+        tell_written(target, folder, sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not found.designs:
@@ -67,7 +70,7 @@ def prices(
     quiet: Quiet = False,
 ) -> None:
     """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
-    check_output(folder)
+    claim_output(folder, PRICES)
     from synth.choice_console import print_prices
     from synth.console import output, progress_display
     from synth.loading import load_front
@@ -82,10 +85,10 @@ def prices(
         except KeyboardInterrupt:
             tell("stopped before the first design was begun; nothing is written")
             raise typer.Exit(STOPPED) from None
-    found.save(folder)
+    target = found.save(folder)
     if not quiet:
         print_prices(found, output(), every)
-        print(f"written to {folder}: {', '.join(sorted(found.files()))}")
+        tell_written(target, folder, sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
 
@@ -105,9 +108,9 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.choice_console import comparison_explanation, print_comparison
     from synth.comparing import compare
     from synth.console import output, progress_display
-    from synth.files import write_atomically
     from synth.tables import Catalogs
 
+    place = place_for_stopped(folder, FRONT)  # finished families are kept there until all are
     with blamed_on(asked.file), progress_display(quiet) as progress:
         settings = asked.search_settings()
         found = compare(
@@ -116,23 +119,24 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
             catalogs=Catalogs(asked.catalogs, base=asked.folder),
             options=asked.options,
             progress=progress,
-            finished=lambda label, front: front.save(folder / label),
+            finished=lambda label, front: front.save(place / label),
             **settings,
         )
-    found.save(folder)
-    note = folder / "explanation.txt"
-    note.unlink(missing_ok=True)
+    texts = {**found.files(), **found.family_files()}
     if not found.designs and not found.interrupted:
-        write_atomically(note, comparison_explanation(found))
+        texts["explanation.txt"] = comparison_explanation(found)
+    target = save_result(place if found.interrupted else folder, texts, FRONT, False)
+    if place not in (target, folder):
+        shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
     if not quiet:
         print_comparison(found, output(), every)
         folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]
         files = [name for name in sorted(found.files()) if not name.startswith("design_")]
-        files += ["explanation.txt"] if note.exists() else []
+        files += ["explanation.txt"] if "explanation.txt" in texts else []
         files += [f"design_{d.rank:02d}.yaml" for d in found.designs[:1]]
         if len(found.designs) > 1:
             files[-1] += f" .. design_{len(found.designs):02d}.yaml"
-        output().print(f"written to {folder}: {', '.join([*files, *folders])}", soft_wrap=True)
+        tell_written(target, folder, [*files, *folders])
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not found.designs:

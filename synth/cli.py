@@ -13,8 +13,12 @@ import typer
 from synth import choice_commands, robust_commands
 from synth import study_commands as studies
 from synth.errors import InputError
+from synth.files import frame_csv
 from synth.given import given_design, must_be_a_design, must_be_a_question, must_be_one_family
+from synth.interrupts import taken_alike
 from synth.jobs import commands as batches
+from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
+from synth.plain_text import plain_streams
 from synth.terminal import (
     BAD_INPUT,
     DOES_NOT_HOLD,
@@ -25,13 +29,14 @@ from synth.terminal import (
     STOPPED,
     as_csv,
     blamed_on,
-    check_output,
+    claim_output,
     frame_files,
     objectives,
+    one_command,
     pair,
     report,
     tell,
-    write_all,
+    tell_written,
 )
 from synth.terminal_options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
 from synth.variants import commands as size_ranges
@@ -71,8 +76,14 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without these letters must not stop the work
+    with plain_streams():
+        _run()
+
+
+def _run() -> None:
     try:
-        app()
+        with taken_alike(), one_command():
+            app()
     except InputError as error:
         tell(" ".join(str(error).split()))
         sys.exit(BAD_INPUT)
@@ -88,10 +99,16 @@ def main() -> None:
     except SystemExit as end:
         if end.code != INTERRUPTED:
             raise
-        tell("stopped before all was done; what is finished is kept, the same command begins again or goes on")
-        sys.exit(STOPPED)
+        _tell_stopped()
+    except KeyboardInterrupt:
+        _tell_stopped()
     except Exception as error:
         _give_up(error)
+
+
+def _tell_stopped() -> NoReturn:
+    tell("stopped before all was done; what is finished is kept, the same command begins again or goes on")
+    sys.exit(STOPPED)
 
 
 def _give_up(error: Exception) -> NoReturn:
@@ -156,7 +173,7 @@ def describe(
     problem = _load(family, dict(pair("--option", text) for text in option or []))
     rows = described(problem)
     if as_csv:
-        tabulated(rows).to_csv(sys.stdout, index=False, lineterminator="\n")
+        print(frame_csv(tabulated(rows)), end="")
         return
     console = output()
     console.print(f"{problem.title} ({problem.name})")
@@ -180,6 +197,7 @@ def run(
     quiet: Quiet = False,
 ) -> None:
     """Search the designs for a spec, show them ranked and save them."""
+    from synth.console import explanation_text
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(
@@ -187,15 +205,18 @@ def run(
         objectives=objectives(objective or []),
     )  # fmt: skip
     must_be_a_question(asked)
-    check_output(folder)
+    claim_output(folder, FRONT)
     if asked.compares:
         choice_commands.compare_families(asked, folder, every, quiet)
         return
     front = _synthesize(asked, quiet)
-    front.save(folder)
-    explanation = _write_explanation(front, folder)
+    files = front.files()
+    if front.explanation is not None:
+        files["explanation.txt"] = explanation_text(front)
+    target = save_result(folder, files, FRONT, bool(front.interrupted))
     if not quiet:
-        _show(front, folder, explanation, every)
+        _show(front, files, every)
+        tell_written(target, folder, _listed(files))
     if front.interrupted:
         raise typer.Exit(STOPPED)
     if not front.designs:
@@ -221,7 +242,7 @@ def explain(
     must_be_a_question(asked)
     must_be_one_family(asked)
     if folder is not None:
-        check_output(folder)
+        claim_output(folder, EXPLANATION)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         problem = _load(asked.family, asked.options)
         settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
@@ -232,7 +253,7 @@ def explain(
     if folder is not None:
         files = found.save(folder)
         if not quiet:
-            print(f"written to {folder}: {', '.join(file.name for file in files)}")
+            tell_written(files[0].parent, folder, [file.name for file in files])
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not found.feasible:
@@ -245,20 +266,21 @@ def check(
     folder: Annotated[Path | None, typer.Option("--output", "-o", help="Folder for check.csv.", metavar="DIR")] = None,
 ) -> None:
     """Compute everything about a given design and test every limit; nothing is rounded or searched."""
-    from synth.console import output, print_check, write_check
+    from synth.console import check_table, output, print_check
     from synth.description import described
     from synth.spec import read_spec
 
     asked = read_spec(design)
     must_be_a_design(asked)
     if folder is not None:
-        check_output(folder)
+        claim_output(folder)
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
         details = described(problem, catalogs)
     print_check(result, details, output())
     if folder is not None:
-        print(f"\nwritten: {write_check(result, details, folder)}")
+        save_files(folder, {"check.csv": check_table(result, details)})
+        print(f"\nwritten: {folder / 'check.csv'}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
 
@@ -279,7 +301,7 @@ def simulate(
 
     asked = read_spec(design)
     must_be_a_design(asked)
-    check_output(folder)
+    claim_output(folder)
     pairs = [pair("--set", text) for text in setting or []]
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
@@ -291,9 +313,9 @@ def simulate(
     files = frame_files(frames)
     if len(opinion):
         files["second_opinion.csv"] = as_csv(opinion)
-    write_all(folder, files)
+    save_files(folder, files)
     print_simulation(result, frames, opinion, output())
-    print(f"written to {folder}: {', '.join(sorted(files))}")
+    tell_written(folder, folder, sorted(files))
 
 
 @app.command()
@@ -312,7 +334,7 @@ def curves(
     asked = read_spec(spec)
     if asked.family != family:
         raise InputError("FAMILY", family, f"{asked.family}, the family of {asked.file}")
-    check_output(folder)
+    claim_output(folder)
     with blamed_on(asked.file):
         if asked.values is None:
             problem = _load(asked.family, asked.options)
@@ -323,10 +345,10 @@ def curves(
             problem, catalogs, result = given_design(asked)
             frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
     files = frame_files(frames)
-    write_all(folder, files)
+    save_files(folder, files)
     for frame in frames.values():
         print(frame.attrs["title"])
-    print(f"written to {folder}: {', '.join(sorted(files))}")
+    tell_written(folder, folder, sorted(files))
 
 
 @app.command()
@@ -338,7 +360,7 @@ def verify(
 ) -> None:
     """Check a saved front without the search: its files, every design, and the proof of the certificate."""
     from synth.console import output, print_verification
-    from synth.loading import load_front
+    from synth.loading import unchecked_front
     from synth.units import parse_quantity
     from synth.verify_comparison import is_comparison, verify_comparison
 
@@ -346,7 +368,7 @@ def verify(
     if is_comparison(folder):
         verification = verify_comparison(folder, **limit)
     else:
-        verification = load_front(folder).verify(**limit)
+        verification = unchecked_front(folder).verify(**limit)
     print_verification(verification, output())
     if not verification.holds:
         raise typer.Exit(DOES_NOT_HOLD if verification.findings else NOT_PROVEN)
@@ -386,26 +408,13 @@ def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
             raise typer.Exit(STOPPED) from None
 
 
-def _write_explanation(front: ParetoFront, folder: Path) -> str:
-    """Keep explanation.txt beside the front where nothing is feasible, and only there."""
-    from synth.console import explanation_text
-    from synth.files import write_atomically
-
-    path = folder / "explanation.txt"
-    if front.explanation is None:
-        path.unlink(missing_ok=True)
-        return ""
-    text = explanation_text(front)
-    write_atomically(path, text)
-    return text
-
-
-def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> None:
+def _show(front: ParetoFront, files: Mapping[str, str], every: bool) -> None:
     from synth.console import output, print_outcome
 
     console = output()
     if front.designs:
         (report("table") or _plain_table)(front, console, every)
+    explanation = files.get("explanation.txt", "")
     if "robust" in front.statistics and (front.designs or not explanation):
         from synth.robust_console import print_robust
 
@@ -413,12 +422,16 @@ def _show(front: ParetoFront, folder: Path, explanation: str, every: bool) -> No
     if explanation:
         print(explanation, end="")
     print_outcome(front, console)
-    files = sorted(path.name for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
-    designs = [name for name in files if name.startswith("design_")]
-    shown = [name for name in files if name in ("designs.csv", "front.json", "robust.csv", "explanation.txt")]
+
+
+def _listed(files: Mapping[str, str]) -> list[str]:
+    """Return the names of the files of a front, its designs as from .. to."""
+    names = sorted(files)
+    designs = [name for name in names if name.startswith("design_")]
+    shown = [name for name in names if name not in designs]
     if designs:
         shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
-    console.print(f"written to {folder}: {', '.join(shown)}", soft_wrap=True)
+    return shown
 
 
 def _plain_table(front: ParetoFront, console: Any, every: bool) -> None:

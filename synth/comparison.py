@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
-from synth.files import csv_text, save_files
+from synth.files import csv_text
 from synth.loading import COMPARISON
+from synth.output_folder import FRONT, save_result
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
 from synth.units import format_quantity
@@ -107,13 +108,21 @@ class Comparison:
             found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
         return found
 
+    def family_files(self) -> dict[str, str]:
+        """Return the files of each family's own front, in a folder of its name."""
+        return {
+            f"{outcome.family}/{name}": text
+            for outcome in self.outcomes
+            if outcome.front is not None
+            for name, text in outcome.front.files().items()
+        }
+
     def save(self, folder: str | Path) -> Path:
-        """Write designs.csv, families.csv, comparison.json, design_NN.yaml, and each family's own front in a folder."""
-        target = save_files(folder, self.files())
-        for outcome in self.outcomes:
-            if outcome.front is not None:
-                outcome.front.save(target / outcome.family)
-        return target
+        """Write designs.csv, families.csv, comparison.json, design_NN.yaml, and each family's own front in a folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, {**self.files(), **self.family_files()}, FRONT, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         known = [

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import math
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from synth.files import write_atomically
+from synth.files import csv_text
+from synth.plain_text import PlainStream, printable
 from synth.results import Design, ParetoFront
 from synth.units import format_quantity, from_si, split_header
 
@@ -34,6 +34,15 @@ SAME = 1e-9  # relative; a second opinion closer than this is the same
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
 
 
+class PlainConsole(Console):
+    """A console that acts on the terminal by itself alone, never by what it is given to show."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        """Return what is shown, characters that act on a terminal written out."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else Segment(printable(segment.text), segment.style)
+
+
 def output() -> Console:
     """Return the console on standard output; text is shown as it is, brackets mean nothing."""
     return console_on(sys.stdout)
@@ -43,7 +52,9 @@ def console_on(stream: Any, width: int | None = None) -> Console:
     """Return a console that shows text as it is; where no terminal is, lines end at a fixed width."""
     if width is None and not stream.isatty():
         width = WIDTH
-    return Console(file=stream, width=width, markup=False, highlight=False, emoji=False)
+    if isinstance(stream, PlainStream):
+        stream = stream.stream  # colours are the console's own
+    return PlainConsole(file=stream, width=width, markup=False, highlight=False, emoji=False)
 
 
 def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
@@ -266,34 +277,30 @@ def print_simulation(
     console.print()
 
 
-def write_check(design: Design, details: Sequence[Mapping[Any, Any]], folder: Path) -> Path:
-    """Write check.csv: every quantity and every limit in full precision; return its path."""
+def check_table(design: Design, details: Sequence[Mapping[Any, Any]]) -> str:
+    """Return the text of check.csv: every quantity and every limit in full precision."""
     frame = design.frame
     symbols = {row["name"]: row["symbol"] for row in details if row["kind"] not in ("limit", "objective")}
     units = {row["name"]: row["unit"] for row in details if row["kind"] == "requirement"}
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["kind", "name", "symbol", "unit", "value", "limit", "sense", "utilisation", "state"])
+    columns = ["kind", "name", "symbol", "unit", "value", "limit", "sense", "utilisation", "state"]
+    rows: list[list[str]] = []
     for name, si in frame.requirement_values.items():
-        writer.writerow(["requirement", name, symbols[name], units[name], _plain(si, units[name]), "", "", "", ""])
+        rows.append(["requirement", name, symbols[name], units[name], _plain(si, units[name]), "", "", "", ""])
     for slot, part in design.parts.items():
-        writer.writerow(["part", slot, symbols[slot], "", str(part), "", "", "", ""])
+        rows.append(["part", slot, symbols[slot], "", str(part), "", "", "", ""])
     for name, label in design.choices.items():
-        writer.writerow(["choice", name, symbols[name], "", label, "", "", "", ""])
+        rows.append(["choice", name, symbols[name], "", label, "", "", "", ""])
     for name, si in design.values.items():
         unit = frame.units[name]
         grid = "off the grid" if name in design.off_grid else ""
         grid = "outside the range that is searched" if name in design.outside else grid
-        writer.writerow([frame.kinds[name], name, symbols[name], unit, _plain(si, unit), "", "", "", grid])
+        rows.append([frame.kinds[name], name, symbols[name], unit, _plain(si, unit), "", "", "", grid])
     for name, state in _limit_states(design).items():
         unit, (value, limit), used = frame.limit_units[name], design.limits[name], design.utilisation.get(name)
         sense = SIGNS[frame.limit_senses[name]]
         shown = ["" if used is None else repr(used), state]
-        writer.writerow(["limit", name, "", unit, _plain(value, unit), _plain(limit, unit), sense, *shown])
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "check.csv"
-    write_atomically(path, buffer.getvalue())
-    return path
+        rows.append(["limit", name, "", unit, _plain(value, unit), _plain(limit, unit), sense, *shown])
+    return csv_text(columns, rows)
 
 
 def _plain(si: float, unit: str) -> str:

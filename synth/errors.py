@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Any
 
 from synth.input_limits import INPUT_LIMITS
+from synth.plain_text import printable
 
 Key = str | int
 EXPECTED = 8  # times as much room for what is right: that lists names of ours
@@ -39,7 +40,7 @@ class InputError(ValueError):
         # A field names a place in a file: each of the two may be as long as a value.
         place = shortened(": ".join(map(shortened, field.split(": "))), 2 * INPUT_LIMITS.message)
         right = shortened(expected, EXPECTED * INPUT_LIMITS.message)
-        super().__init__(f"{place}: {got}; expected {right}")
+        super().__init__(printable(f"{place}: {got}; expected {right}"))
 
     def under(self, *keys: Key) -> InputError:
         """Put keys in front of the path, as a reader that was given a part of the input; return the same error."""

@@ -14,8 +14,9 @@ import casadi as ca
 from synth.analysis import evaluate
 from synth.clock import Stopped
 from synth.errors import InputError
-from synth.files import write_atomically
+from synth.files import frame_csv
 from synth.instance import SIGNS, Instance, as_mapping, catalogs_for
+from synth.output_folder import EXPLANATION, save_result
 from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
@@ -143,13 +144,12 @@ class Explanation:
         return pd.DataFrame(rows)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write explanation.csv, explanation.json, and the design of every way out; return the files."""
+        """Write explanation.csv and explanation.json; return the files.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
         import json
 
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        table, summary = folder / "explanation.csv", folder / "explanation.json"
-        write_atomically(table, self.to_frame().to_csv(index=False, lineterminator="\n"))
         told = {
             "feasible": self.feasible,
             "message": self.message,
@@ -163,8 +163,12 @@ class Explanation:
             "not_settled": self.not_settled,
             "interrupted": self.interrupted,
         }
-        write_atomically(summary, json.dumps(told, indent=2, ensure_ascii=False) + "\n")
-        return [table, summary]
+        files = {
+            "explanation.csv": frame_csv(self.to_frame()),
+            "explanation.json": json.dumps(told, indent=2, ensure_ascii=False) + "\n",
+        }
+        target = save_result(folder, files, EXPLANATION, bool(self.interrupted))
+        return [target / name for name in files]
 
 
 def explain(

@@ -1,52 +1,168 @@
-"""How results are written: tables as CSV, and files that are never half-written."""
+"""Files that users name, and how results are written: tables as CSV, and files that are never half-written."""
 
 from __future__ import annotations
 
 import csv
 import hashlib
 import io
-from collections.abc import Iterable, Mapping, Sequence
+import json
+import os
+import stat
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from synth.errors import InputError
+from synth.plain_text import UNSAFE, csv_cell, escaped, file_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LARGEST = 20_000_000  # bytes of a file that is read; nobody types more, and nothing of ours that is read again has more
+NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # a pipe that nobody writes into would be waited for
+
+KINDS = {
+    stat.S_ISDIR: "a folder",
+    stat.S_ISFIFO: "a pipe",
+    stat.S_ISSOCK: "a socket",
+    stat.S_ISCHR: "a device",
+    stat.S_ISBLK: "a device",
+}
+
+
+# ---- reading --------------------------------------------------------------------------------------------------------
+
+
+def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = LARGEST) -> bytes:
+    """Return what stands in a file that a user has named.
+
+    Parameters
+    ----------
+    path : path
+    field : str
+        What names it, for messages.
+    right : str
+        What it should be, for messages.
+    most : int
+        Bytes; no more than that is ever read.
+
+    Raises
+    ------
+    InputError
+        It is no regular file (a folder, a pipe, a device), is larger, or cannot be read.
+    """
+    with os.fdopen(_opened(path, field, right, most), "rb") as file:
+        try:
+            raw = file.read(most + 1)
+        except OSError as error:
+            raise InputError(field, str(path), f"{right} that can be read ({error.strerror})") from error
+    if len(raw) > most:  # it grows while it is read, or its system tells no size
+        _too_large(field, path, right, most)
+    return raw
+
+
+def check_file(path: str | Path, field: str, right: str = "a file", most: int = LARGEST) -> None:
+    """Refuse what ``read_bytes`` would refuse, without reading it.
+
+    Raises
+    ------
+    InputError
+    """
+    os.close(_opened(path, field, right, most))
+
+
+def _opened(path: str | Path, field: str, right: str, most: int) -> int:
+    """Return the handle of a regular file that is not too large."""
+    shown = str(path)
+    try:
+        handle = os.open(path, os.O_RDONLY | NO_WAIT | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0))
+    except FileNotFoundError:
+        raise InputError(field, shown, f"{right} that exists (No such file or directory)") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "not a possible file name"
+        raise InputError(field, shown, f"{right} that can be read ({reason})") from error
+    found = os.fstat(handle)
+    if stat.S_ISREG(found.st_mode) and found.st_size <= most:
+        return handle
+    os.close(handle)
+    if stat.S_ISREG(found.st_mode):
+        _too_large(field, path, right, most)
+    what = next((words for test, words in KINDS.items() if test(found.st_mode)), "something else")
+    raise InputError(field, shown, f"{right} that can be read; this is {what}")
+
+
+def read_json(path: str | Path, field: str, right: str, most: int = LARGEST) -> Any:
+    """Return the content of a JSON file, read strictly: finite numbers only.
+
+    Raises
+    ------
+    InputError
+        As for ``read_bytes``, or it is no JSON.
+    """
+    raw = read_bytes(path, field, right, most)
+    try:
+        return json.loads(raw.decode("utf-8"), parse_constant=_no_number)
+    except (ValueError, RecursionError) as error:
+        raise InputError(field, str(path), right) from error
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(word)
+
+
+def _too_large(field: str, path: str | Path, right: str, most: int) -> NoReturn:
+    size = f"{most // 1_000_000} MB" if most > 1_000_000 else f"{most // 1000} kB"
+    raise InputError(field, str(path), f"{right} of at most {size}")
+
+
+# ---- writing --------------------------------------------------------------------------------------------------------
 
 
 def csv_text(columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return a table as CSV in full precision; nothing stands where there is no value."""
     buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(columns)
-    for row in rows:
-        writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row])
+    write = csv_writer(buffer)
+    for row in (columns, *rows):
+        write(row)
     return buffer.getvalue()
 
 
-def save_files(folder: str | Path, files: Mapping[str, str]) -> Path:
-    """Write the files of a result and take away designs of an earlier one; return the folder.
+def csv_writer(file: TextIO) -> Callable[[Sequence[Any]], object]:
+    """Return what writes a row of cells into a file."""
+    writer = csv.writer(file, lineterminator="\n")
+    return lambda cells: writer.writerow([csv_cell(cell) for cell in cells])
 
-    Every file is written beside its place and then renamed, so nothing half-written is ever seen.
-    """
-    target = Path(folder)
-    if target.exists() and not target.is_dir():
-        raise InputError("output", str(folder), "a folder; this is a file")
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        for stale in [*target.glob("design_*.yaml"), target / "robust.csv"]:
-            if stale.name not in files:
-                stale.unlink(missing_ok=True)
-        for name, text in files.items():
-            write_atomically(target / name, text)
-    except OSError as error:
-        raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
-    return target
+
+def frame_csv(frame: pd.DataFrame, float_format: str | None = None) -> str:
+    """Return a frame as CSV, without its index."""
+    plain = frame.rename(columns=csv_cell)
+    for k, kind in enumerate(plain.dtypes):
+        if getattr(kind, "kind", "O") not in "biufcmM":  # text, or text among other things
+            plain.isetitem(k, [csv_cell(cell) if isinstance(cell, str) else cell for cell in plain.iloc[:, k]])
+    text: str = plain.to_csv(index=False, lineterminator="\n", float_format=float_format)
+    return text
+
+
+def yaml_text(content: Any) -> str:
+    """Return a YAML text that reads back as it was, and acts on no terminal."""
+    import yaml  # costly to import
+
+    class Dumper(yaml.SafeDumper):
+        """Puts text with characters that act on a terminal into quotes, where they are escaped."""
+
+    def represented(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+        return dumper.represent_scalar("tag:yaml.org,2002:str", text, style='"' if UNSAFE.search(text) else None)
+
+    Dumper.add_representer(str, represented)
+    text: str = yaml.dump(content, Dumper=Dumper, sort_keys=False, allow_unicode=True, width=120)
+    return escaped(text)
 
 
 def write_atomically(path: Path, text: str) -> None:
     """Write a text file so that it is either the old one or the whole new one."""
     temporary = path.with_name(f".{path.name}.{hashlib.sha256(str(path).encode()).hexdigest()[:8]}.tmp")
     try:
-        temporary.write_text(text, encoding="utf-8", newline="")
+        temporary.write_text(file_text(path.name, text), encoding="utf-8", newline="")
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)

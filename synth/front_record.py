@@ -64,6 +64,17 @@ def digest_of(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
+def changed(content: Mapping[str, Any]) -> str:
+    """Return what the checksum says against the content of a front.json; nothing where it fits."""
+    if "digest" not in content:
+        return "front.json has no checksum; it was not written by this version"
+    try:
+        fits = content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"})
+    except (ValueError, RecursionError):  # numbers that are none
+        fits = False
+    return "" if fits else "front.json was changed after it was saved: its checksum does not fit"
+
+
 def installed_versions() -> dict[str, str]:
     """Return the versions of the packages that decide the numbers."""
     return {name: _installed(name) for name in RECORDED_PACKAGES}

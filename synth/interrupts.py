@@ -1,33 +1,52 @@
-"""Ctrl-C that could be lost: while symbols are made it waits, and a batch asks for it again."""
+"""Ctrl-C, and the signal by which schedulers end programs: taken alike, held back where they do harm, not lost."""
 
 from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+
+TWICE = 1.0  # seconds; what comes from a terminal, and again from whoever started the program, is one wish
+
+
+@contextmanager
+def taken_alike() -> Iterator[None]:
+    """Take SIGTERM, by which schedulers and containers end a program, as Ctrl-C; what comes twice at once is one."""
+    last = -TWICE
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= TWICE:
+            last = now
+            raise KeyboardInterrupt
+
+    with _handled(_heard_signals(), stop):
+        yield
 
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Let Ctrl-C wait for the end of the block.
+    """Let Ctrl-C and SIGTERM wait for the end of the block.
 
     CasADi asks Python to convert numbers and drops whatever is raised meanwhile, so that the wish to stop would go
-    unheard.
+    unheard; and what is being saved shall be saved.
     """
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield  # signals arrive in the main thread alone, or nobody wants to hear of this one
+    if threading.current_thread() is not threading.main_thread():
+        yield  # signals arrive in the main thread alone
         return
-    heard: list[FrameType | None] = []
-    signal.signal(signal.SIGINT, lambda number, frame: heard.append(frame))
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    heard: dict[int, FrameType | None] = {}
     try:
-        yield
+        with _handled([n for n, handler in before.items() if callable(handler)], heard.__setitem__):
+            yield
     finally:
-        signal.signal(signal.SIGINT, before)
-        if heard:
-            before(signal.SIGINT, heard[0])
+        for number, frame in heard.items():
+            if callable(handler := before[signal.Signals(number)]):
+                handler(number, frame)
 
 
 @contextmanager
@@ -47,11 +66,22 @@ def heard_again() -> Iterator[Callable[[], None]]:
         if heard:
             raise KeyboardInterrupt
 
-    # Who starts a program with Ctrl-C switched off does not want it heard.
-    deaf = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, *([] if deaf else [signal.SIGINT]))}
-    try:
+    with _handled(_heard_signals(), stop):
         yield check
+
+
+def _heard_signals() -> list[signal.Signals]:
+    """Return the signals that end a program; who starts one with Ctrl-C switched off does not want it heard."""
+    deaf = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    return [signal.SIGTERM, *([] if deaf else [signal.SIGINT])]
+
+
+@contextmanager
+def _handled(numbers: Iterable[signal.Signals], handler: Callable[[int, FrameType | None], object]) -> Iterator[None]:
+    """Handle signals in a way of one's own within the block."""
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, old in before.items():
+            signal.signal(number, old)

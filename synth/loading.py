@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
 from synth.feasibility import Status
-from synth.front_record import FORMAT
+from synth.files import read_json
+from synth.front_record import FORMAT, changed
+from synth.output_folder import settle
 from synth.results import Certificate, Design, Frame, ParetoFront, PartRow
 
 COMPARISON = "comparison.json"
@@ -25,24 +26,42 @@ def load_front(folder: str | Path) -> ParetoFront:
     Raises
     ------
     InputError
-        When there is no front, or it is of another format.
+        When there is no front, it is of another format, or it was changed after it was saved.
     """
+    path, content = _read(folder)
+    fault = changed(content)
+    if fault:
+        raise InputError("front", str(path), f"a front.json as clutchsynth has written it; {fault}")
+    return front_of_record(content, path)
+
+
+def unchecked_front(folder: str | Path) -> ParetoFront:
+    """Rebuild a front whatever its checksum says, for whoever checks everything again.
+
+    Raises
+    ------
+    InputError
+        As for ``load_front``, but for changes.
+    """
+    path, content = _read(folder)
+    return front_of_record(content, path)
+
+
+def _read(folder: str | Path) -> tuple[Path, dict[str, Any]]:
+    """Return the front.json of a folder and its content; of a comparison there is none."""
     path = Path(folder)
     if (path / COMPARISON).is_file():
         one = next((x.parent.name for x in sorted(path.glob("*/front.json"))), "FAMILY")
         raise InputError("front", str(path), f"the folder of one family of this comparison, for example {path / one}")
-    path = path / "front.json" if path.is_dir() else path
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except json.JSONDecodeError as error:
-        raise InputError("front", str(path), "a folder that clutchsynth run has written, or its front.json") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("front", str(path), f"a front.json that clutchsynth wrote ({error})") from error
+    if path.is_dir():
+        settle(path)
+        path = path / "front.json"
+    content = read_json(path, "front", "a folder that clutchsynth run has written, or its front.json")
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(
             f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
         )
-    return front_of_record(content, path)
+    return path, content
 
 
 def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
@@ -61,7 +80,7 @@ def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
     """
     try:
         return _front_from_json(content, path.parent)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(f"front {path}", str(error), "a front.json that is complete") from error
 
 

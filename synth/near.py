@@ -23,10 +23,11 @@ from synth.clock import Clock, Stopped
 from synth.cover import cover
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
-from synth.files import csv_text, save_files
+from synth.files import csv_text
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance
+from synth.output_folder import NEAR_EQUALS, save_result
 from synth.purposes import Cover
 from synth.question import combination_of, question_of
 from synth.results import Design, ParetoFront, design_columns, design_row
@@ -104,8 +105,11 @@ class NearEquals:
         return found
 
     def save(self, folder: str | Path) -> Path:
-        """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder."""
-        return save_files(folder, self.files())
+        """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, self.files(), NEAR_EQUALS, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         objectives = list(self.reference.frame.objectives)

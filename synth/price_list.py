@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.files import csv_text, write_atomically
+from synth.files import csv_text, read_json, write_atomically
+from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
 from synth.results import Frame
 
 if TYPE_CHECKING:
@@ -99,13 +101,20 @@ class Prices:
     def save(self, folder: str | Path) -> Path:
         """Write prices.csv and prices.json; return the folder.
 
-        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        What was stopped replaces no earlier result: it is written to a folder ``stopped..`` beside that, where the
+        designs that are finished are kept, and goes to the folder when it is finished.
         """
-        store = Store(Path(folder), self.fingerprint)
+        target = Path(folder)
+        store = Store.of(target, self.fingerprint)
         self._enter(store)
-        store.write(RECORD, store.text())
-        store.write("prices.csv", self.files()["prices.csv"])
-        return Path(folder)
+        files = {**self.files(), RECORD: store.text()}
+        if self.interrupted and store.folder != target:
+            return save_files(target if store.folder is None else store.folder, files)
+        known = loses_nothing(target, files, ["prices.csv"])
+        place = save_result(target, files, PRICES, bool(self.interrupted), known)
+        if store.folder is not None and store.folder not in (target, place):
+            shutil.rmtree(store.folder, ignore_errors=True)  # all of it stands in the result now
+        return place
 
     def _enter(self, store: Store) -> None:
         for rank in self.finished:
@@ -119,14 +128,25 @@ class Store:
         self.folder, self.fingerprint = folder, fingerprint
         self.known: dict[int, list[dict[str, Any]]] = {} if folder is None else self._read(folder / RECORD)
 
+    @classmethod
+    def of(cls, folder: Path | None, fingerprint: str) -> Store:
+        """Return the store of a question: its folder, or one beside the prices of another question."""
+        if folder is None:
+            return cls(None, fingerprint)
+        settle(folder)
+        here = cls(folder, fingerprint)
+        if here.known or not (folder / RECORD).exists():
+            return here
+        return cls(folder / f"stopped_{fingerprint[:8]}", fingerprint)
+
     def _read(self, path: Path) -> dict[int, list[dict[str, Any]]]:
         """Return what an earlier run of the same question has finished; a file that is none begins a new one."""
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
+            content = read_json(path, "prices", "prices that clutchsynth has written")
             if content["format"] != FORMAT or content["fingerprint"] != self.fingerprint:
                 return {}
             return {int(k): [asdict(Price(**row)) for row in rows] for k, rows in content["designs"].items()}
-        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        except (ValueError, KeyError, TypeError, AttributeError):
             return {}
 
     def text(self) -> str:

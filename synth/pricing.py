@@ -12,6 +12,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,7 @@ from synth.errors import InputError
 from synth.fingerprint import code_digest
 from synth.formulation import TIE, Formulation
 from synth.instance import Instance
+from synth.output_folder import claimed
 from synth.price_list import CHANGE, CONFIRMED, FIXED, FORMAT, NOTHING, WITHHELD, Price, Prices, Store, percent, told
 from synth.question import combination_of, question_of
 from synth.resolve import ALL, FINE, Move, Resolver
@@ -87,8 +89,10 @@ def prices(
     instance = question_of(front, problem, catalogs)
     digest = (front.record or json.loads(front.files()["front.json"])).get("digest")
     content = json.dumps([FORMAT, digest, share, code_digest()])
-    store = Store(None if folder is None else Path(folder), hashlib.sha256(content.encode()).hexdigest())
-    return _Pricing(instance, front, share, progress, time_limit).run(chosen, store)
+    place = None if folder is None else Path(folder)
+    with nullcontext() if place is None else claimed(place):
+        store = Store.of(place, hashlib.sha256(content.encode()).hexdigest())
+        return _Pricing(instance, front, share, progress, time_limit).run(chosen, store)
 
 
 def _chosen(front: ParetoFront, design: Any) -> list[Design]:

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
 from synth.feasibility import Status
-from synth.files import csv_text, save_files
+from synth.files import csv_text, yaml_text
 from synth.front_record import digest_of, front_record, record_text
+from synth.output_folder import FRONT, save_result
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.units import format_quantity, from_si, header
 
@@ -118,8 +117,7 @@ class Design:
 
     def yaml(self) -> str:
         """Return the text of a DESIGN.yaml."""
-        text: str = yaml.safe_dump(self.to_spec(), sort_keys=False, allow_unicode=True, width=120)
-        return text
+        return yaml_text(self.to_spec())
 
 
 @dataclass(frozen=True)
@@ -190,11 +188,11 @@ class ParetoFront:
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
     def save(self, folder: str | Path) -> Path:
-        """Write designs.csv, front.json and one design_NN.yaml per design; return the folder.
+        """Write designs.csv, front.json and one design_NN.yaml per design, all or none; return the folder.
 
-        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
-        return save_files(folder, self.files())
+        return save_result(folder, self.files(), FRONT, bool(self.interrupted))
 
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""

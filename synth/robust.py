@@ -14,8 +14,9 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.feasibility import Status
-from synth.files import csv_text, save_files
+from synth.files import csv_text
 from synth.instance import Instance, catalogs_for
+from synth.output_folder import RATING, save_result
 from synth.pareto import rank
 from synth.posed import nominal
 from synth.problem import load
@@ -75,8 +76,11 @@ class Ratings:
         }
 
     def save(self, folder: str | Path) -> Path:
-        """Write rating.csv, robust.csv and rating.json; return the folder."""
-        return save_files(folder, self.files())
+        """Write rating.csv, robust.csv and rating.json; return the folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, self.files(), RATING, bool(self.interrupted))
 
     def _table(self) -> tuple[list[str], list[list[Any]]]:
         if not self.designs:

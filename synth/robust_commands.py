@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from synth.errors import InputError
-from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, pair
+from synth.output_folder import RATING
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, pair, tell_written
 from synth.terminal_options import Folder, Quiet, TimeLimit
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ def rate(
     check_output(folder)
     if folder.resolve() == source.resolve():
         raise InputError("--output", str(folder), "another folder than that of the front")
+    claim_output(folder, RATING)
     from synth.console import output, progress_display
     from synth.robust import rate as rate_designs
     from synth.robust_console import print_ratings
@@ -62,10 +64,10 @@ def rate(
             designs, {**block, **told} if block or told else None, problem=problem, catalogs=catalogs,
             progress=progress, time_limit=seconds,
         )  # fmt: skip
-    found.save(folder)
+    target = found.save(folder)
     if not quiet:
         print_ratings(found, output())
-        print(f"written to {folder}: {', '.join(sorted(found.files()))}")
+        tell_written(target, folder, sorted(found.files()))
     if found.interrupted:
         raise typer.Exit(STOPPED)
     if not any(d.robust["holds"] for d in found.designs):

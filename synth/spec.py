@@ -15,6 +15,7 @@ from typing import Any
 import yaml
 
 from synth.errors import InputError, at, whole_number
+from synth.files import read_bytes
 from synth.gap import GAP_EXPECTED, is_gap
 from synth.input_limits import INPUT_LIMITS
 
@@ -443,16 +444,7 @@ def read_content(path: str | Path, what: str) -> Any:
 
 
 def _read_text(file: Path, shown: str, what: str) -> str:
-    try:
-        with file.open("rb") as stream:
-            raw = stream.read(LARGEST_FILE + 1)
-    except IsADirectoryError as error:
-        raise InputError(what, shown, "a file; this is a folder") from error
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "not a possible file name"
-        raise InputError(what, shown, f"a file that can be read ({reason})") from error
-    if len(raw) > LARGEST_FILE:
-        raise InputError(what, shown, f"a text file of at most {LARGEST_FILE // 1000} kB")
+    raw = read_bytes(file, what, most=LARGEST_FILE)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from synth.feasibility import Status
 from synth.files import csv_text
+from synth.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
 from synth.rated import COLUMNS, rating_row
 from synth.results import Design, Frame, ParetoFront
 from synth.robust import NOTHING_STANDS
-from synth.terminal import report, write_all
+from synth.study_store import STEPS, StudyStore
+from synth.terminal import report
 from synth.units import format_quantity, from_si, header
 from synth.vary import Value, Varied
 
@@ -26,6 +29,7 @@ MOST_LABELS = 8
 MOST_TICKS = 20
 MOST_MISSED = 2  # limits that a line has room for
 NO_DESIGN = "no design"
+NOT_REACHED = "not reached"
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,7 @@ class Step:
     def reason(self) -> str:
         """Return in a few words why there is no design; nothing where there is one."""
         if self.front is None:
-            return f"not reached: {self.stopped}" if self.stopped else "not reached"
+            return f"{NOT_REACHED}: {self.stopped}" if self.stopped else NOT_REACHED
         if self.front.designs:
             return ""
         if self.front.status is Status.NOT_SOLVED:
@@ -156,6 +160,7 @@ class Study:
     along: int | None
     interrupted: str = ""
     statistics: Mapping[str, Any] = field(default_factory=dict)
+    store: StudyStore = field(default_factory=lambda: StudyStore(None), repr=False, compare=False)
 
     @property
     def fronts(self) -> list[ParetoFront]:
@@ -412,14 +417,19 @@ class Study:
     def save(self, folder: str | Path) -> Path:
         """Write whatif.csv, breaks.csv and the drawings; return the folder.
 
-        Every file is written beside its place and then renamed, so nothing half-written is ever seen.
+        A study that was stopped replaces no earlier result: it is written to a folder ``stopped..`` beside that, where
+        its finished steps are, and goes there when it is finished.
         """
-        target = Path(folder)
-        files = self.files()
-        write_all(target, files)
-        for name in ("whatif.svg", "fronts.svg"):
-            if name not in files:
-                (target / name).unlink(missing_ok=True)
+        target, files, kept = Path(folder), self.files(), self.store.folder
+        if kept is None or kept == target:
+            known = loses_nothing(target, files, ("whatif.csv", "breaks.csv"), NOT_REACHED)
+            return save_result(target, files, STUDY, bool(self.interrupted), known)
+        if self.interrupted:
+            return save_files(kept, files)
+        with claimed(target):
+            earlier = [f"{STEPS}/{path.name}" for path in (target / STEPS).glob("step_*.json")]
+            save_result(target, {**files, **self.store.files()}, STUDY, False, drop=earlier)
+            shutil.rmtree(kept, ignore_errors=True)  # all of it stands in the result now
         return target
 
 

@@ -9,7 +9,8 @@ import typer
 
 from synth.errors import InputError
 from synth.given import must_be_a_question, must_be_one_family
-from synth.terminal import INFEASIBLE, STOPPED, blamed_on, check_output, objectives, tell
+from synth.output_folder import STUDY
+from synth.terminal import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_written
 from synth.terminal_options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
 
 if TYPE_CHECKING:
@@ -58,17 +59,17 @@ def whatif(
     )  # fmt: skip
     must_be_a_question(asked)
     must_be_one_family(asked)
-    check_output(folder)
+    claim_output(folder, STUDY)
     study = _study(asked, vary, folder, breaks, quiet)
-    study.save(folder)
+    target = study.save(folder)
     if not quiet:
         from synth.console import output
         from synth.study_console import print_study
-        from synth.what_if import STEPS
+        from synth.study_store import STEPS
 
         print_study(study, output())
-        kept = [f"{STEPS}/"] if (folder / STEPS).is_dir() else []  # not before the first step is finished
-        print(f"written to {folder}: {', '.join([*sorted(study.files()), *kept])}")
+        kept = [f"{STEPS}/"] if (target / STEPS).is_dir() else []  # not before the first step is finished
+        tell_written(target, folder, [*sorted(study.files()), *kept])
     if study.interrupted:
         raise typer.Exit(STOPPED)
     if not study.feasible:

@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError, at
+from synth.files import read_bytes
 from synth.units import Unit, check_number, from_si, header, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -434,13 +435,7 @@ def _close(name: str, known: Iterable[str]) -> str:
 def _read_csv(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows with their line numbers."""
     name = path.name
-    try:
-        raw = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError("catalogue file", str(path), "a CSV file that exists") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise InputError("catalogue file", str(path), f"a CSV file that can be read ({reason})") from None
+    raw = read_bytes(path, "catalogue file", "a CSV file")
     try:
         # spreadsheets put a byte order mark before UTF-8; it is no part of the first name
         text = raw.decode("utf-8-sig")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.files import write_atomically
+from synth.files import frame_csv
+from synth.output_folder import ResultKind, check_kind, claimed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,18 +62,14 @@ def frame_files(frames: Mapping[str, pd.DataFrame]) -> dict[str, str]:
 
 def as_csv(frame: pd.DataFrame) -> str:
     """Return a frame as CSV."""
-    text: str = frame.to_csv(index=False, lineterminator="\n", float_format="%.10g")
-    return text
+    return frame_csv(frame, "%.10g")
 
 
-def write_all(folder: Path, files: Mapping[str, str]) -> None:
-    """Write files that are all complete before the first one is touched."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, text in files.items():
-            write_atomically(folder / name, text)
-    except OSError as error:
-        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
+def tell_written(target: Path, folder: Path, files: Iterable[str]) -> None:
+    """Say where a result was written, and that an earlier one still stands where this one was stopped."""
+    print(f"written to {target}: {', '.join(files)}")
+    if target != folder:
+        print(f"the earlier result in {folder} stays as it was, as this one is not finished")
 
 
 @contextmanager
@@ -84,8 +81,35 @@ def blamed_on(file: str) -> Iterator[None]:
         raise InputError(f"{file}: {error.field}", error.value, error.expected, error.path) from error
 
 
+_for_this_command = ExitStack()
+
+
+@contextmanager
+def one_command() -> Iterator[None]:
+    """Run a command; folders that it keeps others out of are free again when it ends."""
+    with _for_this_command:
+        yield
+
+
+def claim_output(folder: Path, kind: ResultKind | None = None, job: str = "") -> None:
+    """Refuse a folder that cannot be written before the search, not after it; keep others out of it from now on.
+
+    Parameters
+    ----------
+    folder : Path
+    kind : ResultKind, optional
+        What is written, where other commands have files of the same names.
+    job : str
+        The name of a job that several processes may work at.
+    """
+    check_output(folder)
+    if kind is not None:
+        check_kind(folder, kind)
+    _for_this_command.enter_context(claimed(folder, job))
+
+
 def check_output(folder: Path) -> None:
-    """Refuse a folder that cannot be written before the search, not after it."""
+    """Refuse a folder that cannot be written."""
     if str(folder) in ("", "."):
         raise InputError("--output", str(folder), "the name of a folder for the results, for example out/")
     place = folder

@@ -18,6 +18,8 @@ import numpy as np
 
 from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
+from synth.files import read_bytes
+from synth.front_record import changed
 from synth.instance import Instance
 from synth.problem import DesignProblem
 from synth.prooftree import Outcome, Point, ProofTree
@@ -149,11 +151,9 @@ class Check:
         record, folder = self.front.record, self.front.folder
         if record is None:
             return
-        content = {k: v for k, v in record.items() if k != "digest"}
-        if "digest" not in record:
-            self.find("front.json has no checksum; it was not written by this version")
-        elif record["digest"] != self.front.digest_of(content):
-            self.find("front.json was changed after it was saved: its checksum does not fit")
+        fault = changed(record)
+        if fault:
+            self.find(fault)
         if folder is None:
             return
         try:
@@ -164,8 +164,8 @@ class Check:
         for name, text in files.items():
             path = folder / name
             try:
-                same = name == "front.json" or path.read_text(encoding="utf-8") == text
-            except OSError:
+                same = name == "front.json" or read_bytes(path, name).decode("utf-8") == text
+            except InputError:
                 self.find(f"{name} is missing")
             except UnicodeDecodeError:
                 self.find(f"{name} is not the text that was saved")

@@ -6,18 +6,19 @@ has no design that improves one of those listed, whichever family they are of.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from synth.errors import InputError
-from synth.loading import COMPARISON, load_front
+from synth.files import read_json
+from synth.loading import COMPARISON, unchecked_front
+from synth.output_folder import settle
 from synth.results import ParetoFront
+from synth.spec import read_content
 from synth.verification import Verification
 from synth.verify import UNREADABLE, checked
 
@@ -50,12 +51,13 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
     """
     started = time.monotonic()
     path = Path(folder)
+    settle(path)
+    content = read_json(path / COMPARISON, "comparison", "a folder that run has written for several families")
     try:
-        content = json.loads((path / COMPARISON).read_text(encoding="utf-8"))
         families = {x["family"]: x["folder"] for x in content["families"] if x["folder"] is not None}
         listed, certificate = content["designs"], content["certificate"]
         kind, gap = str(certificate["kind"]), certificate["gap"]
-    except (OSError, *UNREADABLE) as error:
+    except UNREADABLE as error:
         raise InputError(
             "comparison", str(path), f"a folder that run has written for several families ({error})"
         ) from error
@@ -64,7 +66,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
     nodes = 0
     values = _values(path, content, findings)
     for label, name in families.items():
-        front = load_front(path / name)
+        front = unchecked_front(path / name)
         check = checked(front, None, None, time.monotonic() + time_limit)
         _among(front, label, listed, findings)
         provable = kind == "global" and gap is not None and bool(values) and not check.findings
@@ -99,13 +101,13 @@ def _values(path: Path, content: Mapping[str, Any], findings: list[str]) -> dict
     for told in content["designs"]:
         label = f"design {told['rank']}"
         try:
-            spec = yaml.safe_load((path / f"design_{told['rank']:0{width}d}.yaml").read_text(encoding="utf-8"))
+            spec = read_content(path / f"design_{told['rank']:0{width}d}.yaml", "design")
             problem = posed(load(spec["family"], **spec.get("options", {})), spec.get("robust"), spec.get("limits"))
             design = evaluate(
                 problem, spec["requirements"], spec, catalogs=spec.get("catalogs"), limits=spec.get("limits"),
                 objectives=content["objectives"],
             )  # fmt: skip
-        except (OSError, yaml.YAMLError, *UNREADABLE) as error:
+        except UNREADABLE as error:
             findings.append(f"{label}: its file cannot be evaluated ({error})")
             continue
         if design.violated:

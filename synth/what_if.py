@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import re
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,10 @@ import numpy as np
 
 from synth.breaks import find_breaks, weight_breaks
 from synth.clock import Stopped
-from synth.errors import InputError
-from synth.files import write_atomically
 from synth.fingerprint import code_digest
-from synth.front_record import front_record, record_text
-from synth.loading import front_of_record, load_front
+from synth.front_record import front_record
+from synth.loading import front_of_record
+from synth.output_folder import claimed
 from synth.pareto import rank
 from synth.problem import DesignProblem
 from synth.rating import Rater
@@ -30,12 +29,9 @@ from synth.scatter import read_block
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
 from synth.study_questions import Steps, steps_of
+from synth.study_store import FORMAT, RECORD, StudyStore, joined
 from synth.together_fronts import joint_answers, joint_groups
 
-FORMAT = 1
-RECORD = "study.json"
-STEPS = "steps"
-STEP = re.compile(r"step ([1-9][0-9]*)")  # its key in the record
 INTERRUPTED = "interrupted"
 
 
@@ -100,7 +96,9 @@ def whatif(
         p, requirements, vary, catalogs, objectives=objectives, points=points, parts=parts, limits=limits, fix=fix,
         weights=weights, gap=gap, grid=grid, seed=seed, robust=robust,
     )  # fmt: skip
-    return _Run(steps, int(workers), progress, time_limit, None if folder is None else Path(folder)).study(breaks)
+    place = None if folder is None else Path(folder)
+    with nullcontext() if place is None else claimed(place):
+        return _Run(steps, int(workers), progress, time_limit, place).study(breaks)
 
 
 class _Run:
@@ -117,7 +115,8 @@ class _Run:
         self.steps, self.workers, self.progress = steps, workers, progress
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit
-        self.store = _Store(folder)
+        self.folder = folder
+        self.store = StudyStore(None)
         self.questions = steps.questions
         asked = list(zip(self.questions, steps.raters, strict=True))
         self.alone = [_fingerprint(question, rater) for question, rater in asked]
@@ -141,7 +140,6 @@ class _Run:
                 self.answered.append(self._answer(position))
             if breaks:
                 self._find_breaks(found)
-            self.store.forget_beyond(len(self.steps))
         except Stopped as stop:
             stopped = stop.reason
         except KeyboardInterrupt:
@@ -155,7 +153,7 @@ class _Run:
         seconds = {"seconds": time.monotonic() - self.started}
         return Study(
             tuple(self.steps.varied), (*self.answered, *rest), tuple(found), self._along(), stopped,
-            {**statistics, **seconds},
+            {**statistics, **seconds}, self.store,
         )  # fmt: skip
 
     # -- steps ---------------------------------------------------------------------------------
@@ -165,11 +163,12 @@ class _Run:
         groups = joint_groups(self.questions)
         marks = dict[int, str]()
         for group in groups:
-            marks |= dict.fromkeys(group, _joined([self.alone[k] for k in group]))
+            marks |= dict.fromkeys(group, joined([self.alone[k] for k in group]))
         for position, alone in enumerate(self.alone):
             ideas = [self.fingerprints[k] for k in self._neighbours(position)]
             group_mark = [marks[position]] if position in marks else []
-            self.fingerprints.append(_joined([alone, *ideas, *group_mark]))
+            self.fingerprints.append(joined([alone, *ideas, *group_mark]))
+        self.store = StudyStore.of(self.folder, self.fingerprints)
         self.stored = [self.store.get(k + 1, own) for k, own in enumerate(self.fingerprints)]
         for group in groups:
             missing = [k for k in group if self.stored[k] is None]
@@ -285,11 +284,6 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     return replace(front, designs=designs, settings={**front.settings, **question.settings})
 
 
-def _joined(fingerprints: Sequence[str]) -> str:
-    """Return one hash of several."""
-    return hashlib.sha256(" ".join(fingerprints).encode()).hexdigest()
-
-
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
     """Return the hash of all that decides an answer but ideas: question, formulas, tables, code."""
     instance, selection = question.instance, question.instance.selection
@@ -303,7 +297,7 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
         "family": instance.problem.name,
         "options": {n: o.chosen for n, o in instance.model.declaration.options.items()},
         "requirements": instance.requirements,
-        "rows": {s.slot: _joined([s.table.hashes[int(r)] for r in s.rows]) for s in selection.slots},
+        "rows": {s.slot: joined([s.table.hashes[int(r)] for r in s.rows]) for s in selection.slots},
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
         "ranges": [instance.lower.tolist(), instance.upper.tolist()],
         "grids": [hashlib.sha256(g.tobytes()).hexdigest() for g in instance.grids()],
@@ -315,87 +309,3 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
         "code": code_digest(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-
-class _Store:
-    """Answers kept in a folder, each with the fingerprint of what it answers; without a folder nothing is kept."""
-
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
-        self.record: dict[str, dict[str, Any]] = {}
-        if folder is not None:
-            self.record = self._read(folder / RECORD)
-
-    @staticmethod
-    def _read(path: Path) -> dict[str, dict[str, Any]]:
-        """Return the record of an earlier run; a file that is none begins a new one."""
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return {}
-        known = content.get("known") if isinstance(content, dict) and content.get("format") == FORMAT else None
-        return known if isinstance(known, dict) else {}
-
-    def get(self, number: int, fingerprint: str) -> ParetoFront | None:
-        """Return the front of a step if it is kept, and whole."""
-        entry = self.record.get(f"step {number}")
-        if self.folder is None or not isinstance(entry, dict) or entry.get("fingerprint") != fingerprint:
-            return None
-        try:
-            front = load_front(self.folder / str(entry["file"]))
-        except (InputError, KeyError):
-            return None
-        record = dict(front.record or {})
-        digest = record.pop("digest", None)
-        return front if digest == entry.get("digest") == ParetoFront.digest_of(record) else None
-
-    def put(self, number: int, fingerprint: str, record: Mapping[str, Any]) -> None:
-        """Keep the front of a step, by the content of its front.json."""
-        if self.folder is None:
-            return
-        name = self._file_of(number)
-        self._write(self.folder / name, record_text(record))
-        self._enter(f"step {number}", {"fingerprint": fingerprint, "file": name, "digest": record["digest"]})
-
-    def value(self, key: str, fingerprint: str) -> Any:
-        """Return something else that is kept; None where it is not, or of another question."""
-        entry = self.record.get(key)
-        return entry.get("value") if isinstance(entry, dict) and entry.get("fingerprint") == fingerprint else None
-
-    def keep(self, key: str, fingerprint: str, value: Any) -> None:
-        """Keep something else, which JSON can hold."""
-        if self.folder is not None:
-            self._enter(key, {"fingerprint": fingerprint, "value": value})
-
-    def forget_beyond(self, count: int) -> None:
-        """Remove the steps that a longer study has left behind."""
-        steps = [int(match.group(1)) for key in self.record if (match := STEP.fullmatch(key))]
-        longer = [number for number in steps if number > count]
-        if self.folder is None or not longer:
-            return
-        for number in longer:
-            del self.record[f"step {number}"]
-        self._write_record(self.folder)
-        for number in longer:
-            (self.folder / self._file_of(number)).unlink(missing_ok=True)
-
-    @staticmethod
-    def _file_of(number: int) -> str:
-        return f"{STEPS}/step_{number:04d}.json"
-
-    def _enter(self, key: str, entry: dict[str, Any]) -> None:
-        assert self.folder is not None
-        self.record[key] = entry
-        self._write_record(self.folder)
-
-    def _write_record(self, folder: Path) -> None:
-        text = json.dumps({"format": FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
-        self._write(folder / RECORD, text)
-
-    @staticmethod
-    def _write(path: Path, text: str) -> None:
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_atomically(path, text)
-        except OSError as error:
-            raise InputError("output", str(path.parent), f"a folder that can be written ({error.strerror})") from error

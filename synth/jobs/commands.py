@@ -11,7 +11,8 @@ import typer
 from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.interrupts import heard_again
-from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, objectives, tell
+from synth.output_folder import BATCH
+from synth.terminal import INFEASIBLE, INTERNAL, STOPPED, check_output, claim_output, objectives, tell
 from synth.terminal_options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
             from synth.jobs.console import batch_display, print_summary, print_table_remarks
 
             job = make()
+            claim_output(job.folder, BATCH, job.id)
             continues = job.plan()
             check()
         except KeyboardInterrupt:
@@ -128,11 +130,27 @@ def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | N
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
             raise typer.Exit(STOPPED) from None
+        except (OSError, InputError) as error:
+            _tell_no_room(error)
+            raise typer.Exit(STOPPED) from error
         finally:
             job.close()
     if not quiet:
-        print_summary(counts, job.folder, stopped)
+        print_summary(counts, job.place, job.folder, stopped)
     return _code(counts, stopped)
+
+
+def _tell_no_room(error: OSError | InputError) -> None:
+    """Tell that a job stopped for want of a place for what it finds; every other fault is for others to tell."""
+    if isinstance(error, InputError):
+        if error.field != "output":
+            raise error
+        reason = str(error)
+    elif error.filename is None:
+        raise error
+    else:
+        reason = f"{error.filename} cannot be written ({error.strerror})"
+    tell(f"stopped: {reason}; what was found is in the database, the same command goes on")
 
 
 def _processes(workers: int | None) -> int:
@@ -221,15 +239,19 @@ def resume(
     store, found = _find(job, database)
     with store, heard_again() as check:
         try:
+            claim_output(Path(found.folder), BATCH, found.id)
             with batch_display(quiet) as progress:
                 shown = _checked(progress, check)
                 stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
-            counts = write_outputs(store, found.id, Path(found.folder))
+            counts, place = write_outputs(store, found.id, Path(found.folder))
         except KeyboardInterrupt:
             tell("stopped; what was found is in the database, the same command goes on")
             raise typer.Exit(STOPPED) from None
+        except (OSError, InputError) as error:
+            _tell_no_room(error)
+            raise typer.Exit(STOPPED) from error
     if not quiet:
-        print_summary(counts, Path(found.folder), stopped)
+        print_summary(counts, place, Path(found.folder), stopped)
     raise typer.Exit(_code(counts, stopped))
 
 

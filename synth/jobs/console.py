@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 from synth.console import console_on, output, plain_table
 from synth.jobs.questions import Fault
+from synth.terminal import tell_written
 
 if TYPE_CHECKING:
     from synth.jobs.models import Job
@@ -133,13 +134,13 @@ WORDS = {
 }
 
 
-def print_summary(counts: Mapping[str, int], folder: Path, stopped: str) -> None:
-    """Print what a batch has come to."""
+def print_summary(counts: Mapping[str, int], place: Path, folder: Path, stopped: str) -> None:
+    """Print what a batch has come to, and where it was written."""
     total = sum(counts.values())
     print(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
     if stopped:
         print(f"stopped: {stopped}; what was found is saved, the same command goes on")
-    print(f"written to {folder}: designs.csv, rows.csv, batch.json")
+    tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
 
 
 def _sorted(counts: Mapping[str, int]) -> list[tuple[str, int]]:

@@ -100,10 +100,11 @@ class _Worker:
 
 
 def _begin(lifeline: Connection) -> None:
-    """Prepare a worker process: one thread, deaf to Ctrl-C, and gone when its master is."""
+    """Prepare a worker process: one thread, deaf to Ctrl-C and SIGTERM, and gone when its master is."""
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the master decides what Ctrl-C means
+    for number in (signal.SIGINT, signal.SIGTERM):  # whole groups of processes get them; the master decides
+        signal.signal(number, signal.SIG_IGN)
 
     def watch() -> None:
         try:

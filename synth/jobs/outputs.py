@@ -1,19 +1,17 @@
-"""The files of a batch: designs.csv, rows.csv and batch.json, written row by row beside their place and renamed."""
+"""The files of a batch: designs.csv, rows.csv and batch.json, written row by row, and changed together."""
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
-from synth.errors import InputError
-from synth.files import write_atomically
+from synth.files import csv_writer
 from synth.front_record import installed_versions
-from synth.jobs.store import Answered, Store, has_died, new_owner
+from synth.jobs.store import DONE, Answered, Store
+from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
 
 FORMAT = 1
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
@@ -25,8 +23,8 @@ ROW_COLUMNS = (
 SHORT = 12  # digits of a key that tell rows apart
 
 
-def write_outputs(store: Store, job: str, folder: Path) -> dict[str, int]:
-    """Write what is known of a job.
+def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int], Path]:
+    """Write what is known of a job, all files or none.
 
     Parameters
     ----------
@@ -38,35 +36,51 @@ def write_outputs(store: Store, job: str, folder: Path) -> dict[str, int]:
     -------
     dict
         Rows by status; ``bad_input`` and ``not_solved`` are among them.
+    Path
+        Where it stands: the folder, or one below it where an unfinished job found the result of another one.
 
     Raises
     ------
     InputError
-        The folder cannot be written.
+        The folder cannot be written; then nothing has changed.
     """
     record = store.job(job)
     assert record is not None
     content = record.content
+    with claimed(folder, job):
+        check_kind(folder, BATCH)
+        settle(folder)
+        beside = folder / f"{STOPPED}_{job[:8]}"
+        target = folder if record.state == DONE or _job_in(folder) in (None, job) else beside
+        with replaced(target) as new:
+            with new.open("designs.csv") as file:
+                _write_designs(file, store, job, content)
+            with new.open("rows.csv") as file:
+                counts = _write_rows(file, store, job, content)
+            summary = {
+                "format": FORMAT,
+                "job": job,
+                "state": record.state,
+                "rows": counts,
+                **{key: content[key] for key in ("source", "settings", "columns", "mapping", "hashes")},
+                "versions": installed_versions(),
+                "database": store.url,
+                "files": {name: _hash_of(new.staged(name)) for name in ("designs.csv", "rows.csv")},
+            }
+            new.write("batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
+            if target != beside:
+                new.drop(f"{beside.name}/{name}" for name in BATCH.owned)
+    return counts, target
+
+
+def _job_in(folder: Path) -> str | None:
+    """Return the job whose result stands in a folder; None where there is none."""
+    if not holds(folder, BATCH):
+        return None
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with _new_file(folder / "designs.csv") as file:
-            _write_designs(file, store, job, content)
-        with _new_file(folder / "rows.csv") as file:
-            counts = _write_rows(file, store, job, content)
-        summary = {
-            "format": FORMAT,
-            "job": job,
-            "state": record.state,
-            "rows": counts,
-            **{key: content[key] for key in ("source", "settings", "columns", "mapping", "hashes")},
-            "versions": installed_versions(),
-            "database": store.url,
-            "files": {name: _hash_of(folder / name) for name in ("designs.csv", "rows.csv")},
-        }
-        write_atomically(folder / "batch.json", json.dumps(summary, indent=1, ensure_ascii=False) + "\n")
-    except OSError as error:
-        raise InputError("--output", str(folder), f"a folder that can be written ({error.strerror})") from error
-    return counts
+        return str(json.loads((folder / "batch.json").read_text(encoding="utf-8"))["job"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return ""
 
 
 # ---- designs.csv ----------------------------------------------------------------------------------------------------
@@ -78,8 +92,8 @@ def _write_designs(file: TextIO, store: Store, job: str, content: Mapping[str, A
     groups, places = _common_columns(layouts)
     titles, carried = _carried(content)
     columns = [name for group in groups for name in group]
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["row", "family", *titles, *RANKING, *columns])
+    write = csv_writer(file)
+    write(["row", "family", *titles, *RANKING, *columns])
     for row in store.rows(job, canonical=True):
         if row.layout is None or row.content is None:
             continue
@@ -89,7 +103,7 @@ def _write_designs(file: TextIO, store: Store, job: str, content: Mapping[str, A
             line = [""] * len(columns)
             for k, cell in zip(place, cells[len(RANKING) :], strict=True):
                 line[k] = cell
-            writer.writerow([*own, *cells[: len(RANKING)], *line])
+            write([*own, *cells[: len(RANKING)], *line])
 
 
 def _common_columns(layouts: Mapping[str, Mapping[str, Any]]) -> tuple[list[list[str]], dict[str, list[int]]]:
@@ -134,8 +148,8 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
     """Write what became of each row, in the order of the table; return the rows by status."""
     layouts = store.layouts(job)
     titles, carried = _carried(content)
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow([*ROW_COLUMNS, *titles])
+    write = csv_writer(file)
+    write([*ROW_COLUMNS, *titles])
     counts: dict[str, int] = {}
     for row in store.rows(job, canonical=False):
         status = status_of(row)
@@ -149,7 +163,7 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
             best_design(layouts[row.layout], designs[0]) if designs and row.layout else "",
             explanation_of(row), row.remarks,
         ]  # fmt: skip
-        writer.writerow([*own, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
+        write([*own, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
     return dict(sorted(counts.items()))
 
 
@@ -186,24 +200,6 @@ def _said(heading: str, cell: str) -> str:
 
 def _text(value: Any) -> str:
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
-
-
-# ---- files ----------------------------------------------------------------------------------------------------------
-
-
-@contextmanager
-def _new_file(path: Path) -> Iterator[TextIO]:
-    """Give a file that takes its place when it is whole; what a killed process left is removed."""
-    for left in path.parent.glob(f".{path.name}.*.tmp"):
-        if has_died(left.name.removeprefix(f".{path.name}.").removesuffix(".tmp").replace("+", "/")):
-            left.unlink(missing_ok=True)
-    temporary = path.with_name(f".{path.name}.{new_owner().replace('/', '+')}.tmp")
-    try:
-        with temporary.open("w", encoding="utf-8", newline="") as file:
-            yield file
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def _hash_of(path: Path) -> str:

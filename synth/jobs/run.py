@@ -8,9 +8,12 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import URL
 
 from synth.count_domain import stated_value
 from synth.errors import InputError, whole_number
@@ -24,6 +27,8 @@ from synth.jobs.runner import Runner, Shares
 from synth.jobs.school import School
 from synth.jobs.store import DONE, OPEN, Store, digest, encoded, file_url
 from synth.jobs.table import read_table
+from synth.output_folder import claimed, settle
+from synth.plain_text import as_meant
 from synth.problem import families, load
 from synth.search import check_settings
 
@@ -56,13 +61,24 @@ class BatchResult:
         """Return designs.csv: the ranked designs of all rows, in an order that only their content decides."""
         import pandas as pd  # costly to import; who asks has waited long enough for the batch
 
-        return pd.read_csv(self.folder / "designs.csv", dtype={"row": str}, low_memory=False)
+        settle(self.folder)
+        return _as_meant(pd.read_csv(self.folder / "designs.csv", dtype={"row": str}, low_memory=False))
 
     def rows(self) -> pd.DataFrame:
         """Return rows.csv: what became of each row, in the order of the table."""
         import pandas as pd
 
-        return pd.read_csv(self.folder / "rows.csv", dtype={"row": str}, keep_default_na=False)
+        settle(self.folder)
+        return _as_meant(pd.read_csv(self.folder / "rows.csv", dtype={"row": str}, keep_default_na=False))
+
+
+def _as_meant(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table as it was before its texts were kept from being formulas."""
+    frame = frame.rename(columns=as_meant)
+    for k, kind in enumerate(frame.dtypes):
+        if getattr(kind, "kind", "O") not in "biuf":
+            frame.isetitem(k, [as_meant(cell) if isinstance(cell, str) else cell for cell in frame.iloc[:, k]])
+    return frame
 
 
 def batch(
@@ -134,13 +150,11 @@ def batch(
         p, table, Path(output), mapping, catalogs, {"parts": parts, "limits": limits, "fix": fix}, database,
         {"objectives": objectives, "points": points, "gap": gap, "grid": grid, "seed": seed, "time_limit": time_limit},
     )  # fmt: skip
-    try:
+    with closing(job), claimed(job.folder, job.id):
         job.plan()
         stopped = job.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
         counts = job.write()
-    finally:
-        job.close()
-    return BatchResult(Path(output), job.id, stopped, counts, job.address, catalogs, job.questioner.own, keep)
+    return BatchResult(job.place, job.id, stopped, counts, job.address, catalogs, job.questioner.own, keep)
 
 
 class _TemporaryFolder:
@@ -187,7 +201,7 @@ class BatchJob:
         )
         if folder.exists() and not folder.is_dir():
             raise InputError("--output", str(folder), "a folder; this is a file")
-        self.folder = folder
+        self.folder = self.place = folder
         self.table = read_table(table)
         self.mapping = dict(mapping) if isinstance(mapping, Mapping) else read_mapping(mapping)
         self.settings = dict(settings)
@@ -246,6 +260,18 @@ class BatchJob:
         InputError
             No row asks a question; then nothing is written.
         """
+        file = Path(str(self.address.database)) if isinstance(self.address, URL) else None
+        fresh = file is not None and not file.exists()
+        try:
+            return self._planned()
+        except BaseException:
+            if file is not None and fresh:  # nothing is kept of a job that could not be written
+                self.close()
+                for place in (file, *(file.with_name(f"{file.name}-{more}") for more in ("wal", "shm", "journal"))):
+                    place.unlink(missing_ok=True)
+            raise
+
+    def _planned(self) -> bool:
         if self._is_planned():
             self._reopen()
             return True
@@ -366,8 +392,9 @@ class BatchJob:
         return work_off(self.store, self.id, shares, workers, scheduler, progress, say)
 
     def write(self) -> dict[str, int]:
-        """Write the results that there are; return the rows by status."""
-        return write_outputs(self.store, self.id, self.folder)
+        """Write the results that there are to ``place``; return the rows by status."""
+        counts, self.place = write_outputs(self.store, self.id, self.folder)
+        return counts
 
 
 def work_off(

@@ -169,7 +169,7 @@ class Runner:
                 if time.monotonic() - renewed > LEASE / 4:
                     self.store.renew(self.owner)
                     renewed = time.monotonic()
-            except OperationalError:
+            except (OperationalError, OSError, InputError):
                 continue  # the database may be back at the next beat, long before a lease ends
 
     def _tell(self, always: bool = False) -> None:

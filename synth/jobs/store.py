@@ -7,11 +7,13 @@ stays the first. SQLite and PostgreSQL run the same statements.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import itertools
 import json
 import os
 import socket
+import sqlite3
 import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,6 +31,7 @@ from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Question, Resul
 HEAD = "1"  # the last of the migrations
 LEASE = 60.0  # seconds that a claim lasts without a sign of life
 CHUNK = 500  # rows written or read at a time
+WHOLE = "a job database that is whole"
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
 OPEN, RUNNING, DONE, CANCELLED = "open", "running", "done", "cancelled"
 
@@ -123,13 +126,46 @@ def engine_for(url: str | sa.URL) -> sa.Engine:
     if address.drivername == "postgresql":
         address = address.set(drivername="postgresql+psycopg")
     try:
-        engine = sa.create_engine(address, connect_args={"timeout": 60} if kind == "sqlite" else {}, pool_pre_ping=True)
+        engine = sa.create_engine(
+            address, connect_args={"timeout": 60} if kind == "sqlite" else {}, pool_pre_ping=True,
+            json_deserializer=lambda text: _read_back(text, shown),
+        )  # fmt: skip
     except (ImportError, NoSuchModuleError) as error:
         wanted = "an installed driver: pip install 'clutchsynth[postgres]'"
         raise InputError("--database", shown, wanted) from error
     if kind == "sqlite":
         sa.event.listen(engine, "connect", _prepare_sqlite)
+        sa.event.listen(engine, "handle_error", _tell_fault)
     return engine
+
+
+def _read_back(text: str, shown: str) -> Any:
+    """Return what a cell of JSON says."""
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError("--database", shown, f"{WHOLE} (a cell that cannot be read)") from error
+
+
+def _tell_fault(context: sa.engine.ExceptionContext) -> None:
+    """Tell what is wrong with a SQLite file where waiting does not help: no room, damaged, not ours.
+
+    Raises
+    ------
+    OSError
+        There is no room, or the disk fails.
+    InputError
+        The file is not a job database, or no longer.
+    """
+    error = context.original_exception
+    if not isinstance(error, sqlite3.Error) or context.engine is None:
+        return
+    file, reason = str(context.engine.url.database), str(error)
+    primary = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    if primary in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR):
+        raise OSError(errno.ENOSPC if primary == sqlite3.SQLITE_FULL else errno.EIO, reason, file) from error
+    if primary in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB) or reason.startswith("no such "):
+        raise InputError("--database", file, f"{WHOLE} ({reason})") from error
 
 
 def _prepare_sqlite(connection: Any, _: Any) -> None:
@@ -190,10 +226,18 @@ def _version_on(connection: sa.Connection) -> str | None:
     return None if found is None else str(found)
 
 
+def _refuse_empty(engine: sa.Engine, shown: str) -> None:
+    """Refuse a database without tables of ours: somebody has emptied it, or means another one."""
+    if _version(engine) is None:
+        raise InputError("--database", shown, f"{WHOLE} (there are no jobs in it)")
+
+
 def _find_file(file: Path, create: bool) -> None:
     """Refuse a SQLite file that is not there, or make its folder."""
     if not file.exists() and not create:
         raise InputError("--database", str(file), "a job database that exists")
+    if file.exists() and not file.is_file():
+        raise InputError("--database", str(file), "a job database; this is no regular file")
     file.parent.mkdir(parents=True, exist_ok=True)
 
 
@@ -255,6 +299,8 @@ class Store:
         try:
             if self.engine.dialect.name == "sqlite":
                 _find_file(Path(str(self.engine.url.database)), create)
+            if not create:
+                _refuse_empty(self.engine, self.url)
             migrate(self.engine)
         except InputError:
             self.engine.dispose()

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import sys
+import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError
+from synth.files import check_file, read_bytes
 from synth.input_limits import INPUT_LIMITS
+from synth.plain_text import as_meant
 
 EXCEL = (".xlsx", ".xlsm")
+ROWS = "a CSV or .xlsx file"
+MOST_UNPACKED = 200_000_000  # bytes; sheets are packed to a fifth or a tenth
 
 
 @dataclass(frozen=True)
@@ -55,8 +61,7 @@ class RowTable:
     def digest(self) -> str:
         """Return the SHA-256 of the file, or of what is in memory."""
         if isinstance(self.source, Path):
-            with self.source.open("rb") as file:
-                return hashlib.file_digest(file, "sha256").hexdigest()
+            return hashlib.sha256(read_bytes(self.source, "rows", ROWS)).hexdigest()
         return hashlib.sha256(repr(self.source).encode("utf-8", "surrogatepass")).hexdigest()
 
     def _records(self) -> Iterator[tuple[int, tuple[str, ...]]]:
@@ -87,10 +92,9 @@ def read_table(table: Any) -> RowTable:
         return table
     if isinstance(table, (str, Path)):
         path = Path(table)
-        if not path.is_file():
-            raise InputError("rows", str(table), "a CSV or .xlsx file that exists")
+        check_file(path, "rows", ROWS)
         if path.suffix.lower() == ".xls":
-            raise InputError("rows", str(table), "a CSV or .xlsx file; save the old format .xls as one of these")
+            raise InputError("rows", str(table), f"{ROWS}; save the old format .xls as one of these")
         return RowTable(path.name, path)
     if isinstance(table, Sequence) and table and all(isinstance(row, Mapping) for row in table):
         names = tuple(dict.fromkeys(str(key) for row in table for key in row))
@@ -158,21 +162,19 @@ def _checked_header(name: str, cells: Sequence[str]) -> tuple[str, ...]:
 def _csv(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
     line = 1
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file, strict=True)
-            for cells in reader:
-                if any("\0" in cell for cell in cells):
-                    raise InputError(f"{name}, line {line}", "a binary file", "a text file in UTF-8, or .xlsx")
-                yield line, tuple(cells)
-                line = reader.line_num + 1
+        file = io.TextIOWrapper(io.BytesIO(read_bytes(path, "rows", ROWS)), encoding="utf-8-sig", newline="")
+        reader = csv.reader(file, strict=True)
+        for cells in reader:
+            if any("\0" in cell for cell in cells):
+                raise InputError(f"{name}, line {line}", "a binary file", "a text file in UTF-8, or .xlsx")
+            yield line, tuple(as_meant(cell) for cell in cells)
+            line = reader.line_num + 1
     except UnicodeDecodeError as error:
         raise InputError(
             f"{name}, from line {line} on", "another encoding", "a text file in UTF-8, or .xlsx"
         ) from error
     except csv.Error as error:
         raise InputError(f"{name}, line {line}", str(error), "CSV with commas, and quotes that close") from error
-    except OSError as error:
-        raise InputError("rows", str(path), f"a file that can be read ({error.strerror})") from error
 
 
 def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
@@ -180,13 +182,18 @@ def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
         import openpyxl  # an extra; only for those who have such files
     except ImportError:
         raise InputError("rows", name, "CSV, or the extra for Excel: pip install 'clutchsynth[excel]'") from None
+    packed = io.BytesIO(read_bytes(path, "rows", ROWS))
     try:
-        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+        with zipfile.ZipFile(packed) as archive:
+            unpacked = sum(entry.file_size for entry in archive.infolist())
+        book = openpyxl.load_workbook(packed, read_only=True, data_only=True) if unpacked <= MOST_UNPACKED else None
     except Exception as error:  # whatever a broken archive may raise
         raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
+    if book is None:
+        raise InputError("rows", name, f"an Excel file of at most {MOST_UNPACKED // 1_000_000} MB when unpacked")
     try:
         sheet = book.worksheets[0]
         for number, cells in enumerate(sheet.iter_rows(values_only=True), start=1):
-            yield number, tuple(text_of(cell) for cell in cells)
+            yield number, tuple(as_meant(text_of(cell)) for cell in cells)
     finally:
         book.close()

@@ -9,7 +9,8 @@ import typer
 
 from synth.errors import InputError
 from synth.jobs.commands import Database, Workers, batch_job, finish
-from synth.terminal import STOPPED, check_output, report, write_all
+from synth.output_folder import SIZE_RANGE, save_result
+from synth.terminal import STOPPED, claim_output, report, tell_written
 from synth.terminal_options import Headings, Quiet, RowFamily, RowPoints
 
 
@@ -66,7 +67,7 @@ def size_range(
             raise typer.Exit(code)
         source = folder
     target = source if folder is None else folder
-    check_output(target)
+    claim_output(target)
     found = choose(
         source, variants, objective, per_row=per_row or None, candidates=candidates, gap=gap, time_limit=seconds,
         database=database, job=job_id,
@@ -75,9 +76,9 @@ def size_range(
     draw = report("figure")
     if draw is not None:
         files["curve.svg"] = draw(found.curve())
-    write_all(target, files)
+    save_result(target, files, SIZE_RANGE, False)
     if not quiet:
         from synth.variants.console import print_size_range
 
         print_size_range(found)
-        print(f"written to {target}: {', '.join(sorted(files))}")
+        tell_written(target, target, sorted(files))

@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError, whole_number
-from synth.files import csv_text, write_atomically
+from synth.files import csv_text, frame_csv
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs
 from synth.jobs.outputs import SHORT, explanation_of, status_of
 from synth.jobs.run import DATABASE, BatchResult
 from synth.jobs.store import Store, file_url
 from synth.model import Model
+from synth.output_folder import SIZE_RANGE, save_result
 from synth.problem import load
 from synth.results import shown_value
 from synth.units import header
@@ -93,20 +94,13 @@ class SizeRange:
             "variants.csv": _csv(self.variants),
             "assignment.csv": _csv(self.assignment),
             "unserved.csv": _csv(self.unserved, ("line", "row", "family", "status", "reason")),
-            "curve.csv": self.curve().to_csv(index=False, lineterminator="\n"),
+            "curve.csv": frame_csv(self.curve()),
             "size_range.json": json.dumps(record, indent=1, ensure_ascii=False) + "\n",
         }
 
     def save(self, folder: str | Path) -> Path:
-        """Write variants.csv, assignment.csv, unserved.csv, curve.csv and size_range.json; return the folder."""
-        target = Path(folder)
-        try:
-            target.mkdir(parents=True, exist_ok=True)
-            for name, text in self.files().items():
-                write_atomically(target / name, text)
-        except OSError as error:
-            raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
-        return target
+        """Write variants.csv, assignment.csv, unserved.csv, curve.csv and size_range.json, all or none."""
+        return save_result(folder, self.files(), SIZE_RANGE, False)
 
 
 def _csv(rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> str:

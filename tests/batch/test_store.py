@@ -252,7 +252,7 @@ def test_addresses_that_are_none_are_refused_without_their_password(url: str, wo
 def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "jobs.sqlite"
     file.write_text("something else, and long enough to be read as a header of a file of SQLite\n" * 30)
-    with pytest.raises(InputError, match="can be opened"):
+    with pytest.raises(InputError, match="is whole"):
         Store(f"sqlite:///{file}")
     with pytest.raises(InputError, match="that exists"):
         Store(f"sqlite:///{tmp_path / 'none.sqlite'}", create=False)

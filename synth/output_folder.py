@@ -1,0 +1,501 @@
+"""Folders of results: one job at a time, files that change together or not at all, what a stopped run leaves beside.
+
+A result is several files that belong together. They are written into a folder of their own inside the target, which is
+renamed when it is complete: from then on the result is the new one, and whoever opens the folder next moves what a
+process that was killed has left to move. Until then it is the old one, also on a full disk.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import shutil
+import socket
+import threading
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import TextIO
+
+from synth.errors import InputError
+from synth.interrupts import held_back
+from synth.plain_text import file_text
+
+try:
+    import fcntl
+except ImportError:  # a system without these locks: nobody is kept out
+    fcntl = None  # type: ignore[assignment]
+
+LOCK = ".clutchsynth.lock"  # who works for the folder
+MOVING = ".clutchsynth.moving.lock"  # who exchanges its files at the moment
+NEW, READY = ".clutchsynth.new", ".clutchsynth.ready"  # a result under way, and one that is complete
+MANIFEST = "manifest.json"
+STOPPED = "stopped"  # the folder beside an earlier result, for what a stopped run has
+MOVE_PATIENCE = 30.0  # seconds to wait for another process that exchanges files; it takes far less than one
+JOIN_PATIENCE = 1.0  # seconds for another process of the same job to say which job it is
+PAUSE = 0.02
+NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
+
+
+# ---- kinds of results -----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class ResultKind:
+    """A result that a command writes into a folder.
+
+    ``command`` is what writes it, ``marks`` the files that tell that there is one, ``owned`` patterns of all its
+    files: what an earlier result has of them, and a new one has not, goes with the earlier one.
+    """
+
+    command: str
+    marks: tuple[str, ...]
+    owned: tuple[str, ...]
+
+
+FRONT = ResultKind(
+    "run",
+    ("front.json", "comparison.json"),
+    ("designs.csv", "front.json", "design_*.yaml", "robust.csv", "explanation.txt", "comparison.json", "families.csv"),
+)
+NEAR_EQUALS = ResultKind("near-equals", ("near_equals.json",), ("near_equals.csv", "near_equals.json", "design_*.yaml"))
+RATING = ResultKind("rate", ("rating.json",), ("rating.csv", "robust.csv", "rating.json"))
+PRICES = ResultKind("prices", ("prices.csv",), ("prices.csv", "prices.json"))
+EXPLANATION = ResultKind("explain", ("explanation.json",), ("explanation.csv", "explanation.json"))
+STUDY = ResultKind("whatif", ("whatif.csv",), ("whatif.csv", "breaks.csv", "whatif.svg", "fronts.svg"))
+BATCH = ResultKind("batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json"))
+SIZE_RANGE = ResultKind(
+    "size-range",
+    ("size_range.json",),
+    ("variants.csv", "assignment.csv", "unserved.csv", "curve.csv", "curve.svg", "size_range.json"),
+)
+KINDS = (FRONT, NEAR_EQUALS, RATING, PRICES, EXPLANATION, STUDY, BATCH, SIZE_RANGE)
+
+
+def holds(folder: Path, kind: ResultKind) -> bool:
+    """Tell whether a result of this kind stands in a folder."""
+    return any((folder / mark).exists() for mark in kind.marks)
+
+
+def check_kind(folder: Path, kind: ResultKind) -> None:
+    """Refuse a folder in which another command has files of the same names.
+
+    Raises
+    ------
+    InputError
+    """
+    for other in KINDS:
+        shared = sorted(set(other.owned) & set(kind.owned))
+        if other is not kind and shared and holds(folder, other):
+            wanted = f"another folder: {', '.join(shared)} of clutchsynth {other.command} would be lost"
+            raise InputError("output", str(folder), wanted)
+
+
+def save_result(
+    folder: str | Path,
+    files: Mapping[str, str],
+    kind: ResultKind,
+    stopped: bool,
+    supersedes: bool = False,
+    drop: Iterable[str] = (),
+) -> Path:
+    """Write a result: in the place of an earlier one if it is finished, beside it if it was stopped.
+
+    Parameters
+    ----------
+    folder : path
+    files : mapping
+        File name -> text; a name may lie in a folder below.
+    kind : ResultKind
+    stopped : bool
+        Whether it was stopped before it was finished.
+    supersedes : bool
+        Whether it contains everything that the earlier one has, so that it may take its place although it was stopped.
+    drop : iterable of str
+        Further files of the earlier result.
+
+    Returns
+    -------
+    Path
+        Where it stands: the folder, or one below it that is called ``stopped``.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written (then nothing has changed), or others write into it.
+    """
+    target = Path(folder)
+    with claimed(target):
+        check_kind(target, kind)
+        settle(target)
+        if stopped and not supersedes:
+            target = place_for_stopped(target, kind)
+        with replaced(target) as new:
+            for name, text in files.items():
+                new.write(name, text)
+            new.drop([*_left_behind(target, kind), *drop])
+    return target
+
+
+def loses_nothing(folder: Path, files: Mapping[str, str], names: Iterable[str], but: str = "") -> bool:
+    """Tell whether every line of these tables stands in the new ones too, but for those that contain a text."""
+    for name in names:
+        try:
+            earlier = (folder / name).read_text(encoding="utf-8").splitlines()
+        except OSError:
+            continue
+        except UnicodeDecodeError:
+            return False
+        known = set(files.get(name, "").splitlines())
+        if any(line not in known and not (but and but in line) for line in earlier):
+            return False
+    return True
+
+
+def save_files(folder: str | Path, files: Mapping[str, str], drop: Iterable[str] = ()) -> Path:
+    """Write files that belong together, all or none, and take others away with what they replace; return the folder.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written (then nothing has changed), or others write into it.
+    """
+    target = Path(folder)
+    with claimed(target), replaced(target) as new:
+        for name, text in files.items():
+            new.write(name, text)
+        new.drop(drop)
+    return target
+
+
+def place_for_stopped(folder: Path, kind: ResultKind) -> Path:
+    """Return where a run that is stopped leaves what it has: the folder, or one beside an earlier result in it."""
+    if not holds(folder, kind):
+        return folder
+    number = 1
+    while (place := folder / (STOPPED if number == 1 else f"{STOPPED}_{number}")).exists():
+        number += 1
+    return place
+
+
+def _left_behind(folder: Path, kind: ResultKind) -> list[str]:
+    """Return the files of an earlier result of a kind, those of the families of a comparison among them."""
+    names = [path.name for pattern in kind.owned for path in folder.glob(pattern)]
+    if kind is FRONT:
+        for family in _families(folder / "comparison.json"):
+            names += [f"{family}/{p.name}" for pattern in FRONT.owned for p in (folder / family).glob(pattern)]
+    return names
+
+
+def _families(path: Path) -> list[str]:
+    """Return the folders that an earlier comparison has made; none where its record cannot be read."""
+    try:
+        told = [entry["folder"] for entry in json.loads(path.read_text(encoding="utf-8"))["families"]]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return []
+    return [name for name in told if isinstance(name, str) and _is_inside(name) and "/" not in name]
+
+
+# ---- files that change together -------------------------------------------------------------------------------------
+
+
+class Replacement:
+    """Files that are about to take the place of others."""
+
+    def __init__(self, staging: Path) -> None:
+        self.staging = staging
+        self.names: list[str] = []
+        self.dropped: list[str] = []
+
+    def write(self, name: str, text: str) -> None:
+        """Write a file from its text."""
+        with self.open(name) as file:
+            file.write(file_text(name, text))
+
+    @contextmanager
+    def open(self, name: str) -> Iterator[TextIO]:
+        """Give a file to write into; it is on the disk when the block ends."""
+        if not _is_inside(name):
+            raise ValueError(name)
+        path = self.staged(name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("w", encoding="utf-8", newline="") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        self.names.append(name)
+
+    def staged(self, name: str) -> Path:
+        """Return where a file is that has been written."""
+        return self.staging / "files" / name
+
+    def drop(self, names: Iterable[str]) -> None:
+        """Take files away together with those that are replaced."""
+        self.dropped += names
+
+
+@contextmanager
+def replaced(folder: Path) -> Iterator[Replacement]:
+    """Give a place for new files of a folder; when the block ends they take their places, all or none.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written; then nothing has changed.
+    """
+    # What a stopped run has is saved although its user presses Ctrl-C again.
+    with held_back(), _told_of(folder), _present(folder), _moving(folder):
+        _move(folder)
+        new = Replacement(folder / NEW)
+        shutil.rmtree(new.staging, ignore_errors=True)  # of a process that was killed: this one holds the lock
+        try:
+            (new.staging / "files").mkdir(parents=True)
+            yield new
+            _complete(folder, new)
+            new.staging.rename(folder / READY)  # from here on the result is the new one
+        except BaseException:
+            shutil.rmtree(new.staging, ignore_errors=True)
+            raise
+        _sync(folder)
+        _move(folder)
+
+
+def settle(folder: Path) -> None:
+    """Finish what a process that was killed has left half done in a folder.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written.
+    """
+    if (folder / READY).is_dir():
+        with held_back(), _told_of(folder), _moving(folder):
+            _move(folder)
+
+
+def _complete(folder: Path, new: Replacement) -> None:
+    """Write what is to be moved and taken away; refuse what could not be moved later."""
+    for name in new.names:
+        place = folder / name
+        if place.is_dir():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(place))
+        place.parent.mkdir(parents=True, exist_ok=True)
+    dropped = sorted(set(new.dropped) - set(new.names))
+    text = json.dumps({"files": new.names, "dropped": dropped})
+    with (new.staging / MANIFEST).open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    for inner, _, _ in os.walk(new.staging):
+        _sync(Path(inner))
+
+
+def _move(folder: Path) -> None:
+    """Move a complete result to its place; what has been moved before is left."""
+    ready = folder / READY
+    try:
+        told = json.loads((ready / MANIFEST).read_text(encoding="utf-8"))
+        files = [str(name) for name in told["files"]]
+        dropped = [str(name) for name in told["dropped"]]
+    except FileNotFoundError:
+        shutil.rmtree(ready, ignore_errors=True)  # all was moved: the manifest goes last
+        return
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise InputError("output", str(folder), f"a folder of ours; what stands in {READY} is not") from error
+    if not all(_is_inside(name) for name in (*files, *dropped)):
+        raise InputError("output", str(folder), f"a folder of ours; what stands in {READY} is not")
+    for name in files:
+        if (ready / "files" / name).exists():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (ready / "files" / name).replace(folder / name)
+    for name in dropped:
+        (folder / name).unlink(missing_ok=True)
+        if "/" in name:
+            with suppress(OSError):  # other files are in it
+                (folder / name).parent.rmdir()
+    _sync(folder)
+    (ready / MANIFEST).unlink()
+    shutil.rmtree(ready, ignore_errors=True)
+
+
+def _is_inside(name: str) -> bool:
+    """Tell whether a name is one of a file in a folder or below it."""
+    parts = PurePosixPath(name).parts
+    return bool(parts) and ".." not in parts and not PurePosixPath(name).is_absolute() and "\0" not in name
+
+
+def _sync(folder: Path) -> None:
+    """Have the entries of a folder on the disk, where the system can."""
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+@contextmanager
+def _told_of(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise InputError("output", str(folder), f"a folder that can be written ({error.strerror})") from error
+
+
+# ---- who writes -----------------------------------------------------------------------------------------------------
+
+_claims: dict[tuple[str, int], int] = {}  # folder and thread -> how often it is claimed
+
+
+@contextmanager
+def claimed(folder: Path, job: str = "") -> Iterator[None]:
+    """Keep other programs out of a folder as long as results are made for it; what is empty afterwards goes.
+
+    Parameters
+    ----------
+    folder : Path
+        It is made where it is not there.
+    job : str
+        The name of a job that several processes may work at; they share the folder.
+
+    Raises
+    ------
+    InputError
+        Others write into it, or it cannot be written.
+    """
+    key = (str(folder.resolve()), threading.get_ident())
+    if key in _claims:
+        _claims[key] += 1
+        try:
+            yield
+        finally:
+            _claims[key] -= 1
+        return
+    with _present(folder):
+        with _told_of(folder):
+            handle = _lock(folder / LOCK, job, 0.0)
+        if handle is None:
+            wanted = f"a folder that nobody writes into at the moment{_who(folder / LOCK)}"
+            raise InputError("output", str(folder), wanted)
+        _claims[key] = 1
+        try:
+            yield
+        finally:
+            del _claims[key]
+            _unlock(folder / LOCK, handle)
+
+
+@contextmanager
+def _present(folder: Path) -> Iterator[None]:
+    """Make a folder where it is not there; what is still empty in the end goes again."""
+    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    if folder.exists() and not folder.is_dir():
+        raise InputError("output", str(folder), "a folder; this is a file")
+    with _told_of(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    finally:
+        for place in missing:
+            with suppress(OSError):  # there are results in it
+                place.rmdir()
+
+
+@contextmanager
+def _moving(folder: Path) -> Iterator[None]:
+    """Wait for others that exchange files of the folder, and keep them out."""
+    handle = _lock(folder / MOVING, "", MOVE_PATIENCE)
+    if handle is None:
+        raise InputError("output", str(folder), f"a folder that nobody writes into{_who(folder / MOVING)}")
+    try:
+        yield
+    finally:
+        _unlock(folder / MOVING, handle)
+
+
+def _lock(path: Path, job: str, patience: float) -> int | None:
+    """Return the handle of a locked file; None where somebody else has it.
+
+    The lock goes with its process, however that ends; the file alone means nothing.
+    """
+    begin = time.monotonic()
+    while True:
+        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        try:
+            taken = _has_lock(handle, shared=False)
+            if taken:
+                _sign(handle, job)
+            if job:
+                taken = _has_lock(handle, shared=True)
+            # Whoever let go of the file has taken it away, or another job came between.
+            if taken and _is_at(handle, path) and (not job or _signed(handle) == job):
+                return handle
+        except BaseException:
+            os.close(handle)
+            raise
+        os.close(handle)
+        if not taken or job:
+            if time.monotonic() - begin >= (JOIN_PATIENCE if job else patience):
+                return None
+            time.sleep(PAUSE)
+
+
+def _has_lock(handle: int, shared: bool) -> bool:
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+    except OSError as error:
+        if error.errno in NO_LOCKS:
+            return True
+        if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
+            return False
+        raise
+    return True
+
+
+def _unlock(path: Path, handle: int) -> None:
+    """Let go of a locked file; the last one takes it away."""
+    with suppress(OSError):
+        if _has_lock(handle, shared=False) and _is_at(handle, path):
+            path.unlink()
+    os.close(handle)
+
+
+def _is_at(handle: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(handle), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _sign(handle: int, job: str) -> None:
+    """Say who has the lock; where others may share it they must find the job."""
+    try:
+        os.ftruncate(handle, 0)
+        os.pwrite(handle, f"{job}\nprocess {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
+    except OSError:
+        if job:
+            raise
+
+
+def _signed(handle: int) -> str:
+    return os.pread(handle, 200, 0).decode(errors="replace").split("\n")[0]
+
+
+def _who(path: Path) -> str:
+    """Return in words who has a lock; nothing where that is not said."""
+    try:
+        with path.open(encoding="utf-8", errors="replace") as file:
+            lines = file.read(200).splitlines()
+    except OSError:
+        return ""
+    return f" ({lines[1]} does)" if len(lines) > 1 else ""
+
+
+def kept(place: Path, folder: Path) -> str:
+    """Return what is said where a stopped run stands beside an earlier result; nothing where it does not."""
+    return "" if place == folder else f"the earlier result in {folder} stays as it was, as this one is not finished"

@@ -1,0 +1,111 @@
+"""Text that does nothing but be read: no terminal escapes and reversed lines, no formulas in a table that is opened."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+# Control characters, what turns the direction of writing, separators that are no blank, halves of characters.
+UNSAFE = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufff9-\ufffb\ud800-\udfff]|\r(?!\n)"
+)
+# What programs for tables take for the beginning of a formula, the wide forms of it too.
+FORMULA = re.compile("'*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20]")
+NUMBER = re.compile(r"[-+](?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|inf|nan)")
+
+
+def printable(text: str) -> str:
+    r"""Return a text in which what acts on a terminal is written out, as in a Python string.
+
+    Examples
+    --------
+    >>> printable("core\x1b[2J 4"), printable("two\nlines")
+    ('core\\x1b[2J 4', 'two\nlines')
+    """
+    return UNSAFE.sub(_written_out, text)
+
+
+def escaped(text: str) -> str:
+    r"""Return a JSON text, or a YAML text in double quotes, in which such characters are escaped; it means the same.
+
+    Examples
+    --------
+    >>> escaped('"a\x9bb"')
+    '"a\\u009bb"'
+    """
+    return UNSAFE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def defused(text: str) -> str:
+    """Return the text of a cell as no program takes it for a formula: with an apostrophe before it. Numbers stay.
+
+    Examples
+    --------
+    >>> defused("=1+1"), defused("-5.3"), defused("core 4"), defused("-")
+    ("'=1+1", '-5.3', 'core 4', '-')
+    """
+    return f"'{text}" if len(text) > 1 and FORMULA.match(text) and not NUMBER.fullmatch(text) else text
+
+
+def as_meant(cell: str) -> str:
+    """Return what the text of a cell was before ``defused``.
+
+    Examples
+    --------
+    >>> as_meant("'=1+1"), as_meant("-5.3"), as_meant("'tis")
+    ('=1+1', '-5.3', "'tis")
+    """
+    return cell[1:] if cell.startswith("'") and FORMULA.match(cell) else cell
+
+
+def csv_cell(value: Any) -> Any:
+    """Return what is written into a cell of a table: numbers in full precision, text that does nothing."""
+    if isinstance(value, float):
+        return repr(value)
+    return "" if value is None else defused(printable(value)) if isinstance(value, str) else value
+
+
+def file_text(name: str, text: str) -> str:
+    """Return the text of a file as it is written: nothing in it acts on the terminal of whoever looks at it."""
+    if name.endswith((".yaml", ".yml")):
+        return text  # only what makes it knows which of its texts stand in quotes
+    return escaped(text) if name.endswith(".json") else printable(text)
+
+
+class PlainStream:
+    """A stream of text that writes out what acts on a terminal; all else is that of ``stream``."""
+
+    def __init__(self, stream: Any) -> None:
+        self.stream = stream
+
+    def write(self, text: str) -> int:
+        """Write a text."""
+        self.stream.write(printable(text))
+        return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Write several texts."""
+        for line in lines:
+            self.write(line)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.stream, name)
+
+
+@contextmanager
+def plain_streams() -> Iterator[None]:
+    """Let nothing that is printed act on the terminal."""
+    before = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (PlainStream(stream) for stream in before)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+
+
+def _written_out(found: re.Match[str]) -> str:
+    code = ord(found[0])
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
