@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.endtoend.entry import COMMAND, at_once, clutchsynth
+from tests.endtoend.test_choice_cli import SEVERAL
 from tests.endtoend.test_cli import HOIST, SMALL, refused
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
@@ -101,7 +102,7 @@ def test_a_search_that_is_stopped_stands_beside_the_earlier_result(out: Path, nu
 def test_other_questions_about_a_folder_keep_their_results_as_well(small: Path, tmp_path: Path, command: str) -> None:
     """Every command that searches: once to the end, once stopped at once."""
     spec, out = small / "small.yaml", tmp_path / "out"
-    (small / "several.yaml").write_text(SMALL.replace("multi_plate_clutch", "[multi_plate_clutch, roller_coupling]"))
+    (small / "several.yaml").write_text(SEVERAL)
     words, again = {
         "explain": (["explain", small / "tight.yaml"], []),
         "near-equals": (["near-equals", small / "out"], []),
