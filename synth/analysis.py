@@ -214,6 +214,7 @@ def offered(instance: Instance) -> dict[str, Any]:
         "counts": {n: len(v) for n, v in selection.counts.items()},
         "choices": {n: len(v) for n, v in selection.choices.items()},
         "rows_left_out": selection.left_out,
+        **({"combinations_left_out": instance.combinations_left_out} if instance.compared else {}),
         "not_asked": list(instance.not_asked),
     }
 

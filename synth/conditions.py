@@ -8,13 +8,15 @@
     test       = column ("==" | "!=" | "<" | "<=" | ">" | ">=") value
                | column ["not"] "in" "(" value {"," value} ")"
                | text ["not"] "in" column
-    value      = number | text
+    value      = number | text | slot.column
+    column     = name | slot.column
 
 A text stands in single or double quotes. A bare number is in the unit that the table's schema gives the column, a
 quoted one may have a unit of its own. ``'x' in column`` asks whether x is one of the items of a cell, which are
 separated by semicolons. A comparison with an empty cell of a column of numbers is false; an empty cell of text is the
 empty text.
-A column may be called by its symbol.
+A column may be called by its symbol. ``slot.column`` is a column of the row in another slot: such comparisons are for
+:mod:`synth.slot_comparison`, a table alone cannot answer them.
 """
 
 from __future__ import annotations
@@ -38,6 +40,7 @@ _TOKENS = re.compile(
     r"""(?P<space>\s+)
     |(?P<number>[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w.]))
     |(?P<text>'[^']*'|"[^"]*")
+    |(?P<path>[^\W\d]\w*\.[^\W\d]\w*)
     |(?P<name>[^\W\d]\w*)
     |(?P<op>==|!=|<=|>=|<(?!>)|>)
     |(?P<mark>[(),])""",
@@ -63,26 +66,32 @@ class _Token:
 
 
 @dataclass(frozen=True)
-class _Value:
-    """A value as written; quoted or a bare number."""
+class Value:
+    """A value as written: quoted, a bare number, or a column of a slot."""
 
     text: str
     quoted: bool
     position: int
+    column: bool = False
 
 
 @dataclass(frozen=True)
-class _Test:
+class Test:
     """Column against one value, or against a list for ``in``."""
 
     column: str
     op: str
-    values: tuple[_Value, ...]
+    values: tuple[Value, ...]
     position: int
+
+    @property
+    def compares_slots(self) -> bool:
+        """Whether the row of one slot cannot answer it."""
+        return "." in self.column or any(value.column for value in self.values)
 
 
 @dataclass(frozen=True)
-class _Member:
+class Member:
     """Item of a cell."""
 
     item: str
@@ -91,19 +100,21 @@ class _Member:
 
 
 @dataclass(frozen=True)
-class _Not:
-    part: _Node
+class Negation:
+    """What must not hold."""
+
+    part: Node
 
 
 @dataclass(frozen=True)
-class _Junction:
+class Junction:
     """All (``and``) or any (``or``) of the parts."""
 
     every: bool
-    parts: tuple[_Node, ...]
+    parts: tuple[Node, ...]
 
 
-_Node = _Test | _Member | _Not | _Junction
+Node = Test | Member | Negation | Junction
 
 
 @dataclass(frozen=True)
@@ -120,10 +131,28 @@ class Condition:
 
     text: str
     columns: frozenset[str]
-    _root: _Node = field(repr=False, compare=False)
+    _root: Node = field(repr=False, compare=False)
 
     def __str__(self) -> str:
         return self.text
+
+    @property
+    def compares_slots(self) -> bool:
+        """Whether it names columns of slots, so that one table alone cannot answer it."""
+        return _compares_slots(self._root)
+
+    def joint(self) -> Node:
+        """Return the parts, all of which must hold, that compare slots."""
+        return Junction(True, tuple(part for part in self._parts() if _compares_slots(part)))
+
+    def local(self) -> Condition:
+        """Return the condition without the parts that compare slots; it may ask nothing."""
+        parts = tuple(part for part in self._parts() if not _compares_slots(part))
+        return Condition(self.text, self.columns, Junction(True, parts))
+
+    def _parts(self) -> tuple[Node, ...]:
+        root = self._root
+        return root.parts if isinstance(root, Junction) and root.every else (root,)
 
     def mask(self, table: Table) -> BoolArray:
         """Rows for which the condition holds.
@@ -145,29 +174,32 @@ class Condition:
         """
         return self._evaluate(self._root, table)
 
-    def _evaluate(self, node: _Node, table: Table) -> BoolArray:
-        if isinstance(node, _Not):
+    def _evaluate(self, node: Node, table: Table) -> BoolArray:
+        if isinstance(node, Negation):
             return ~self._evaluate(node.part, table)
-        if isinstance(node, _Junction):
-            masks = [self._evaluate(part, table) for part in node.parts]
+        if isinstance(node, Junction):
+            masks = [np.full(len(table), node.every), *(self._evaluate(part, table) for part in node.parts)]
             return np.asarray(
                 np.logical_and.reduce(masks) if node.every else np.logical_or.reduce(masks), dtype=np.bool_
             )
+        if isinstance(node, Test) and node.compares_slots:
+            right = "columns of this table: other slots are for the conditions under parts"
+            raise self.wrong(node.position, node.column, right)
         try:
             column = table.column(node.column)
         except InputError as error:
-            raise self._wrong(node.position, node.column, error.expected) from None
-        if isinstance(node, _Member):
+            raise self.wrong(node.position, node.column, error.expected) from None
+        if isinstance(node, Member):
             if column.numeric:
                 right = f"a column of text after 'in'; {column.name} has numbers, compare them with == or <"
-                raise self._wrong(node.position, node.column, right)
+                raise self.wrong(node.position, node.column, right)
             items = [{item.strip() for item in cell.split(";")} for cell in table.text(column.name)]
             return np.array([node.item in some for some in items], dtype=np.bool_)
         if column.numeric:
             return self._numbers(node, table)
         return self._texts(node, table)
 
-    def _numbers(self, test: _Test, table: Table) -> BoolArray:
+    def _numbers(self, test: Test, table: Table) -> BoolArray:
         column = table.column(test.column)
         cells = table.number(column.name)
         masks = []
@@ -175,24 +207,33 @@ class Condition:
             try:
                 limit = parse_quantity(value.text, column.scale, column.name)
             except InputError as error:
-                raise self._wrong(value.position, value.text, f"{error.expected} (column {column.heading})") from None
+                raise self.wrong(value.position, value.text, f"{error.expected} (column {column.heading})") from None
             masks.append(_COMPARE["==" if test.op == "in" else test.op](cells, limit))
         return np.asarray(np.logical_or.reduce(masks), dtype=np.bool_)
 
-    def _texts(self, test: _Test, table: Table) -> BoolArray:
+    def _texts(self, test: Test, table: Table) -> BoolArray:
         for value in test.values:
             if not value.quoted:
                 right = f"a text in quotes, '{value.text}', since {test.column} is a column of text"
-                raise self._wrong(value.position, value.text, right)
+                raise self.wrong(value.position, value.text, right)
         if test.op not in ("==", "!=", "in"):
             right = f"== or != or in for {test.column}, which is a column of text"
-            raise self._wrong(test.position, f"{test.column} {test.op}", right)
+            raise self.wrong(test.position, f"{test.column} {test.op}", right)
         wanted = {value.text for value in test.values}
         found = np.array([cell in wanted for cell in table.text(test.column)], dtype=np.bool_)
         return ~found if test.op == "!=" else found
 
-    def _wrong(self, position: int, found: str, expected: str) -> InputError:
+    def wrong(self, position: int, found: str, expected: str) -> InputError:
+        """Return the error that points at a place of the condition."""
         return _error(self.text, position, found, expected)
+
+
+def _compares_slots(node: Node) -> bool:
+    if isinstance(node, Negation):
+        return _compares_slots(node.part)
+    if isinstance(node, Junction):
+        return any(_compares_slots(part) for part in node.parts)
+    return isinstance(node, Test) and node.compares_slots
 
 
 def _error(text: str, position: int, found: str, expected: str) -> InputError:
@@ -269,7 +310,7 @@ class _Parser:
             return token
         return None
 
-    def parse(self) -> _Node:
+    def parse(self) -> Node:
         node = self.any_of()
         if self.token.kind != "end":
             raise self.wrong(self.after_test())
@@ -289,25 +330,25 @@ class _Parser:
             )
         return "and, or, or the end of the condition"
 
-    def any_of(self) -> _Node:
+    def any_of(self) -> Node:
         parts = [self.all_of()]
         while self.take("or"):
             parts.append(self.all_of())
-        return parts[0] if len(parts) == 1 else _Junction(False, tuple(parts))
+        return parts[0] if len(parts) == 1 else Junction(False, tuple(parts))
 
-    def all_of(self) -> _Node:
+    def all_of(self) -> Node:
         parts = [self.negation()]
         while self.take("and"):
             parts.append(self.negation())
-        return parts[0] if len(parts) == 1 else _Junction(True, tuple(parts))
+        return parts[0] if len(parts) == 1 else Junction(True, tuple(parts))
 
-    def negation(self) -> _Node:
+    def negation(self) -> Node:
         self.depth += 1
         if self.depth > _DEEPEST:
             raise self.wrong(f"at most {_DEEPEST} brackets and nots inside each other")
         try:
             if self.take("not"):
-                return _Not(self.negation())
+                return Negation(self.negation())
             if self.take("("):
                 node = self.any_of()
                 if not self.take(")"):
@@ -317,27 +358,28 @@ class _Parser:
         finally:
             self.depth -= 1
 
-    def test(self) -> _Node:
+    def test(self) -> Node:
         first = self.token
         if first.kind == "text":
             return self.membership()
         if first.kind == "number":
             raise self.wrong("the column first, then the comparison: mu_dynamic > 0.1")
-        if first.kind != "name":
+        if first.kind not in ("name", "path"):
             raise self.wrong("a column, or a text in quotes before 'in'")
         self.next += 1
-        self.columns.add(first.text)
+        if first.kind == "name":
+            self.columns.add(first.text)
         operator = self.token
         if operator.kind == "op":
             self.next += 1
-            return _Test(first.text, operator.text, (self.value(),), first.position)
+            return Test(first.text, operator.text, (self.value(first.kind == "path"),), first.position)
         negated = self.take("not")
         if self.take("in"):
-            found = _Test(first.text, "in", self.values(), first.position)
-            return _Not(found) if negated else found
+            found = Test(first.text, "in", self.values(), first.position)
+            return Negation(found) if negated else found
         raise self.wrong("one of == != < <= > >= in after a column")
 
-    def membership(self) -> _Node:
+    def membership(self) -> Node:
         item = self.value()
         negated = self.take("not")
         if not self.take("in"):
@@ -347,10 +389,10 @@ class _Parser:
             raise self.wrong("a column after 'in'")
         self.next += 1
         self.columns.add(column.text)
-        found = _Member(item.text, column.text, column.position)
-        return _Not(found) if negated else found
+        found = Member(item.text, column.text, column.position)
+        return Negation(found) if negated else found
 
-    def values(self) -> tuple[_Value, ...]:
+    def values(self) -> tuple[Value, ...]:
         if not self.take("("):
             raise self.wrong("a list in round brackets after 'in': ('dry', 'oil')")
         values = [self.value()]
@@ -360,14 +402,22 @@ class _Parser:
             raise self.wrong("a comma or a closing bracket")
         return tuple(values)
 
-    def value(self) -> _Value:
+    def value(self, beside_slot: bool = False) -> Value:
+        """Read a value; beside a column of another slot it may be a column of this one."""
         token = self.token
+        if token.kind == "name" and beside_slot:
+            self.next += 1
+            self.columns.add(token.text)
+            return Value(token.text, False, token.position, column=True)
         if token.kind == "text":
             self.next += 1
-            return _Value(token.text[1:-1], True, token.position)
+            return Value(token.text[1:-1], True, token.position)
         if token.kind == "number":
             self.next += 1
-            return _Value(token.text, False, token.position)
+            return Value(token.text, False, token.position)
+        if token.kind == "path":
+            self.next += 1
+            return Value(token.text, False, token.position, column=True)
         if token.kind == "name":
             raise self.wrong(f"a number or a text in quotes: '{token.text}'")
         raise self.wrong("a number or a text in quotes")

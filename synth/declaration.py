@@ -11,6 +11,7 @@ import numpy as np
 
 from synth.errors import InputError, UnknownOptionError
 from synth.margins import within
+from synth.tables import CODE_OF
 from synth.units import parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -155,6 +156,10 @@ class Part:
             right = f"a number column, which slot {self.slot} uses"
             raise InputError(f"table {self.table}, column {column}", None, right, ("catalogs", self.table, column))
         return self._symbol((column,), required=True)
+
+    def code(self, column: str) -> Any:
+        """Return a number that stands for the text of a column: the same in all tables for the same text."""
+        return self._symbol((f"{CODE_OF}{column}",), required=True)
 
     def optional(self, column: str) -> Any:
         """Return a column that table or row may lack; limits that use it are void there."""

@@ -13,7 +13,6 @@ import numpy as np
 from synth import deadline
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.compilation import switched_on
-from synth.declaration import Refusal
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
@@ -23,8 +22,8 @@ from synth.native import COMPILED_FROM
 from synth.native_tree import CapTables
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
-from synth.program import Program
 from synth.propagation import Propagation
+from synth.refused_cells import RefusedCells
 
 CHUNK = 4096
 # Work of the solver, as ``Formulation.work`` counts it, that costs about as much as compiling it.
@@ -253,6 +252,7 @@ class Formulation:
     def _begin(self) -> None:
         """Know no design yet, and count from nothing."""
         self.cells = self.propagation.cells
+        self.refused_cells = RefusedCells(self.instance, self.cells)
         self.archive = Archive(range(self.traded), self.n, len(self.goals))
         self.contracted = 0
         self.nlp_solves = 0
@@ -329,15 +329,9 @@ class Formulation:
         keep, instance, d = np.ones(len(combinations), dtype=bool), moved or self.instance, self.model.declaration
         every = [r for r, kinds in zip(d.refusals, self.model.refusal_kinds, strict=True) if kinds]
         for refusal in instance.joint_refusals if moved is None else every:
-            refused = self._refusal_function(refusal)
+            refused = self.model.refused(refusal)
             keep &= ~(np.asarray(refused([None] * self.n + instance.data(combinations))[0]) > 0.5)
         return keep
-
-    def _refusal_function(self, refusal: Refusal) -> Any:
-        model = self.model
-        return model.function(
-            ("refusal", id(refusal)), lambda: Program(model.inputs, [refusal.when], model.calls).compile()
-        )
 
     def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
@@ -410,6 +404,7 @@ class Formulation:
         return self._without_refused(result) if self.instance.joint_refusals else result
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
+        boxes = boxes.take(self.refused_cells.may_be_allowed(boxes.cell))
         keep = ~self.cells.single(boxes.cell)
         single = ~keep
         keep[single] = self.not_refused(self.combination(boxes.take(single)))

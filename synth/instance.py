@@ -21,8 +21,9 @@ from synth.declaration import Part, Refusal
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import above, within
-from synth.model import part_column_value
+from synth.model import Model, part_column_value
 from synth.problem import DesignProblem
+from synth.slot_comparison import SlotComparison, comparisons_of
 from synth.special import expanded
 from synth.tables import Catalogs, Table
 from synth.units import format_quantity, from_si, parse_quantity, parse_unit
@@ -30,6 +31,8 @@ from synth.units import format_quantity, from_si, parse_quantity, parse_unit
 SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
 CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*(.+)$", re.DOTALL)
+
+MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
 
 _shipped: dict[str, Catalogs] = {}
 
@@ -185,7 +188,8 @@ class Instance:
         asked = known_requirements(problem, requirements, catalogs)
         self.problem = problem
         self.catalogs = catalogs
-        self.model = problem.model(frozenset(asked), catalogs)
+        rules = as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}") if restrict else {}
+        self.compared, self.model = self._traced(frozenset(asked), rules)
         self.grid = grid
         d = self.model.declaration
         self.requirements = self._requirement_values(asked)
@@ -213,14 +217,25 @@ class Instance:
                 self._pin(name, value)
         self.selection = Selection()
         if restrict:
-            self._select_rows(as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}"))
+            self._select_rows(rules)
             self._select_counts()
             self._refuse_rows()
+            self._refuse_without_partner()
         self.apart = 0  # factors, from the first, that tell questions apart and are not for the search to choose
         self.radix = [len(s.rows) for s in self.selection.slots]
         self.radix += [len(v) for v in self.selection.counts.values()]
         self.radix += [len(v) for v in self.selection.choices.values()]
         self.combinations = math.prod(self.radix)
+
+    def _traced(self, given: frozenset[str], rules: Mapping[str, Any]) -> tuple[tuple[SlotComparison, ...], Model]:
+        """Return the conditions that compare slots, and the model that refuses what they exclude."""
+        plain = self.problem.model(given, self.catalogs)
+        slots = plain.declaration.slots
+        named = plain.by_name(rules, "parts", list(slots), "a slot")
+        compared = comparisons_of(
+            {s: r for s, r in named.items() if r not in self.catalogs.table(slots[s].table).designations}
+        )
+        return compared, self.problem.model(given, self.catalogs, compared) if compared else plain
 
     # -- requirements --------------------------------------------------------------------------
 
@@ -512,7 +527,7 @@ class Instance:
     def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
         keep = np.zeros(len(table), dtype=bool)
         if isinstance(rule, str) and rule not in table.designations and may_be_condition(rule):
-            return parse_condition(rule).mask(table)
+            return parse_condition(rule).local().mask(table)
         if not isinstance(rule, (str, Sequence)):
             raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")
         if isinstance(rule, str):
@@ -615,6 +630,47 @@ class Instance:
             selection.counts[name] = selection.counts[name][~bad]
         else:
             selection.choices[name] = selection.choices[name][~bad]
+
+    def _refuse_without_partner(self) -> None:
+        """Leave out rows that go with no row of another slot that they are compared with; count what is refused."""
+        model, count = self.model, len(self.compared)
+        every = list(zip(model.declaration.refusals, model.refusal_kinds, strict=True))
+        self.combinations_left_out: list[str] = []
+        for comparison, (refusal, names) in zip(self.compared, every[len(every) - count :], strict=True):
+            slots = [s for s in self.selection.slots if s.slot in names]
+            if len(slots) < 2 or math.prod(len(s.rows) for s in slots) > MOST_COMPARED:
+                continue
+            allowed = self.allowed_together(refusal, slots)
+            for axis, slot in enumerate(slots):
+                keep = allowed.any(axis=tuple(k for k in range(len(slots)) if k != axis))
+                others = ", ".join(s.slot for s in slots if s is not slot)
+                for k in np.flatnonzero(~keep):
+                    label = slot.table.designations[slot.rows[k]]
+                    self._leave_out(slot.slot, label, f"no row of {others} goes with it: {comparison}")
+                if not keep.any():
+                    right = f"a condition that some rows of {slot.slot} and {others} meet"
+                    raise InputError(f"parts: {comparison.slot}", comparison.text, right, ("parts", comparison.slot))
+                self.selection.slots[self.selection.slots.index(slot)] = SlotRows(
+                    slot.slot, slot.table, slot.rows[keep], {key: v[keep] for key, v in slot.columns.items()}
+                )
+                allowed = np.compress(keep, allowed, axis=axis)
+            rest = math.prod(len(s.rows) for s in self.selection.slots if s.slot not in names)
+            rest *= math.prod(len(v) for v in (*self.selection.counts.values(), *self.selection.choices.values()))
+            excluded, total = int((~allowed).sum()) * rest, allowed.size * rest
+            self.combinations_left_out.append(f"{comparison}: {excluded} of {total}")
+
+    def allowed_together(self, refusal: Any, slots: Sequence[SlotRows]) -> np.ndarray:
+        """Return which rows of some slots a refusal allows together; one axis per slot."""
+        model, shape = self.model, tuple(len(s.rows) for s in slots)
+        symbols = {}
+        for axis, slot in enumerate(slots):
+            spread = [1] * len(slots)
+            spread[axis] = -1
+            for key, values in slot.columns.items():
+                symbols[f"{slot.slot}.{key}"] = np.broadcast_to(values.reshape(spread), shape).ravel()
+        data = [symbols.get(entry.label) if entry.kind == "part" else None for entry in model.data_inputs]
+        refused = model.refused(refusal)([None] * len(model.variables) + data)[0]
+        return ~(np.broadcast_to(np.asarray(refused), (math.prod(shape),)).reshape(shape) > 0.5)
 
     def _stepped_labels(self, name: str) -> list[str]:
         """Return the values of a count, or the labels of a choice, that remain."""

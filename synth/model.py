@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.declaration import Declaration, DeclarationError, Limit, Part, PartColumn
+from synth.declaration import Declaration, DeclarationError, Limit, Part, PartColumn, Refusal
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
@@ -250,6 +250,12 @@ class Model:
         for k in self.void_inputs[limit]:
             gone |= np.isnan(np.asarray(data[k], dtype=float))
         return gone
+
+    def refused(self, refusal: Refusal) -> Any:
+        """Return the function that evaluates a refusal for batches of inputs."""
+        return self.function(
+            ("refusal", id(refusal)), lambda: Program(self.inputs, [refusal.when], self.calls).compile()
+        )
 
     def function(self, key: Any, make: Callable[[], Any]) -> Any:
         """Return an object that is built once per model, for example a CasADi function or a solver."""

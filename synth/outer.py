@@ -113,6 +113,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> 
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
         "ranges": [instance.lower.tolist(), instance.upper.tolist(), bool(instance.grid)],
         "limits": [repr(x) for x in instance.extra],
+        "compared": [str(x) for x in instance.compared],
         "objectives": dict(objectives),
         "seed": seed,
     }

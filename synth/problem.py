@@ -11,6 +11,7 @@ from synth.declaration import Declaration, DeclarationError, Setting
 from synth.errors import InputError
 from synth.interrupts import held_back
 from synth.model import Model
+from synth.slot_comparison import SlotComparison, refusal_of
 from synth.special import recorded
 from synth.tables import Catalogs
 
@@ -63,7 +64,7 @@ class DesignProblem:
         if not self.name:
             raise DeclarationError(f"{type(self).__name__} needs a class attribute 'name'")
         self.options = dict(options)
-        self._models: dict[tuple[frozenset[str], int], tuple[Model, Catalogs]] = {}
+        self._models: dict[tuple[frozenset[str], int, tuple[SlotComparison, ...]], tuple[Model, Catalogs]] = {}
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, parts, limits and objectives on ``d``."""
@@ -110,13 +111,14 @@ class DesignProblem:
         chosen: str = model.declaration.options[name].chosen
         return chosen
 
-    def model(self, given: frozenset[str], catalogs: Catalogs) -> Model:
-        """Trace the problem once for the set of requirements given and the catalogues in force."""
-        key = (given, id(catalogs))
+    def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
+        """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
+        key = (given, id(catalogs), compared)
         if key not in self._models:
             declaration = Declaration(self.name, self.options, given, catalogs)
             with held_back(), recorded() as calls:
                 self.declare(declaration)
+                declaration.refusals += [refusal_of(comparison, declaration) for comparison in compared]
                 made = Model(self.name, declaration, calls)
             # The catalogues are kept with the model, so that their id stays theirs.
             self._models[key] = (made, catalogs)

@@ -18,6 +18,7 @@ from synth.declaration import Limit, Objective, Variable
 from synth.instance import ExtraLimit, Instance
 from synth.model import Model
 from synth.problem import DesignProblem
+from synth.slot_comparison import SlotComparison
 from synth.special import expanded
 from synth.tables import Catalogs
 
@@ -54,8 +55,8 @@ class Relaxed(DesignProblem):
         self._instance, self._own, self._give, self._kept = instance, own, give, kept
         self._model = self._traced()
 
-    def model(self, given: frozenset[str], catalogs: Catalogs) -> Model:
-        """Return the relaxed model; there is one, for the requirements and tables of the question."""
+    def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
+        """Return the relaxed model; there is one, for the requirements, tables and comparisons of the question."""
         return self._model
 
     def _traced(self) -> Model:
@@ -85,13 +86,15 @@ class Relaxed(DesignProblem):
         target.limits = {x.name: loosened(x) for x in limits if x.guard or x.name in self._kept}
         # What is refused for a requirement that moves is refused where it has moved to: that is a limit.
         target.refusals = []
-        for refusal in source.refusals:
+        own = len(source.refusals) - len(self._instance.compared)
+        for refusal in source.refusals[:own]:
             when = moved(expanded(refusal.when, original.calls))
             if any(str(s) == AMOUNT for s in ca.symvar(when)):
                 name = f"refused: {refusal.code}"
                 target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", when, ca.SX(0.5), False, 1e-9)
             else:
                 target.refusals.append(refusal)
+        target.refusals += source.refusals[own:]  # rows are compared as they are, whatever gives way
         target.variables = {**source.variables, AMOUNT: amount}
         target.objectives = {AMOUNT: Objective(AMOUNT, "min", True), **source.objectives}
         target.advices = []

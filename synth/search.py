@@ -98,7 +98,7 @@ def synthesize(
     catalogs : folder or mapping, optional
         Own part tables; others stay the shipped ones.
     parts : mapping, optional
-        Slot -> list of designations, or a condition on columns.
+        Slot -> list of designations, or a condition on columns, of other slots too: "thickness == other.thickness".
     limits : mapping, optional
         Quantity -> "<= 260 mm", "200 mm .. 260 mm", "== 4", or a list of them; count -> a set, [8, 12, 16].
     fix : mapping, optional

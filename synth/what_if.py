@@ -302,6 +302,7 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
         "ranges": [instance.lower.tolist(), instance.upper.tolist()],
         "grids": [hashlib.sha256(g.tobytes()).hexdigest() for g in instance.grids()],
         "limits": [repr(x) for x in instance.extra],
+        "compared": [str(x) for x in instance.compared],
         "objectives": dict(question.chosen),
         "settings": {k: repr(v) for k, v in settings.items()},
         "robust": None if rater is None else rater.asked.block(),

@@ -113,6 +113,8 @@ class _VariantColumns:
         d = model.declaration
         count = len(variants)
         self.count = count
+        self._made = structure, variants
+        self._of: dict[Model, _VariantColumns] = {model: self}
         self.complete = np.ones(count, dtype=bool)
         self.values = np.full((count, len(model.variables)), np.nan)
         self.counts: dict[str, FloatArray] = {}
@@ -143,6 +145,12 @@ class _VariantColumns:
                 self.columns[slot, key] = np.where(rows >= 0, values[rows], np.nan)
                 if column.required:
                     self.complete &= ~np.isnan(self.columns[slot, key])
+
+    def of(self, model: Model) -> _VariantColumns:
+        """Return the columns of the same variants for another model: a question may compare slots by more of them."""
+        if model not in self._of:
+            self._of[model] = _VariantColumns(model, *self._made)
+        return self._of[model]
 
 
 def _evaluate(
@@ -202,7 +210,8 @@ def _serves(
         for extra in instance.extra:
             missed = residual(evaluation.values[extra.quantity][pairs], extra.limit, extra.sense, 1e-9)
             allowed &= np.asarray(holds(missed, guard=False))
-        allowed &= ~_refused(model, instance, columns, used)
+        compared = columns.of(instance.model)
+        allowed &= compared.complete & ~_refused(instance.model, instance, compared, used)
         serves[pairs] &= allowed
     return np.asarray(serves)
 

@@ -1,5 +1,6 @@
 """Every family checks what exists: sizes outside the range that is searched, sets of counts, parts that match."""
 
+import itertools
 import math
 
 import casadi as ca
@@ -121,3 +122,50 @@ def instance_steps(instance, name):
     """Return the steps of a count that nothing but a set could leave out."""
     refused = {e["designation"] for e in instance.selection.left_out if e["slot"] == name}
     return [x for x in instance.model.declaration.counts[name].values if f"{x:g}" not in refused]
+
+
+def comparable(instance):
+    """Return two slots that share a column of numbers with different values, and the column."""
+    slots = instance.model.declaration.slots
+    tables = {name: instance.catalogs.table(part.table) for name, part in slots.items()}
+    for (one, first), (two, second) in itertools.combinations(tables.items(), 2):
+        for name, column in first.columns.items():
+            if column.numeric and second.has(name) and second.column(name).scale.kind == column.scale.kind:
+                if len(set(first.number(name)[~np.isnan(first.number(name))])) > 1:
+                    return one, two, name
+    return None
+
+
+def test_slots_that_share_a_column_may_be_compared(found):
+    family, case, instance, design = found
+    shared = comparable(instance)
+    if shared is None:
+        return
+    one, two, column = shared
+    row = design.parts[one][column], design.parts[two][column]
+    sign = ">" if row[0] > row[1] else "<" if row[0] < row[1] else "=="
+    rules = {n: r for n, r in (case.settings.get("parts") or {}).items() if n not in (one, two)}
+    fix = {n: v for n, v in (case.settings.get("fix") or {}).items() if n not in (one, two)}
+    texts = {">": ("<=", f"{column} > {two}.{column}"), "<": (">=", f"{column} < {two}.{column}")}
+    against, text = texts.get(sign, ("!=", f"{column} == {two}.{column}"))
+
+    def left(rule):
+        problem = synth.load(family, **case.options)
+        posed = Instance(
+            problem, case.requirements, as_catalogs(None), {**rules, one: rule}, case.settings.get("limits"), fix
+        )
+        slots = {s.slot: s for s in posed.selection.slots}
+        refusal = posed.model.declaration.refusals[-1]
+        return posed, posed.allowed_together(refusal, [slots[one], slots[two]]), slots
+
+    posed, allowed, slots = left(text)
+    a, b = (slots[name].table.number(column)[slots[name].rows] for name in (one, two))
+    compare = {">": np.greater, "<": np.less, "==": np.equal}[sign]
+    np.testing.assert_array_equal(allowed if list(slots).index(one) < list(slots).index(two) else allowed.T,
+                                  compare(a[:, None], b[None, :]))  # fmt: skip
+    assert allowed.any(axis=0).all()
+    assert allowed.any(axis=1).all()
+    assert posed.combinations_left_out
+    assert str(design.parts[one]) in {slots[one].table.designations[r] for r in slots[one].rows}
+    _, others, _ = left(f"{column} {against} {two}.{column}")
+    assert others.any()

@@ -113,7 +113,7 @@ def test_columns() -> None:
         ("mu > 1 and", 11, "a column"),
         ("mu > 1 mu < 2", 8, "and, or"),
         ("mu not > 3", 8, "after a column"),
-        ("mu.real > 3", 3, "a column, one of"),
+        ("mu.real.x > 3", 8, "a column, one of"),
         ("__import__('os')", 11, "after a column"),
         ("(" * 60 + "mu > 1" + ")" * 60, 51, "at most 50"),
         ("not " * 60 + "mu > 1", 201, "at most 50"),
