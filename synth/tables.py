@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 
 from synth.errors import InputError, at
 from synth.files import read_bytes
+from synth.plain_text import as_meant
 from synth.units import Unit, check_number, from_si, header, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
@@ -303,6 +304,8 @@ class Table:
         InputError
             There is none; close designations are listed.
         """
+        if designation not in self._rows:
+            designation = as_meant(designation)  # as a table that we have written shows it
         if designation not in self._rows:
             known = f"a designation of this table, {_close(str(designation), self.designations)}"
             raise InputError(
