@@ -21,6 +21,7 @@ from pathlib import Path, PurePosixPath
 from typing import TextIO
 
 from synth.errors import InputError
+from synth.files import read_json
 from synth.interrupts import held_back
 from synth.plain_text import file_text
 
@@ -37,6 +38,7 @@ STOPPED = "stopped"  # the folder beside an earlier result, for what a stopped r
 MOVE_PATIENCE = 30.0  # seconds to wait for another process that exchanges files; it takes far less than one
 JOIN_PATIENCE = 1.0  # seconds for another process of the same job to say which job it is
 PAUSE = 0.02
+SAFELY = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0)
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
 
 
@@ -76,8 +78,19 @@ KINDS = (FRONT, NEAR_EQUALS, RATING, PRICES, EXPLANATION, STUDY, BATCH, SIZE_RAN
 
 
 def holds(folder: Path, kind: ResultKind) -> bool:
-    """Tell whether a result of this kind stands in a folder."""
-    return any((folder / mark).exists() for mark in kind.marks)
+    """Tell whether a result of this kind stands in a folder; a search that was stopped before any design left none."""
+    return any((folder / mark).exists() and not _found_nothing(folder / mark, kind) for mark in kind.marks)
+
+
+def _found_nothing(record: Path, kind: ResultKind) -> bool:
+    """Tell whether a record says that a search was stopped before it had found anything."""
+    if kind is not FRONT:
+        return False
+    try:
+        content = read_json(record, "front", "a front")
+        return bool(content["interrupted"]) and not content["designs"]
+    except (ValueError, KeyError, TypeError):
+        return False
 
 
 def check_kind(folder: Path, kind: ResultKind) -> None:
@@ -193,8 +206,8 @@ def _left_behind(folder: Path, kind: ResultKind) -> list[str]:
 def _families(path: Path) -> list[str]:
     """Return the folders that an earlier comparison has made; none where its record cannot be read."""
     try:
-        told = [entry["folder"] for entry in json.loads(path.read_text(encoding="utf-8"))["families"]]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        told = [entry["folder"] for entry in read_json(path, "comparison", "a comparison")["families"]]
+    except (ValueError, KeyError, TypeError):
         return []
     return [name for name in told if isinstance(name, str) and _is_inside(name) and "/" not in name]
 
@@ -423,7 +436,11 @@ def _lock(path: Path, job: str, patience: float) -> int | None:
     """
     begin = time.monotonic()
     while True:
-        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        try:
+            handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
+        except PermissionError:
+            _take_away(path)
+            handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
         try:
             taken = _has_lock(handle, shared=False)
             if taken:
@@ -441,6 +458,16 @@ def _lock(path: Path, job: str, patience: float) -> int | None:
             if time.monotonic() - begin >= (JOIN_PATIENCE if job else patience):
                 return None
             time.sleep(PAUSE)
+
+
+def _take_away(path: Path) -> None:
+    """Take away what somebody else has left whose program is gone; it is in the way where one cannot write into it."""
+    handle = os.open(path, os.O_RDONLY | SAFELY)
+    try:
+        if _has_lock(handle, shared=False) and _is_at(handle, path):
+            path.unlink()
+    finally:
+        os.close(handle)
 
 
 def _has_lock(handle: int, shared: bool) -> bool:
@@ -494,8 +521,3 @@ def _who(path: Path) -> str:
     except OSError:
         return ""
     return f" ({lines[1]} does)" if len(lines) > 1 else ""
-
-
-def kept(place: Path, folder: Path) -> str:
-    """Return what is said where a stopped run stands beside an earlier result; nothing where it does not."""
-    return "" if place == folder else f"the earlier result in {folder} stays as it was, as this one is not finished"

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
-from synth.files import csv_writer
+from synth.files import csv_writer, read_json
 from synth.front_record import installed_versions
 from synth.jobs.store import DONE, Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
@@ -78,8 +78,8 @@ def _job_in(folder: Path) -> str | None:
     if not holds(folder, BATCH):
         return None
     try:
-        return str(json.loads((folder / "batch.json").read_text(encoding="utf-8"))["job"])
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return str(read_json(folder / "batch.json", "batch", "a batch")["job"])
+    except (ValueError, KeyError, TypeError):
         return ""
 
 

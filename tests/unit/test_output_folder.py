@@ -68,6 +68,16 @@ def test_a_stopped_result_stands_in_the_folder_where_there_is_no_other(tmp_path:
     assert {k: v for k, v in texts(tmp_path).items() if "/" not in k} == FRESH
 
 
+def test_a_search_that_was_stopped_before_it_found_anything_is_no_result(tmp_path: Path) -> None:
+    nothing = {"front.json": json.dumps({"interrupted": "time limit", "designs": []}), "designs.csv": "rank\n"}
+    save_result(tmp_path, nothing, FRONT, stopped=True)
+    assert save_result(tmp_path, FRESH, FRONT, stopped=True) == tmp_path
+    # That nothing is feasible is one.
+    infeasible = {**nothing, "front.json": json.dumps({"interrupted": "", "designs": []})}
+    save_result(tmp_path, infeasible, FRONT, stopped=False)
+    assert save_result(tmp_path, FRESH, FRONT, stopped=True) == tmp_path / "stopped"
+
+
 def test_families_of_an_earlier_comparison_go_with_it(tmp_path: Path) -> None:
     record = json.dumps({"families": [{"folder": "one"}, {"folder": "two"}, {"folder": None}, {"folder": "../x"}]})
     own = {f"{name}/{file}": text for name in ("one", "two") for file, text in OLD.items()}
@@ -296,3 +306,18 @@ def test_ctrl_c_waits_until_all_is_saved(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         impatient(lambda: os.kill(os.getpid(), signal.SIGINT))
     assert texts(tmp_path) == {"a.txt": "1", "b.txt": "2"}
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="only root can be somebody else")
+def test_what_somebody_else_has_left_is_in_nobodys_way(tmp_path: Path) -> None:
+    (tmp_path / output_folder.LOCK).touch(mode=0o644)
+    for place in (tmp_path, *tmp_path.parents[:2]):
+        place.chmod(0o777)
+    child = os.fork()
+    if child == 0:
+        os.setuid(65534)
+        try:
+            save_result(tmp_path, OLD, FRONT, stopped=False)
+        finally:
+            os._exit(0 if texts(tmp_path) == OLD else 1)
+    assert os.waitpid(child, 0)[1] == 0
