@@ -6,7 +6,8 @@ The problem is that of :class:`synth.nlp.ParametricNlp`,
     over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k,
 
 solved for whole arrays of data by an interior-point method of our own. ``min``, ``max`` and ``where`` are
-differentiated piecewise as they stand; the general solver with its explicit branches remains the referee.
+differentiated piecewise as they stand, which leads to optima beside their kinks; for those on kinks see
+:mod:`synth.pieces`.
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
 
 from synth import deadline
 from synth.derivatives import RowFunctions
-from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Problems
+from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Layout, Problems
 from synth.lanes import InteriorPoint
 from synth.native import Solver, native
 from synth.native_general import General, general
@@ -95,14 +97,14 @@ class Solutions:
     goal_multipliers: np.ndarray
     converged: np.ndarray
 
-    def replaced(self, rows: np.ndarray, other: Solutions) -> Solutions:
-        """Return solutions of which some rows are those of another solve of the same problems."""
-        mixed = {}
+    def take(self, rows: np.ndarray) -> Solutions:
+        """Return some of the solutions, by mask or positions."""
+        return Solutions(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+
+    def put(self, rows: np.ndarray, other: Solutions) -> None:
+        """Put others into the places of some of the solutions."""
         for field in fields(self):
-            own = getattr(self, field.name).copy()
-            own[rows] = getattr(other, field.name)[rows]
-            mixed[field.name] = own
-        return Solutions(**mixed)
+            getattr(self, field.name)[rows] = getattr(other, field.name)
 
 
 class BatchNlp:
@@ -117,14 +119,25 @@ class BatchNlp:
         How problems are solved. Without a compiler, or room for so many rows, it is over arrays.
     edge : float
         By which share the edge of max and min is rounded off; 0: not at all.
+    conditions : int
+        How many of the last limits never give way: they say where formulas are the right ones.
     """
 
-    def __init__(self, program: Program, n_variables: int, rows: Rows, code: Code = "own", edge: float = 0.0) -> None:
+    def __init__(
+        self,
+        program: Program,
+        n_variables: int,
+        rows: Rows,
+        code: Code = "own",
+        edge: float = 0.0,
+        conditions: int = 0,
+    ) -> None:
         self.rows = rows
         self.functions = RowFunctions(program, n_variables, rows, edge)
         self.log_variables = np.array(rows.log_variables, dtype=bool)
         self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
         self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)
+        self.rigid = self.guard | (np.arange(len(rows.cuts)) >= len(rows.cuts) - conditions)
         self.solver: InteriorPoint | Solver = self._solver(code)
         self.compiled = isinstance(self.solver, Solver)
         self._stored = self.functions.compile_stored()
@@ -224,7 +237,7 @@ class BatchNlp:
             scales = self._scales(low, high)
             first = np.clip(start, low, high)
             sizes = self._inverse_sizes(tasks, [*first.T, *clean], bounds)
-            worth = _worth(tasks)
+            worth = worth_of(tasks)
             problems = Problems(
                 stored=self._stored(self._fixed_inputs(clean, bounds, sizes, scales)),
                 start=self._to_search(first, scales),
@@ -250,6 +263,35 @@ class BatchNlp:
                 other = self._finished(some, ends, scales[:, again], low[again], high[again], worth[again])
                 _keep_better(result, other, again)
         return result
+
+    def slopes(
+        self,
+        tasks: Tasks,
+        data: Sequence[np.ndarray],
+        start: np.ndarray,
+        points: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return values (rows, points) and nonzero derivatives of all rows, in the units that starts give them."""
+        with np.errstate(all="ignore"):
+            scales = self._scales(low, high)
+            sizes = self._inverse_sizes(tasks, [*np.clip(start, low, high).T, *data], bounds)
+            stored = self._stored(self._fixed_inputs(data, bounds, sizes, scales))
+            found = self._first_order(list(self._to_search(points, scales)), [], stored)
+            values = [np.broadcast_to(np.asarray(x, dtype=float), len(points)) for x in found]
+        rows = self.functions.n_rows
+        return np.array(values[:rows]), np.array(values[rows:]).reshape(-1, len(points))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the nonzero derivatives stand."""
+        return Layout(self.functions)
+
+    @cached_property
+    def _first_order(self) -> Any:
+        return self.functions.compile_point(curved=False)
 
     def _scales(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return the unit of each variable (variables, problems); 1 where the logarithm is the variable."""
@@ -288,7 +330,7 @@ class BatchNlp:
         ]
 
     def _slopes(self, tasks: Tasks) -> np.ndarray:
-        give = np.where(self.guard, 0.0, tasks.elastic)
+        give = np.where(self.rigid, 0.0, tasks.elastic)
         return np.concatenate([np.broadcast_to(give, (len(tasks.caps), len(give))), tasks.slopes], axis=1).T
 
     def _rights(self, tasks: Tasks) -> np.ndarray:
@@ -334,7 +376,7 @@ class BatchNlp:
         return np.where(exact, least, ends.t)
 
 
-def _worth(tasks: Tasks) -> np.ndarray:
+def worth_of(tasks: Tasks) -> np.ndarray:
     """Return factors for the objective that make multipliers a matter of ones, one per problem."""
     slopes = np.where(np.isfinite(tasks.caps), tasks.slopes, 0.0)
     slope = np.maximum(np.max(slopes, axis=1, initial=0.0), tasks.elastic)
@@ -346,5 +388,4 @@ def _worth(tasks: Tasks) -> np.ndarray:
 def _keep_better(result: Solutions, other: Solutions, places: np.ndarray) -> None:
     """Put those of other solutions into their places that break their rows less."""
     better = other.violation < result.violation[places]
-    for field in fields(Solutions):
-        getattr(result, field.name)[places[better]] = getattr(other, field.name)[better]
+    result.put(places[better], other.take(better))

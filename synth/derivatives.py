@@ -49,7 +49,7 @@ class RowFunctions:
 
     def __init__(self, program: Program, n_variables: int, rows: Rows, edge: float = 0.0) -> None:
         self.n = n = n_variables
-        self._edge = edge
+        self.edge = edge
         self.rows = rows
         self.n_cuts, self.n_goals = len(rows.cuts), len(rows.goals)
         self.n_rows = self.n_cuts + self.n_goals
@@ -86,15 +86,16 @@ class RowFunctions:
         rows = self.rows
         wanted = [k for c in rows.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in rows.goals]
         values: dict[int, Any] = {}
+        moving = program.dependence(range(self.n))
         for k in program.needed(wanted):
             node = program.nodes[k]
             if node.op == ca.OP_CONST:
                 values[k] = ca.SX(node.constant)
             elif node.op == ca.OP_INPUT:
                 values[k] = inputs[int(node.constant)]
-            elif self._edge and node.op in (ca.OP_FMAX, ca.OP_FMIN):
+            elif self.edge and moving[k] and node.op in (ca.OP_FMAX, ca.OP_FMIN):
                 first, second = (values[a] for a in node.args)
-                values[k] = _rounded_edge(node.op, first, second, self._edge)
+                values[k] = _rounded_edge(node.op, first, second, self.edge)
             else:
                 values[k] = program.apply(node, [values[a] for a in node.args])
         sides = []
@@ -148,15 +149,20 @@ class RowFunctions:
         code = _numpy_code(self.nodes, self.fixed_order, self.stored, names)
         return _function("def evaluate(inputs):", code)
 
-    def compile_point(self) -> Callable[[Sequence[Any], Sequence[Any], Sequence[Any]], list[Any]]:
-        """Return a function of y, weights and stored nodes that gives rows, derivatives and second derivatives."""
+    def compile_point(self, curved: bool = True) -> Callable[[Sequence[Any], Sequence[Any], Sequence[Any]], list[Any]]:
+        """Return a function of y, weights and stored nodes that gives rows, derivatives and second derivatives.
+
+        Without the latter weights are not read.
+        """
         first = self.input_number("weights", 0)
+        outputs = self.outputs if curved else self.outputs[: self.n_rows + len(self.row)]
+        order = self.point_order if curved else [k for k in reached(self.nodes, outputs) if self.moving[k]]
         names = {k: f"stored[{position}]" for position, k in enumerate(self.stored)}
-        for k in self.point_order:
+        for k in order:
             if _is_input(self.nodes[k]):
                 number = int(self.nodes[k].constant)
                 names[k] = f"y[{number}]" if number < self.n else f"weights[{number - first}]"
-        code = _numpy_code(self.nodes, self.point_order, self.outputs, names)
+        code = _numpy_code(self.nodes, order, outputs, names)
         return _function("def evaluate(y, weights, stored):", code)
 
 

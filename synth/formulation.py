@@ -22,6 +22,7 @@ from synth.native import COMPILED_FROM
 from synth.native_tree import CapTables
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
+from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.propagation import Propagation
 from synth.refused_cells import RefusedCells
 
@@ -233,7 +234,7 @@ class Formulation:
         positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
         self.log_goals = np.array(positive, dtype=bool)
         self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
-        self._edged = self._has_edges()
+        self._kinks = self._open_kinks()
         self._prepare_screen()
 
     def among(self, instance: Instance) -> Formulation | None:
@@ -666,27 +667,49 @@ class Formulation:
         )
         return made
 
-    def batch_nlp(self, edge: float = 0.0) -> BatchNlp:
-        """Return the NLP of this question for many designs at once; built once per model and set of rows.
-
-        ``edge``: with the edges of max and min rounded off.
-        """
-        rows = self.rows()
+    def batch_nlp(self) -> BatchNlp | KinkedNlp:
+        """Return the NLP of this question for many designs at once; built once per model and set of rows."""
+        rows, kinks, model = self.rows(), self._kinks, self.model
         large = self.instance.combinations * self.alike >= COMPILED_FROM
         long = self.work > COMPILE_NLP_AFTER
         code: Code = "arrays" if not switched_on() else "own" if self.compiled and (large or long) else "general"
-        made: BatchNlp = self.model.function(
-            ("batch", rows, code, edge), lambda: BatchNlp(self.model.program, self.n, rows, code, edge)
+        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
+        edge = EDGE if self._has_edges(kinks) else 0.0
+        first: BatchNlp = model.function(
+            ("batch", rows, code, edge), lambda: BatchNlp(model.program, self.n, rows, code, edge)
         )
-        return made
+        if not kinks:
+            return first
+        positive = tuple(dict.fromkeys(k for d in kinks for k in sides(model.program, d) if self._positive(k)))
 
-    def _has_edges(self) -> bool:
+        def made() -> KinkedNlp:
+            pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
+            # Few problems are solved again where the formulas are solved as they stand.
+            return KinkedNlp(first, PiecedNlp(pieces, "general" if code == "own" and not edge else code))
+
+        kinked: KinkedNlp = model.function(("kinked", rows, code, edge, kinks, positive), made)
+        return kinked
+
+    def _positive(self, node: int | None) -> bool:
+        return node is not None and not self.propagation.empty and self.propagation.surely_positive(node)
+
+    def _open_kinks(self) -> tuple[int, ...]:
+        """Return the decisions of formulas that may go either way somewhere in the question."""
+        program, propagation = self.model.program, self.propagation
+        every = decisions(program, self.n, self.rows())
+        if propagation.empty:
+            return tuple(every)
+
+        def settled(k: int) -> bool:
+            a, b = (propagation.range_of(x) if x is not None else (0.0, 0.0) for x in sides(program, k))
+            return a[1] < b[0] or b[1] < a[0]
+
+        return tuple(k for k in every if not settled(k))
+
+    def _has_edges(self, kinks: Sequence[int]) -> bool:
         """Tell whether limits or objectives read the larger or smaller of two things that move."""
-        program = self.model.program
-        moving = program.dependence(range(self.n))
-        wanted = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
-        nodes = [program.nodes[k] for k in program.needed(wanted)]
-        return any(x.op in (ca.OP_FMAX, ca.OP_FMIN) and all(moving[a] for a in x.args) for x in nodes)
+        moving, nodes = self.model.program.dependence(range(self.n)), self.model.program.nodes
+        return any(nodes[k].op in (ca.OP_FMAX, ca.OP_FMIN) and all(moving[a] for a in nodes[k].args) for k in kinks)
 
     def solve_many(
         self,
@@ -702,7 +725,7 @@ class Formulation:
         """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
 
         ``skipped`` marks limits that are left out; ``data``: in place of that of the question. ``rough``: answers may
-        be near optima, where limits have edges.
+        be near optima, where formulas have edges.
         """
         count = len(combinations)
         data = self.instance.data(combinations) if data is None else data
@@ -713,21 +736,14 @@ class Formulation:
         void = self.void(data, count) if skipped is None else self.void(data, count) | skipped
         start = np.clip(start, low, high)
 
-        def solved(edge: float, begin: np.ndarray) -> Solutions:
-            nlp = self.batch_nlp(edge)
-            before = nlp.evaluations
-            found = nlp.solve(tasks, data, begin, low, high, self.bounds, void, self.workers)
-            self.work += (nlp.evaluations - before) * len(self.model.program.nodes)
-            return found
-
-        if not self._edged:
-            return solved(0.0, start)
-        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
-        rounded = solved(EDGE, start)
-        if rough:
-            return rounded
-        sharp = solved(0.0, rounded.variables)
-        return sharp.replaced(~sharp.converged, rounded)
+        nlp = self.batch_nlp()
+        before = nlp.evaluations
+        if isinstance(nlp, KinkedNlp):
+            found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers, rough)
+        else:
+            found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers)
+        self.work += (nlp.evaluations - before) * len(self.model.program.nodes)
+        return found
 
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
