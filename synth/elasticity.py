@@ -112,7 +112,7 @@ def optima(
     """
     tasks = held(form, phi, chosen, k)
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
-    answer = form.solve_many(tasks, combinations, start, skipped=immovable(form))
+    answer = form.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
     data = form.instance.data(combinations)
     sizes = _sizes(form, form.model.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
@@ -157,12 +157,6 @@ def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndar
 def requirement_positions(form: Formulation) -> dict[str, int]:
     """Return the requirements in force with the number of their data input."""
     return {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
-
-
-def immovable(form: Formulation) -> np.ndarray:
-    """Return which limits no variable moves; here gridded ones are continuous."""
-    moving = form.model.program.dependence(np.flatnonzero(form.lower < form.upper).tolist())
-    return np.array([not any(moving[k] for k in (c.value, c.limit) if k is not None) for c in form.cuts], dtype=bool)
 
 
 def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -309,7 +303,7 @@ def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np
 
 def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return which limits that no variable can move are active (designs, limits)."""
-    fixed = immovable(form)
+    fixed = form.unmoved(gridded=True)
     tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
     for j, (value, limit, sense, scale) in enumerate(_limits(form, result)):
         if fixed[j]:

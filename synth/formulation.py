@@ -220,7 +220,7 @@ class Formulation:
         self.grids = instance.grids()
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
         self.conflict, self.compiled, self.alike = conflict, compiled, alike
-        self.immovable = self._immovable()
+        self.immovable = self.unmoved(gridded=False)
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
         self.traded, self.workers = traded, 1
@@ -261,11 +261,21 @@ class Formulation:
         self.solved_combinations: set[int] = set()
         self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
         self._focused: np.ndarray | None = None
+        # By combination and makeable values, where the full tolerance was needed: whether something does without it.
+        self.kept_closely: dict[tuple[int, bytes], bool] = {}
 
-    def _immovable(self) -> np.ndarray:
-        """Return which limits depend on no continuous variable that is free to move."""
-        free = [k for k in range(self.n) if self.lower[k] < self.upper[k] and not self.gridded[k]]
-        moving = self.model.program.dependence(free)
+    def unmoved(self, gridded: bool) -> np.ndarray:
+        """Return which limits no variable moves: of those that may move at all, or only the continuous ones of them.
+
+        That is a matter of the question, its ranges, pins and grids; how narrow a box has become does not count.
+
+        Parameters
+        ----------
+        gridded : bool
+            Whether makeable values count as moving, as if they were continuous.
+        """
+        free = self.lower < self.upper if gridded else (self.lower < self.upper) & ~self.gridded
+        moving = self.model.program.dependence(np.flatnonzero(free).tolist())
         sides = [[k for k in (c.value, c.limit) if k is not None] for c in self.cuts]
         return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
 
@@ -518,28 +528,52 @@ class Formulation:
         """Evaluate a batch of designs."""
         return self.model.evaluate(variables, self.instance.data(np.asarray(combinations)))
 
-    def candidates(self, variables: np.ndarray, combinations: np.ndarray, exact: bool = False) -> list[Candidate]:
+    def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
         """Return those of the points that are feasible, and keep them in the archive."""
-        rows, phi = self.feasible_rows(variables, combinations, exact)
-        self.archive.add(combinations[rows], variables[rows], phi[rows])
-        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
+        found = self.feasible_points(variables, combinations)
+        if found:
+            self.archive.add(*rows_of(found))
+        return found
 
     def feasible_points(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
         """Return those of the points that are feasible."""
         rows, phi = self.feasible_rows(variables, combinations)
         return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
 
-    def feasible_rows(
-        self, variables: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def feasible_rows(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of the feasible points, and phi of all points.
 
-        The search keeps limits more closely than feasibility asks for, so that designs do not live off the tolerance;
-        ``exact`` points could not be chosen otherwise and need not.
+        The search keeps limits more closely than feasibility asks for, so that designs do not live off the tolerance.
         """
+        phi, closely = self._judged(variables, combinations, self._tolerances)
+        return np.flatnonzero(closely), phi
+
+    def edge_rows(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the positions of the points that are feasible by the full tolerance alone, and phi of all points.
+
+        Where something that moves continuously enters a limit such a point is of use only if nothing near to it keeps
+        the limit more closely: ``Seeker.on_edge``.
+        """
+        phi, held = self._judged(variables, combinations, np.full(len(self.cuts), TOLERANCE))
+        rows = np.flatnonzero(held)
+        closely = np.isin(rows, rows[self.feasible_rows(variables[rows], combinations[rows])[0]])
+        return rows[~closely], phi
+
+    def as_they_are(self, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs with phi of their values: those on the edge count as worse while they are compared."""
+        if not candidates:
+            return []
+        combinations, variables, _ = rows_of(candidates)
+        _, phi = self.feasible_rows(variables.reshape(len(candidates), self.n), combinations)
+        return [replace(c, phi=own) for c, own in zip(candidates, phi, strict=True)]
+
+    def _judged(
+        self, variables: np.ndarray, combinations: np.ndarray, tolerances: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return phi of points, and which of them are feasible with these tolerances of the limits."""
         count = len(combinations)
         if not count:
-            return np.empty(0, dtype=np.int64), np.empty((0, len(self.goals)))
+            return np.empty((0, len(self.goals))), np.empty(0, dtype=bool)
         data = self.instance.data(np.asarray(combinations))
         with np.errstate(all="ignore"):
             raw = self._screen([variables[:, k] for k in range(self.n)] + list(data))
@@ -551,10 +585,10 @@ class Formulation:
             held = self.void(data, count).T
             for (sense, guard), rows in self._alike.items():
                 r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
-                held[rows] |= holds(r, guard, np.where(exact, TOLERANCE, self._tolerances[rows, None]))
+                held[rows] |= holds(r, guard, tolerances[rows, None])
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & self.not_refused(combinations)
         feasible &= np.all(variables >= below(self.lower, PINNED), axis=1)
-        return np.flatnonzero(feasible), phi
+        return phi, feasible
 
     def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:
         """Tell which of many points may be feasible and keep caps of phi; ``feasible_rows`` has the last word.
@@ -603,9 +637,7 @@ class Formulation:
         kinds = [(c.sense, c.guard) for c in self.cuts]
         self._alike = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
         self._scales = np.array([c.scale for c in self.cuts], dtype=float)
-        # The user's own limits, and those that nothing continuous moves, are kept as closely as feasibility asks for.
-        loose = [*self.immovable[: len(self.model.limits)], *(True for _ in self.instance.extra)]
-        self._tolerances = np.where(loose, TOLERANCE, SEARCH_TOLERANCE)
+        self._tolerances = np.where(self.immovable, TOLERANCE, SEARCH_TOLERANCE)
 
     def sample(self, boxes: Boxes, rng: np.random.Generator) -> None:
         """Evaluate a random makeable point of a random combination of every box; what is feasible is archived."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.analysis import with_ties
 from synth.batch_nlp import MISSED, Solutions
-from synth.elasticity import held, immovable, requirement_positions, sides
+from synth.elasticity import held, requirement_positions, sides
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.formulation import Formulation
@@ -52,7 +52,7 @@ class Resolver:
         self.m = len(chosen)
         self.form = Formulation(instance, with_ties(instance.model, chosen), self.m)
         self.logs = np.array(self.form.rows().log_cuts, dtype=bool)
-        self.fixed = immovable(self.form)
+        self.fixed = self.form.unmoved(gridded=True)
         self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.cuts])
         self.limit_names = [x.name for x in instance.model.limits] + [x.name for x in instance.extra]
         self.ranges = self._ranges()

@@ -464,7 +464,7 @@ class FrontSearch:
     def _stop_early(self) -> None:
         """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""
         for c in self.meanwhile:
-            self.form.candidates(c.variables[None, :], np.array([c.combination]), exact=True)
+            self.form.archive.add(*rows_of([c]))
         self.bounds += self.bounded_meanwhile
         if self.reporting and self.closed:
             # The designs stand; only what the objectives do not see is left as it is.
@@ -912,7 +912,7 @@ class FrontSearch:
     # -- the report ----------------------------------------------------------------------------
 
     def _designs(self, frame: Frame, weights: Sequence[float], settle: bool) -> list[Design]:
-        settled = list(self.front)
+        settled = distinct(self.form.as_they_are(self.front), self.m)
         alternatives: list[tuple[str, ...]] = [()] * len(settled)
         if settle:
             settled, alternatives = self._settled()
@@ -949,8 +949,9 @@ class FrontSearch:
             better = self._best(1, caps, chosen[0], TIE_EFFORT)
             chosen[0] = chosen[0] if better is None else better
         settled = settle_ties(form, self.pool, chosen, self.m)
-        stay = {id(c) for c in distinct([c for c, _ in settled], self.m)}
-        pairs = [(c, a) for c, a in settled if id(c) in stay]
+        listed = form.as_they_are([c for c, _ in settled])
+        stay = {id(c) for c in distinct(listed, self.m)}
+        pairs = [(c, a) for c, (_, a) in zip(listed, settled, strict=True) if id(c) in stay]
         return [c for c, _ in pairs], [a for _, a in pairs]
 
     def _result(

@@ -36,6 +36,7 @@ SCARCE = 16  # designs of a front below which it is worth looking harder
 LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
 NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
 THIN = 1e-5  # relative
+EDGE_WORTH = 1e-5  # of phi: more than what a design may gain by using up the tolerance
 
 
 class Seeker:
@@ -131,16 +132,20 @@ class Seeker:
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
-        low, high = form.ends(small)
-        point = np.all(high - low <= 1e-12 * np.abs(high), axis=1)
-        # A single point is settled by its evaluation; a small box only nearly so.
-        self.offer(low[point], form.combination(small.take(point)), exact=True)
-        rest = small.take(~point)
-        self.offer(form.inside(rest, 0.5), form.combination(rest))
-        rest = rest.take(self.purpose.room(form.phi_of(rest.bounds), rest.cell) > 0)
+        self.offer(form.inside(small, 0.5), form.combination(small))
+        rest = small.take(self.purpose.room(form.phi_of(small.bounds), small.cell) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
-        self.offer(form.inside(rest, 0.5), form.combination(rest), exact=True)
-        return rest.take(self.purpose.room(form.phi_of(rest.bounds), rest.cell) > 0)
+        _, stood_for = self.on_edge(form.inside(rest, 0.5), form.combination(rest), len(rest))
+        low, high = form.ends(rest)
+        # A single point is settled by its evaluation; a small box only nearly so.
+        left = np.any(high - low > 1e-12 * np.abs(high), axis=1)
+        phi = form.phi_of(rest.bounds)
+        # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
+        left[stood_for] = True
+        worth = np.zeros(phi.shape[1])
+        worth[self.purpose.columns] = np.maximum(EDGE_WORTH - self.purpose.slack, 0.0)
+        phi[stood_for] += worth
+        return rest.take(left & (self.purpose.room(phi, rest.cell) > 0))
 
     def _tightened(self, boxes: Boxes) -> Boxes:
         caps = self.purpose.caps(self.form.phi_of(boxes.bounds), boxes.cell)
@@ -164,8 +169,13 @@ class Seeker:
         found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
         for share in (EDGE, 0.5) if len(boxes) else ():
             points = self.form.makeable(self.form.inside(boxes, share))
-            new, rows = self._offered(points, self.form.combination(boxes), thin)
+            new, rows = self._offered(points, self.form.combination(boxes))
             hit[rows] = True
+            found += new
+        missed = np.flatnonzero(thin & ~hit)
+        if len(missed):
+            new, rows = self.on_edge(points[missed], self.form.combination(boxes.take(missed)), ROUNDED_OFF)
+            hit[missed[rows]] = True
             found += new
         return found, hit
 
@@ -179,21 +189,63 @@ class Seeker:
         narrow: np.ndarray = np.any((low < high) & (high - low <= THIN * np.maximum(np.abs(high), np.abs(low))), axis=1)
         return narrow
 
-    def offer(self, points: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False) -> int:
+    def offer(self, points: np.ndarray, combinations: np.ndarray) -> int:
         """Take what is feasible; return how many designs no known one covered."""
-        return self._offered(points, combinations, exact)[0]
+        return self._offered(points, combinations)[0]
 
-    def _offered(
-        self, points: np.ndarray, combinations: np.ndarray, exact: bool | np.ndarray = False
-    ) -> tuple[int, np.ndarray]:
+    def _offered(self, points: np.ndarray, combinations: np.ndarray) -> tuple[int, np.ndarray]:
         """Do the same; return also the rows that are feasible."""
-        form = self.form
-        rows, phi = form.feasible_rows(points, combinations, exact)
+        rows, phi = self.form.feasible_rows(points, combinations)
+        return self._taken(points[rows], combinations[rows], phi[rows]), rows
+
+    def _taken(self, points: np.ndarray, combinations: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many no known one covered."""
+        if not len(points):
+            return 0
+        used = self.purpose.take(combinations, points, phi)
+        self.form.archive.add(combinations, points, phi)
+        return used
+
+    def on_edge(self, points: np.ndarray, combinations: np.ndarray, most: int) -> tuple[int, np.ndarray]:
+        """Take what stands for points that are feasible by the full tolerance alone.
+
+        That is the best design near to it, of the same parts and makeable values, that keeps the limits more closely.
+        Only where there is none the point is taken as it is. It then counts as worse than it is, by more than what the
+        tolerance is worth, so that it takes the place of no design that does without.
+
+        Parameters
+        ----------
+        points, combinations : array (points, variables), array (points,)
+        most : int
+            So many are looked at, those that promise most.
+
+        Returns
+        -------
+        tuple
+            How many designs no known one covered, and the positions of the points that something stands for.
+        """
+        form, columns = self.form, self.purpose.columns
+        rows, phi = form.edge_rows(points, combinations)
         if not len(rows):
             return 0, rows
-        used = self.purpose.take(combinations[rows], points[rows], phi[rows])
-        form.archive.add(combinations[rows], points[rows], phi[rows])
-        return used, rows
+        space = self.purpose.room(phi[rows], form.cell_of(combinations[rows]))
+        rows, space = rows[space > 0], space[space > 0]
+        rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
+        marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
+        fresh = {mark: row for mark, row in zip(marks, rows.tolist(), strict=True) if mark not in form.kept_closely}
+        new = 0
+        if fresh:
+            own = np.array(list(fresh.values()))
+            base = np.full((len(own), len(form.goals)), np.inf)
+            base[:, columns] = phi[own][:, columns]
+            slopes = np.where(np.isfinite(base), 1.0, 0.0)
+            tasks = Tasks(TIE_WEIGHT * slopes, slopes, base, form.goal_scales, 1.0)
+            low, high = (np.where(form.gridded, points[own], ends) for ends in (form.lower, form.upper))
+            answer = form.solve_many(tasks, combinations[own], points[own], low, high)
+            new, kept = self._offered(answer.variables, combinations[own])
+            form.kept_closely.update((mark, k in set(kept.tolist())) for k, mark in enumerate(fresh))
+        alone = rows[[not form.kept_closely[mark] for mark in marks]]
+        return new + self._taken(points[alone], combinations[alone], phi[alone] + EDGE_WORTH), rows
 
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
         """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""

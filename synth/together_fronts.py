@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.formulation import Candidate, rows_of
+from synth.formulation import Candidate
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search import Question, distinct
@@ -108,7 +108,7 @@ class FrontsSearch:
                 question = numbers[row // self.between]
                 found[question].append(Candidate(question * first.together.size + own, c.variables, c.phi))
         solves = self._work_counted()
-        fronts = [distinct(own, 2) for own in found.values()]
+        fronts = [distinct(first.form.as_they_are(own), 2) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
     def _search(self, positions: np.ndarray, wider: Wider, **more: Any) -> TogetherSearch:
@@ -130,11 +130,7 @@ class FrontsSearch:
 
     def _turned(self, designs: Sequence[Candidate]) -> list[Candidate]:
         """Return designs of the search for the second objective as that for the first one has them."""
-        if not designs:
-            return []
-        combinations, points, _ = rows_of(designs)
-        rows, phi = self.first.form.feasible_rows(points, combinations, exact=True)
-        return [Candidate(designs[k].combination, designs[k].variables, phi[k]) for k in rows]
+        return self.first.form.as_they_are(designs)
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
         """Return the designs that are best in the first and in the second objective, where they differ."""
