@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal_balls as ball_blocks
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_curves as curves
+from problems import centrifugal_state as states
 from problems.centrifugal_blocks import DERIVED, S4
 from problems.mechanics import ball_ramp, centrifugal
 from synth import DesignProblem
@@ -27,6 +28,7 @@ class CentrifugalBallRamp(DesignProblem):
     title = "Centrifugal clutch, ball ramp"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
+    operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -116,3 +118,17 @@ class CentrifugalBallRamp(DesignProblem):
         if design is not None:
             frames |= curves.over_speed(self, spec, curves.ball_ramp_path(spec, design))
         return frames
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        return states.of_path(spec, curves.ball_ramp_path(spec, design), point["speed"])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_curves, centrifugal_lever_curves
 from problems import centrifugal_lever_blocks as lever_blocks
+from problems import centrifugal_state as states
 from problems.centrifugal_blocks import DERIVED, S4
 from problems.centrifugal_lever_blocks import RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
@@ -15,6 +16,8 @@ from synth import DesignProblem
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import pandas as pd
 
     from synth.declaration import Declaration
 
@@ -56,6 +59,7 @@ class CentrifugalLever(DesignProblem):
     title = "Centrifugal clutch, levers with headed rods"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
+    operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -108,6 +112,22 @@ class CentrifugalLever(DesignProblem):
         if design is None:
             return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
         return centrifugal_lever_curves.rod_lever_curves(self, spec, design)
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        lever = centrifugal_lever_curves.rod_lever(spec, design)
+        regimes, own = centrifugal_lever_curves.ROD_REGIMES, centrifugal_lever_curves.ROD_OWN
+        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
 
     def _declare_rods(self, d: Declaration) -> Rods:
         return Rods(

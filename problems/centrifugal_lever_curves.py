@@ -11,7 +11,7 @@ from problems import centrifugal_curves
 from problems.centrifugal_curves import MM, RPM, SPEED_AXIS
 from problems.centrifugal_lever_blocks import RECONSTRUCTED
 from problems.mechanics import centrifugal
-from problems.mechanics.lever_motion import ReversedLever, RodLever
+from problems.mechanics.lever_motion import Motion, ReversedLever, RodLever
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,6 +19,16 @@ if TYPE_CHECKING:
     from synth import DesignProblem
 
 POINTS = 41
+# Stretches of the motion, and what each lever shows beside what both do: heading, name in Motion, unit.
+ROD_REGIMES = ("rest", "travel", "rod unloads", "spring clamps", "stop")
+ROD_OWN = (("spring force [N]", "spring_force", 1.0), ("rod force [N]", "link_force", 1.0))
+REVERSED_REGIMES = ("rest", "travel", "leg clamps", "disc 1 lifts", "stop")
+REVERSED_OWN = (
+    ("spring force [N]", "spring_force", 1.0),
+    ("housing force [N]", "link_force", 1.0),
+    ("return force [N]", "return_force", 1.0),
+    ("lift of disc 1 [mm]", "lift", MM),
+)
 
 
 def rod_lever(spec: Mapping[str, Any], design: Any) -> RodLever:
@@ -90,9 +100,7 @@ def rod_lever_curves(problem: DesignProblem, spec: Mapping[str, Any], design: An
     dict of str to DataFrame
         ``over_speed`` with new linings, ``over_speed_worn`` with worn ones.
     """
-    regimes = ("rest", "travel", "rod unloads", "spring clamps", "stop")
-    own = (("spring force [N]", "spring_force", 1.0), ("rod force [N]", "link_force", 1.0))
-    return _both(problem, spec, design, rod_lever(spec, design), regimes, own)
+    return _both(problem, spec, design, rod_lever(spec, design), ROD_REGIMES, ROD_OWN)
 
 
 def reversed_lever_curves(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
@@ -112,14 +120,7 @@ def reversed_lever_curves(problem: DesignProblem, spec: Mapping[str, Any], desig
     dict of str to DataFrame
         ``over_speed`` with new linings, ``over_speed_worn`` with worn ones.
     """
-    regimes = ("rest", "travel", "leg clamps", "disc 1 lifts", "stop")
-    own = (
-        ("spring force [N]", "spring_force", 1.0),
-        ("housing force [N]", "link_force", 1.0),
-        ("return force [N]", "return_force", 1.0),
-        ("lift of disc 1 [mm]", "lift", MM),
-    )
-    return _both(problem, spec, design, reversed_lever(spec, design), regimes, own)
+    return _both(problem, spec, design, reversed_lever(spec, design), REVERSED_REGIMES, REVERSED_OWN)
 
 
 def _both(
@@ -130,10 +131,40 @@ def _both(
     regimes: Sequence[str],
     own: Sequence[tuple[str, str, float]],
 ) -> dict[str, pd.DataFrame]:
-    worn = replace(lever, contact_travel=lever.contact_travel + spec["lining_wear"])
     return {
         "over_speed": _over_speed(problem, spec, design, lever, "new linings", regimes, own),
-        "over_speed_worn": _over_speed(problem, spec, design, worn, "worn linings", regimes, own),
+        "over_speed_worn": _over_speed(problem, spec, design, worn(lever, spec), "worn linings", regimes, own),
+    }
+
+
+def worn(lever: RodLever | ReversedLever, spec: Mapping[str, Any]) -> RodLever | ReversedLever:
+    """Return the lever with worn linings, whose wear the plate travels besides."""
+    return replace(lever, contact_travel=lever.contact_travel + spec["lining_wear"])
+
+
+def columns_of(motion: Motion, design: Any, own: Sequence[tuple[str, str, float]]) -> dict[str, Any]:
+    """Return what is shown of a motion, by heading.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of the lever.
+    design : Design
+        Values and parts in SI.
+    own : sequence
+        What this lever shows beside what both do: heading, name and unit.
+    """
+    return {
+        SPEED_AXIS: motion.speed / RPM,
+        "centrifugal force [N]": motion.flyweight_force,
+        **{header: getattr(motion, name) / unit for header, name, unit in own if unit == 1.0},
+        "clamp force [N]": motion.clamp_force,
+        "stop force [N]": motion.stop_force,
+        "torque [N*m]": centrifugal_curves.torque_per_force(design) * motion.clamp_force,
+        "gap [mm]": motion.gap / MM,
+        **{header: getattr(motion, name) / unit for header, name, unit in own if unit != 1.0},
+        "radius [mm]": motion.radius / MM,
+        "lever angle [rad]": motion.angle,
     }
 
 
@@ -151,20 +182,7 @@ def _over_speed(
 
     borders = lever.borders()
     top = 1.5 * max(spec["full_torque_speed"], *borders.speeds)
-    motion = lever.motion(top, POINTS)
-    capacity = centrifugal_curves.torque_per_force(design) * motion.clamp_force
-    columns = {
-        SPEED_AXIS: motion.speed / RPM,
-        "centrifugal force [N]": motion.flyweight_force,
-        **{header: getattr(motion, name) / unit for header, name, unit in own if unit == 1.0},
-        "clamp force [N]": motion.clamp_force,
-        "stop force [N]": motion.stop_force,
-        "torque [N*m]": capacity,
-        "gap [mm]": motion.gap / MM,
-        **{header: getattr(motion, name) / unit for header, name, unit in own if unit != 1.0},
-        "radius [mm]": motion.radius / MM,
-        "lever angle [rad]": motion.angle,
-    }
+    columns = columns_of(lever.motion(top, POINTS), design, own)
     frame = pd.DataFrame(columns)
     forces = [name for name in columns if name.endswith("[N]")]
     gaps = [name for name in columns if name.endswith("[mm]") and not name.startswith("radius")]

@@ -10,6 +10,7 @@ import numpy as np
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_curves, centrifugal_lever_curves
 from problems import centrifugal_lever_blocks as lever_blocks
+from problems import centrifugal_state as states
 from problems.centrifugal_blocks import DERIVED
 from problems.centrifugal_lever_blocks import RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
@@ -17,6 +18,8 @@ from synth import DesignProblem
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import pandas as pd
 
     from synth.declaration import Declaration
 
@@ -49,6 +52,7 @@ class CentrifugalReversed(DesignProblem):
     title = "Centrifugal clutch, reversed"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "lining_wear", "contact_travel")
+    operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -103,6 +107,22 @@ class CentrifugalReversed(DesignProblem):
         if design is None:
             return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
         return centrifugal_lever_curves.reversed_lever_curves(self, spec, design)
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        lever = centrifugal_lever_curves.reversed_lever(spec, design)
+        regimes, own = centrifugal_lever_curves.REVERSED_REGIMES, centrifugal_lever_curves.REVERSED_OWN
+        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
 
     def _declare_leg(self, d: Declaration) -> Leg:
         return Leg(

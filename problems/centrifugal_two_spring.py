@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from problems import centrifugal_balls as ball_blocks
 from problems import centrifugal_blocks as blocks
 from problems import centrifugal_curves as curves
+from problems import centrifugal_state as states
 from problems.centrifugal_blocks import DERIVED, S4, TYPICAL
 from problems.mechanics import centrifugal, two_spring
 from synth import DesignProblem
@@ -75,6 +76,7 @@ class CentrifugalTwoSpring(DesignProblem):
     title = "Centrifugal clutch, two springs"
     sources = blocks.SOURCES
     understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "lining_wear")
+    operating_point = states.OPERATING_POINT
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -152,6 +154,20 @@ class CentrifugalTwoSpring(DesignProblem):
         if design is not None:
             frames |= curves.over_speed(self, spec, curves.two_spring_path(self, spec, design))
         return frames
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        return states.of_path(spec, curves.two_spring_path(self, spec, design), point["speed"])
 
     def _declare_way(self, d: Declaration) -> Way:
         plate = d.variable(

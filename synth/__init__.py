@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from synth.jobs.run import BatchResult, batch
     from synth.loading import load_front
     from synth.near import NearEquals, near_equals
+    from synth.operating_state import state
     from synth.price_list import Price, Prices
     from synth.pricing import prices
     from synth.problem import DesignProblem, families, load
@@ -62,6 +63,7 @@ __all__ = [
     "second_opinion",
     "simulate",
     "size_range",
+    "state",
     "synthesize",
     "whatif",
 ]
@@ -97,6 +99,7 @@ _HOME = {
     "second_opinion": "synth.hooks",
     "simulate": "synth.hooks",
     "size_range": "synth.variants.run",
+    "state": "synth.operating_state",
     "synthesize": "synth.search",
     "whatif": "synth.what_if",
 }

@@ -264,9 +264,13 @@ def explain(
 def check(
     design: DesignFile,
     folder: Annotated[Path | None, typer.Option("--output", "-o", help="Folder for check.csv.", metavar="DIR")] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option("--at", help='Tell the state at an operating point, "speed=900 rpm".', metavar="NAME=VALUE"),
+    ] = None,
 ) -> None:
     """Compute everything about a given design and test every limit; nothing is rounded or searched."""
-    from synth.console import check_table, output, print_check
+    from synth.console import check_table, output, print_check, print_state
     from synth.description import described
     from synth.spec import read_spec
 
@@ -277,10 +281,20 @@ def check(
     with blamed_on(asked.file):
         problem, catalogs, result = given_design(asked)
         details = described(problem, catalogs)
+    found = None
+    if at:
+        from synth.operating_state import read_point, state_of
+
+        found = state_of(problem, result, read_point(problem, dict(pair("--at", text) for text in at)))
     print_check(result, details, output())
+    if found is not None:
+        print_state(found, ", ".join(at or ()), output())
     if folder is not None:
-        save_files(folder, {"check.csv": check_table(result, details)})
-        print(f"\nwritten: {folder / 'check.csv'}")
+        files = {"check.csv": check_table(result, details)}
+        if found is not None:
+            files["state.csv"] = as_csv(found)
+        save_files(folder, files)
+        print(f"\nwritten: {', '.join(str(folder / name) for name in files)}")
     if result.violated:
         raise typer.Exit(INFEASIBLE)
 

@@ -103,6 +103,7 @@ TITLES = {
     "limit": "Limits",
     "objective": "Objectives",
     "setting": "Settings of the simulation (simulate --set)",
+    "point": "Operating point (check --at)",
     "refusal": "Refused input",
     "advice": "Remarks",
 }
@@ -132,7 +133,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     kind, default = row["kind"], row["default"]
     if kind in ("limit", "objective"):
         return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
-    if kind in ("setting", "option", "derived", "column", "slot", "choice"):
+    if kind in ("setting", "point", "option", "derived", "column", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
     bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
@@ -176,7 +177,9 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console : rich.console.Console
     """
     frame = design.frame
-    known = {row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "refusal", "advice")}
+    known = {
+        row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "refusal", "advice", "point")
+    }
     console.print(f"{frame.title} ({frame.family})")
     if frame.options:
         console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
@@ -230,6 +233,18 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
         console.print(f"\nall {sum(s == 'ok' for s in _limit_states(design).values())} limits that apply hold")
 
 
+def print_state(found: pd.DataFrame, point: str, console: Console) -> None:
+    """Print the state of a design at an operating point: a column per course that leads there."""
+    from synth.operating_state import state_rows  # most checks ask for none
+
+    head, *rows = state_rows(found)
+    console.print(f"\nState at {point}")
+    table = plain_table(*head, right=range(1, len(head)))
+    for row in rows:
+        table.add_row(*row)
+    console.print(table)
+
+
 def _limit_side(design: Design, name: str, side: int) -> str:
     si = design.limits[name][side]
     return format_quantity(si, design.frame.limit_units[name]) if math.isfinite(si) else "-"
@@ -280,7 +295,7 @@ def print_simulation(
 def check_table(design: Design, details: Sequence[Mapping[Any, Any]]) -> str:
     """Return the text of check.csv: every quantity and every limit in full precision."""
     frame = design.frame
-    symbols = {row["name"]: row["symbol"] for row in details if row["kind"] not in ("limit", "objective")}
+    symbols = {row["name"]: row["symbol"] for row in details if row["kind"] not in ("limit", "objective", "point")}
     units = {row["name"]: row["unit"] for row in details if row["kind"] == "requirement"}
     columns = ["kind", "name", "symbol", "unit", "value", "limit", "sense", "utilisation", "state"]
     rows: list[list[str]] = []

@@ -110,6 +110,7 @@ def described(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None
     for name, setting in problem.simulation_settings.items():
         words = f"rows of {setting.table}" if setting.table else ", ".join(setting.choices)
         rows.append(_row("setting", setting, name=name, choices=words, optional=True))
+    rows += [_row("point", setting, name=name) for name, setting in problem.operating_point.items()]
     rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
     rows += [_row("advice", a, name=a.code, text=a.message) for a in d.advices]
     return rows

@@ -67,7 +67,7 @@ def simulate(
 
 def simulate_design(problem: DesignProblem, design: Design, told: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
     """Simulate a design that was just evaluated, with settings that were already read."""
-    found = problem.simulate({**_requirements_of(design), **told}, design)
+    found = problem.simulate({**requirements_of(design), **told}, design)
     return _checked(problem, "simulate", "simulation", found)
 
 
@@ -107,7 +107,7 @@ def curves(
         spec = {**instance.requirements, **dict.fromkeys(instance.not_asked)}
         return _checked(problem, "curves", "curves", problem.curves(spec))
     evaluated = evaluate(problem, requirements, design, values=values, parts=parts, catalogs=catalogs)
-    return _checked(problem, "curves", "curves", problem.curves(_requirements_of(evaluated), evaluated))
+    return _checked(problem, "curves", "curves", problem.curves(requirements_of(evaluated), evaluated))
 
 
 def second_opinion(design: Design, frames: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
@@ -173,7 +173,8 @@ def _read_setting(field: str, setting: Setting, value: Any, catalogs: Catalogs) 
     return parse_quantity(value, setting.unit, field)
 
 
-def _requirements_of(design: Design) -> dict[str, float | None]:
+def requirements_of(design: Design) -> dict[str, float | None]:
+    """Return what hooks are told of the requirements: SI by name, None where an optional one is not given."""
     return {**design.frame.requirement_values, **dict.fromkeys(design.frame.not_asked)}
 
 

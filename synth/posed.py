@@ -74,6 +74,7 @@ class RobustProblem(DesignProblem):
         super().__init__(**base.options)
         self.base, self.asked, self.own_limits = base, asked, limits
         self.simulation_settings, self.understands = base.simulation_settings, base.understands
+        self.operating_point = base.operating_point
         self.restated = {**base.restated, "robust": asked.block()}
 
     def declare(self, d: Declaration) -> None:
@@ -105,6 +106,10 @@ class RobustProblem(DesignProblem):
     def simulate(self, spec: Mapping[str, Any], design: Design) -> Mapping[str, pd.DataFrame] | None:
         """Return the simulations of the family."""
         return self.base.simulate(spec, design)
+
+    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame | None:
+        """Return the state of the family at an operating point."""
+        return self.base.state(spec, design, point)
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,8 @@ class DesignProblem:
     title: str = ""
     sources: tuple[str, ...] = ()
     simulation_settings: Mapping[str, Setting] = {}
+    # What an operating point is told by, for families that know the state of a design there: numbers with a unit.
+    operating_point: Mapping[str, Setting] = {}
     # Requirements that mean here what they mean in every family: what a sheet for several families may state.
     understands: tuple[str, ...] = ()
     # What a spec must repeat beside options and requirements so that it asks for the same problem.
@@ -102,6 +104,23 @@ class DesignProblem:
             As for :meth:`curves`, and what the user set of ``simulation_settings``: SI floats, words, rows of tables.
         design : Design
             The design.
+        """
+        return None
+
+    def state(self, spec: Mapping[str, Any], design: Design, point: Mapping[str, float]) -> pd.DataFrame | None:
+        """Return the state of a design at an operating point, or None where a family has none.
+
+        One row per course that leads to it. The first columns are ``course`` and ``regime``, in words; every other one
+        is headed ``name [unit]``, in units that people read. ``attrs["source"]`` may name the source.
+
+        Parameters
+        ----------
+        spec : mapping
+            As for :meth:`curves`.
+        design : Design
+            The design.
+        point : mapping
+            The names of ``operating_point`` in SI.
         """
         return None
 

@@ -207,7 +207,11 @@ class RodLever(_Lever):
         >>> float(lever.motion(150.0).clamp_force.max())
         3200.0
         """
-        regime, angle, force = steps = self._steps(top_speed, points)
+        return self.along(self._steps(top_speed, points))
+
+    def along(self, steps: tuple[Quantity, Quantity, Quantity]) -> Motion:
+        """Return the lever at some steps of its motion: regimes, angles and centrifugal forces [N]."""
+        regime, angle, force = steps
         travelling = levers.travel_spring_force(self.preload, self.rate, self.spring_arm, self.rod_arm, angle)
         clamping = levers.clamp_spring_force(self.preload, self.rate, self.spring_arm, self.contact_travel, angle)
         spring = np.where(regime <= TRAVEL, travelling, clamping)
@@ -281,7 +285,11 @@ class ReversedLever(_Lever):
         >>> float(lever.motion(400.0).clamp_force.max())
         1700.0
         """
-        regime, angle, force = steps = self._steps(top_speed, points)
+        return self.along(self._steps(top_speed, points))
+
+    def along(self, steps: tuple[Quantity, Quantity, Quantity]) -> Motion:
+        """Return the lever at some steps of its motion: regimes, angles and centrifugal forces [N]."""
+        regime, angle, force = steps
         travel = np.minimum(self.short_leg * angle, self.contact_travel)
         back = levers.return_force(self.return_preload, self.return_rate, travel)
         clamping = levers.clamp_spring_force(self.preload, self.rate, self.short_leg, self.contact_travel, angle)
