@@ -361,6 +361,7 @@ class FrontSearch:
         self.bounded_meanwhile: list[Bound] = []
         self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
+        self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.complete = False
         self.scalar_problems = 0
         self.solves_to_find: int | None = None  # of the designs listed; settling ties and prices come after
@@ -783,7 +784,8 @@ class FrontSearch:
                 # Now each design stands that no known one beats, also those that were found meanwhile.
                 self.front = self._polished(self._more_than_asked)
                 self.complete = len(self.front) <= self.points and self._stand_for_all()
-        self.front = self._spread(self.front, self.points)
+        standing, self.front = self.front, self._spread(self.front, self.points)
+        self.spare = [c for c in standing if not any(c is own for own in self.front)]
 
     @property
     def _more_than_asked(self) -> int:
@@ -948,10 +950,16 @@ class FrontSearch:
             caps[0] = chosen[0].phi[0] + TIE
             better = self._best(1, caps, chosen[0], TIE_EFFORT)
             chosen[0] = chosen[0] if better is None else better
-        settled = settle_ties(form, self.pool, chosen, self.m)
-        listed = form.as_they_are([c for c, _ in settled])
-        stay = {id(c) for c in distinct(listed, self.m)}
-        pairs = [(c, a) for c, (_, a) in zip(listed, settled, strict=True) if id(c) in stay]
+        pairs: list[tuple[Candidate, tuple[str, ...]]] = []
+        while chosen:
+            settled = settle_ties(form, self.pool, chosen, self.m)
+            listed = form.as_they_are([c for c, _ in settled])
+            pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
+            stay = {id(c) for c in distinct([c for c, _ in pairs], self.m)}
+            pairs = [pair for pair in pairs if id(pair[0]) in stay]
+            # Where settling has made two designs one, others that stand as well take the place.
+            missing = max(self.points - len(pairs), 0)
+            chosen, self.spare = self.spare[:missing], self.spare[missing:] if missing else []
         return [c for c, _ in pairs], [a for _, a in pairs]
 
     def _result(
