@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -194,9 +195,13 @@ def run(
     workers: Annotated[int | None, typer.Option(help="Processes to use.")] = None,
     objective: Objectives = None,
     every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
+    more: Annotated[
+        Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
+    ] = None,
     quiet: Quiet = False,
 ) -> None:
     """Search the designs for a spec, show them ranked and save them."""
+    begun = time.monotonic()
     from synth.console import explanation_text
     from synth.spec import read_spec
 
@@ -207,9 +212,11 @@ def run(
     must_be_a_question(asked)
     claim_output(folder, FRONT)
     if asked.compares:
+        if more is not None:
+            raise InputError("--more", str(more), "a spec of one family")
         choice_commands.compare_families(asked, folder, every, quiet)
         return
-    front = _synthesize(asked, quiet)
+    front = _synthesize(asked, quiet, begun, more)
     files = front.files()
     if front.explanation is not None:
         files["explanation.txt"] = explanation_text(front)
@@ -404,19 +411,24 @@ def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
     return load(family, **options)
 
 
-def _synthesize(asked: Spec, quiet: bool) -> ParetoFront:
+def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> ParetoFront:
+    """Search the designs for a spec; the time limit counts from ``begun``, and ``more`` is where to go on from."""
     from synth.console import progress_display
+    from synth.improve import improve_for
     from synth.instance import catalogs_for
-    from synth.search import synthesize
+    from synth.loading import load_front
+    from synth.search import synthesize, time_left
 
+    given = None if more is None else load_front(more)
     with blamed_on(asked.file), progress_display(quiet) as progress:
         problem = _load(asked.family, asked.options)
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+        settings = {**asked.search_settings(), "catalogs": catalogs, "progress": progress}
         try:
-            return synthesize(
-                problem, asked.requirements, catalogs=catalogs, progress=progress,
-                **asked.search_settings(),
-            )  # fmt: skip
+            settings["time_limit"] = time_left(asked.time_limit, begun)
+            if given is not None:
+                return improve_for(given, problem, asked.requirements, "--more", **settings)
+            return synthesize(problem, asked.requirements, **settings)
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None

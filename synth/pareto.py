@@ -105,13 +105,21 @@ def non_dominated(phi: np.ndarray) -> np.ndarray:
     return np.asarray(moocore.is_nondominated(np.round(phi, DIGITS), keep_weakly=False), dtype=bool)
 
 
-def spread_subset(phi: np.ndarray, count: int) -> np.ndarray:
-    """Return positions of at most ``count`` rows: the extremes, then always the one farthest from those taken."""
+def extremes(phi: np.ndarray) -> list[int]:
+    """Return the positions of the rows that are least in a column."""
+    return list(dict.fromkeys(int(np.argmin(phi[:, k])) for k in range(phi.shape[1]))) if len(phi) else []
+
+
+def spread_subset(phi: np.ndarray, count: int, first: Sequence[int] | None = None) -> np.ndarray:
+    """Return positions of at most ``count`` rows: the ``first``, then always the one farthest from those taken.
+
+    The extremes are the first ones by default.
+    """
     if len(phi) <= count:
         return np.arange(len(phi))
     span = np.maximum(phi.max(axis=0) - phi.min(axis=0), 1e-300)
     unit = (phi - phi.min(axis=0)) / span
-    taken = list(dict.fromkeys(int(np.argmin(unit[:, k])) for k in range(unit.shape[1])))[:count]
+    taken = list(dict.fromkeys(extremes(unit) if first is None else first))[:count]
     distance = np.min(np.linalg.norm(unit[:, None, :] - unit[None, taken, :], axis=2), axis=1)
     while len(taken) < count:
         farthest = int(np.argmax(distance))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -229,6 +229,40 @@ class ParetoFront:
         from synth.verify import verify  # most runs do not need it
 
         return verify(self, problem, catalogs, time_limit)
+
+    def improve(
+        self,
+        time_limit: float | None = None,
+        problem: Any = None,
+        catalogs: Any = None,
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+    ) -> ParetoFront:
+        """Go on with the search from the designs of this front; the result is never worse.
+
+        Parameters
+        ----------
+        time_limit : float, optional
+            Seconds; by default the search goes on as long as one from the start would.
+        problem : family name, DesignProblem subclass or instance, optional
+            For a loaded front of a problem of your own.
+        catalogs : folder or mapping, optional
+            Own tables that were in memory; those that were files are read again.
+        workers, progress
+            As for ``synthesize``.
+
+        Returns
+        -------
+        ParetoFront
+
+        Raises
+        ------
+        InputError
+            When the question cannot be posed again, or the saved front was changed.
+        """
+        from synth.improve import improve  # most runs do not need it
+
+        return improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
 
     def table(self) -> tuple[list[str], list[list[Any]]]:
         """Return headers with units, and one row per design; None where there is no value."""

@@ -28,12 +28,13 @@ from synth.gap import GAP_EXPECTED, is_gap
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.outer import search_parts, study_file
-from synth.pareto import rank, spread_subset
+from synth.pareto import extremes, rank, spread_subset
 from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.propagation import Lessons
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover, Purpose, Staircase, Tabled
+from synth.question import combination_of
 from synth.rating import Rater
 from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
@@ -134,20 +135,24 @@ def synthesize(
     begun = time.monotonic()
     check_settings(points, gap, grid, workers, seed, progress, time_limit)
 
-    def left() -> float | None:
-        return None if time_limit is None else max(time_limit - (time.monotonic() - begun), LEAST_SECONDS)
-
     def asked(problem: Any) -> Question:
         return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
 
     block = read_remaining(robust)
     if block is None:
         question = asked(p)
-        return question.answer(workers, progress, left())
+        return question.answer(workers, progress, time_left(time_limit, begun))
     problem = load(p)
     catalogs = catalogs_for(problem, catalogs)
     rater = Rater(problem, requirements, catalogs, limits, block)
-    return robust_front(lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, left())
+    return robust_front(
+        lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, time_left(time_limit, begun)
+    )
+
+
+def time_left(time_limit: float | None, begun: float) -> float | None:
+    """Return what is left of a time limit, in seconds, that began at a time as of ``time.monotonic``."""
+    return None if time_limit is None else max(time_limit - (time.monotonic() - begun), LEAST_SECONDS)
 
 
 @dataclass(frozen=True)
@@ -171,14 +176,17 @@ class Question:
         known: Sequence[Design] = (),
         explained: bool = True,
         lessons: Lessons | None = None,
+        given: ParetoFront | None = None,
     ) -> ParetoFront:
         """Search the designs.
 
         ``known`` are designs of a similar question, where to look first, ``lessons`` what its search has learned. They
         prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
-        where nothing is feasible.
+        where nothing is feasible. ``given`` is the front of an earlier search of this very question, to go on from.
         """
         search = self.search(workers, progress, time_limit, known, lessons)
+        if given is not None:
+            search.begin_from(given)
         return search.run(list(self.weights.values()), self.settings, explained)
 
     def experience(self, time_limit: float | None = None) -> tuple[ParetoFront, Lessons | None]:
@@ -375,6 +383,8 @@ class FrontSearch:
         self.by_steps = False  # whether a front at once has turned out to cost too much
         self.may_find_more = True  # unless a try was given up
         self.recalled = list(known)
+        self.given = np.empty((0, self.m))  # phi of the designs of an earlier search
+        self.given_gap: float | None = None
         self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
 
     def _formulation(self, conflict: bool) -> Formulation:
@@ -398,6 +408,41 @@ class FrontSearch:
         sizes = np.ones(len(form.goals)) if sizes is None else sizes
         return np.where(form.log_goals, -np.log1p(-self.gap), self.gap * np.maximum(sizes, 1e-9))
 
+    def begin_from(self, front: ParetoFront) -> None:
+        """Begin with the front of an earlier search of the same question: none of its designs is lost."""
+        form = self.form
+        points = np.array([[d.values[v.name] for v in form.model.variables] for d in front.designs])
+        combinations = np.array([combination_of(self.instance, d) for d in front.designs], dtype=np.int64)
+        found = form.candidates(points.reshape(len(combinations), form.n), combinations, exact=True)
+        self.given = np.array([c.phi[: self.m] for c in found]).reshape(len(found), self.m)
+        self.given_gap = front.certificate.gap
+
+    def _in_place_of_given(self, phi: np.ndarray) -> list[int]:
+        """Return the positions of those designs that take the places of the given ones: each as good in everything."""
+        places = dict[int, None]()
+        for own in self.given:
+            as_good = np.flatnonzero(np.all(phi <= own + ROUNDED * np.maximum(np.abs(own), 1.0), axis=1))
+            if len(as_good):
+                places[int(as_good[np.argmin(phi[as_good].sum(axis=1))])] = None
+        return list(places)
+
+    def _claim_no_less(self) -> None:
+        """Where less is proven than was of the given designs, list only those that take their places.
+
+        What improves one of these by more than the gap of the given ones would have improved those as well.
+        """
+        if self.given_gap is None or not len(self.given) or not self.front:
+            return
+        gap, logs = self._proven_gap(), self.form.log_goals[: self.m]
+        if (gap is not None and gap <= self.given_gap) or (logs.any() and self.given_gap >= 1.0):
+            return
+        phi = np.array([c.phi[: self.m] for c in self.front])
+        self.front = [self.front[k] for k in sorted(self._in_place_of_given(phi))]
+        sizes = np.where(np.ptp(self.given, axis=0) > 0, np.ptp(self.given, axis=0), np.abs(self.given).max(axis=0))
+        share = -math.log1p(-self.given_gap) if logs.any() else 0.0
+        slack = np.where(logs, share, self.given_gap * sizes)
+        self.bounds.append(Bound(slack, np.empty((0, self.m))))
+
     # -- the run -------------------------------------------------------------------------------
 
     def run(self, weights: Sequence[float], settings: Mapping[str, Any], explained: bool = True) -> ParetoFront:
@@ -412,6 +457,8 @@ class FrontSearch:
                 if len(self.form.archive):
                     if self.m > 1:
                         self._timed("front", self._choose)
+                    if not self.closed:
+                        self._claim_no_less()
                     self.solves_to_find, self.reporting = self.form.nlp_solves, True
                     designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
                 elif explained:
@@ -477,6 +524,7 @@ class FrontSearch:
         proven = self.stairs.finished() if self.stairs is not None and len(self.form.archive) else []
         some = self._spread(proven or list(self.form.archive), self._more_than_asked)
         self.front = self._spread(distinct(some, self.m), self.points)
+        self._claim_no_less()
 
     def _note_open(self) -> None:
         """Note what is proven where a tree was stopped: what its open boxes still allow."""
@@ -801,7 +849,16 @@ class FrontSearch:
     def _spread(self, designs: Sequence[Candidate], most: int) -> list[Candidate]:
         """Return those designs, at most so many, that spread best; the best in each objective among them."""
         phi = np.array([c.phi[: self.m] for c in designs]).reshape(len(designs), self.m)
-        return [designs[int(k)] for k in spread_subset(phi, most)]
+        kept, ends = self._in_place_of_given(phi), extremes(phi)
+        if not kept:
+            return [designs[int(k)] for k in spread_subset(phi, most)]
+        if not self.closed:
+            return [designs[int(k)] for k in spread_subset(phi, most, [*kept, *ends])]
+        # What is proven speaks of the best in each objective: they come before designs that were given.
+        some = np.array(list(dict.fromkeys([*ends, *kept])))
+        if len(some) >= most:
+            return [designs[int(some[k])] for k in spread_subset(phi[some], most)]
+        return [designs[int(k)] for k in spread_subset(phi, most, some.tolist())]
 
     def _stand_for_all(self) -> bool:
         """Tell whether the designs of the front cover all that are known."""

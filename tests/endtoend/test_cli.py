@@ -325,3 +325,17 @@ def test_the_same_question_gives_the_same_bytes_whether_code_was_compiled_before
         assert clutchsynth(*words, tmp_path / name, **cache).returncode == 0
         saved.append((tmp_path / name / "designs.csv").read_bytes())
     assert saved[0] == saved[1]
+
+
+def test_a_saved_front_is_gone_on_with(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SMALL)
+    words = ("run", "small.yaml", "-o")
+    assert clutchsynth(*words, "first", "-q", folder=tmp_path).returncode == 0
+    more = clutchsynth(*words, "second", "--more", "first", folder=tmp_path)
+    assert more.returncode == 0, more.stderr
+    first, second = (json.loads((tmp_path / name / "front.json").read_text()) for name in ("first", "second"))
+    assert second["certificate"] == first["certificate"]
+    assert second["designs"] == first["designs"]
+    (tmp_path / "small.yaml").write_text(SMALL.replace("26.6 rad/s", "26.7 rad/s"))
+    assert "requirement driver_speed" in refused(clutchsynth(*words, "third", "--more", "first", folder=tmp_path))
+    assert not (tmp_path / "third").exists()
