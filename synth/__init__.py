@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from synth.description import describe
     from synth.explanation import Explanation, Relaxation, explain
     from synth.hooks import curves, second_opinion, simulate
+    from synth.improvement import improve
     from synth.jobs.run import BatchResult, batch
     from synth.loading import load_front
     from synth.near import NearEquals, near_equals
@@ -55,6 +56,7 @@ __all__ = [
     "evaluate",
     "explain",
     "families",
+    "improve",
     "load",
     "load_front",
     "near_equals",
@@ -91,6 +93,7 @@ _HOME = {
     "evaluate": "synth.analysis",
     "explain": "synth.explanation",
     "families": "synth.problem",
+    "improve": "synth.improvement",
     "load": "synth.problem",
     "load_front": "synth.loading",
     "near_equals": "synth.near",

@@ -414,7 +414,7 @@ def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
 def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> ParetoFront:
     """Search the designs for a spec; the time limit counts from ``begun``, and ``more`` is where to go on from."""
     from synth.console import progress_display
-    from synth.improve import improve_for
+    from synth.improvement import improve_for
     from synth.instance import catalogs_for
     from synth.loading import load_front
     from synth.search import synthesize, time_left

@@ -258,11 +258,11 @@ class ParetoFront:
         Raises
         ------
         InputError
-            When the question cannot be posed again, or the saved front was changed.
+            When the question cannot be posed again.
         """
-        from synth.improve import improve  # most runs do not need it
+        import synth  # it knows who searches; results do not
 
-        return improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
+        return synth.improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
 
     def table(self) -> tuple[list[str], list[list[Any]]]:
         """Return headers with units, and one row per design; None where there is no value."""

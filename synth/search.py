@@ -367,6 +367,7 @@ class FrontSearch:
         # What was found and proven without compiled code, while the compiler was at work.
         self.meanwhile: list[Candidate] = []
         self.bounded_meanwhile: list[Bound] = []
+        self.found_meanwhile: ParetoFront | None = None
         self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
@@ -383,6 +384,7 @@ class FrontSearch:
         self.by_steps = False  # whether a front at once has turned out to cost too much
         self.may_find_more = True  # unless a try was given up
         self.recalled = list(known)
+        self.to_report: tuple[Sequence[float], Mapping[str, Any], bool] = ([1.0] * self.m, {}, False)
         self.given = np.empty((0, self.m))  # phi of the designs of an earlier search
         self.given_gap: float | None = None
         self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
@@ -451,6 +453,7 @@ class FrontSearch:
         interrupted = ""
         designs: list[Design] = []
         explanation = None
+        self.to_report = weights, settings, explained
         try:
             with deadline.until(self.clock.deadline), meanwhile(self._look_meanwhile):
                 self.find()
@@ -470,6 +473,8 @@ class FrontSearch:
             interrupted = stop.reason
         except KeyboardInterrupt:
             interrupted = "interrupted"
+        if interrupted and self.found_meanwhile is not None:
+            return self.found_meanwhile
         if interrupted:
             self._stop_early()
             designs = self._designs(frame, weights, settle=False) if self.front else []
@@ -492,22 +497,20 @@ class FrontSearch:
         The search that waits goes on as if nothing had happened, so that its result does not depend on how long the
         compiler takes.
         """
-        aside: FrontSearch | None = None
-        try:
-            with switched_off(), deadline.until(self.clock.deadline, ready):
-                aside = FrontSearch(
-                    self.instance, self.chosen, self.points, self.gap, self.seed, self.progress, None, 1,
-                    self.effort, self.recalled,
-                )  # fmt: skip
-                for c in (*self.form.archive, *self.meanwhile):
-                    aside.form.archive.add(*rows_of([c]))
-                aside.find()
-        except Stopped:
-            deadline.check()
-        finally:
-            if aside is not None:
-                aside._note_open()
-                self.meanwhile, self.bounded_meanwhile = list(aside.form.archive), aside.bounds
+        with switched_off(), deadline.until(self.clock.deadline, ready):
+            aside = FrontSearch(
+                self.instance, self.chosen, self.points, self.gap, self.seed, self.progress, None, 1,
+                self.effort, self.recalled,
+            )  # fmt: skip
+            for c in (*self.form.archive, *self.meanwhile):
+                aside.form.archive.add(*rows_of([c]))
+            found = aside.run(*self.to_report)
+        self.meanwhile, self.bounded_meanwhile = list(aside.form.archive), aside.bounds
+        if found.certificate.kind == "global" and not found.interrupted:
+            self.found_meanwhile = found
+        if found.interrupted == "interrupted":
+            raise KeyboardInterrupt
+        deadline.check()
 
     def _stop_early(self) -> None:
         """Take what is known when time is over; what the open boxes still allow is the gap that is proven."""

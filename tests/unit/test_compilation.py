@@ -30,6 +30,15 @@ def compiler(folder: Path, seconds: float) -> str:
     return str(path)
 
 
+def ended(pid: int) -> bool:
+    """Wait until a process is gone; tell whether it is."""
+    for _ in range(1000):
+        if not alive(pid):
+            return True
+        time.sleep(0.01)
+    return False
+
+
 def alive(pid: int) -> bool:
     """Tell whether a process is still at work."""
     try:
@@ -69,7 +78,7 @@ def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
     with meanwhile(work), deadline.until(end), pytest.raises((Stopped, KeyboardInterrupt)):
         compile_shared(compiler(tmp_path, 600), SOURCE, folder / "code.so", [])
     assert children
-    assert not alive(children[0])
+    assert ended(children[0])
     assert not list(folder.iterdir())
 
 
@@ -126,13 +135,43 @@ def never_done(tmp_path, monkeypatch):
 
 def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_done):
     begin = time.monotonic()
-    front = ask(time_limit=4.0)
-    assert front.interrupted == "time limit"
+    front = ask(time_limit=4.0, gap=1e-6)
     assert front.designs
     assert all(not d.violated for d in front.designs)
-    assert front.certificate.kind == "heuristic"
     assert front.certificate.gap is not None
     assert time.monotonic() - begin < 60  # generous: it would be ten minutes
+    assert not list(never_done.glob("*"))
+
+
+def test_what_is_proven_while_the_compiler_works_is_an_answer_where_time_is_over(never_done, monkeypatch):
+    ends = []
+    aside = search.FrontSearch._look_meanwhile
+
+    def over(self, ready):
+        """Let time run out when the search beside the compiler is finished."""
+        aside(self, lambda: False)
+        ends.append(self.found_meanwhile)
+        raise Stopped("time limit")
+
+    monkeypatch.setattr(search.FrontSearch, "_look_meanwhile", over)
+    front = ask(time_limit=600.0)
+    assert front is ends[0]
+    assert front.certificate.kind == "global"
+    assert not front.interrupted
+    assert not list(never_done.glob("*"))
+
+
+def test_ctrl_c_while_the_compiler_works_is_heard(never_done, monkeypatch):
+    heard = []
+
+    def stop(said):
+        if said["incumbents"] and not heard:
+            heard.append(said)
+            raise KeyboardInterrupt
+
+    front = ask(progress=stop)
+    assert front.interrupted == "interrupted"
+    assert front.designs
     assert not list(never_done.glob("*"))
 
 

@@ -10,7 +10,7 @@ import pytest
 import synth
 from synth import search
 from synth.effort import SearchEffort
-from synth.improve import go_on
+from synth.improvement import go_on
 from synth.instance import catalogs_for
 from synth.loading import load_front
 from tests.unit.strut import NEEDED, RODS, Strut
@@ -100,7 +100,7 @@ def test_a_front_whose_record_was_changed_is_refused(unproven, tmp_path):
     content = json.loads((tmp_path / "front.json").read_text())
     content["certificate"]["gap"] = 1e-6
     (tmp_path / "front.json").write_text(json.dumps(content))
-    with pytest.raises(synth.InputError, match="as it was saved"):
+    with pytest.raises(synth.InputError, match="changed after it was saved"):
         load_front(tmp_path).improve(problem=Strut(), catalogs=OWN)
 
 

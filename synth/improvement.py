@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.front_record import digest_of
 from synth.question import combination_of, problem_of
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ def improve(
     Raises
     ------
     InputError
-        When the question cannot be posed again, or the record does not fit its checksum.
+        When the question cannot be posed again.
     """
     from synth.search import pose, time_left  # the search knows results
 
@@ -125,25 +124,14 @@ def go_on(
     Raises
     ------
     InputError
-        When the front is one of another question, or its record does not fit its checksum.
+        When the front is one of another question.
     """
-    must_be_unchanged(front, name)
     must_be_the_same(front, question, name)
     certificate, settings = front.certificate, question.settings
     enough = front.complete or len(front.designs) == settings["points"]
     if certificate.kind == "global" and (not front.designs or ((certificate.gap or 1.0) <= settings["gap"] and enough)):
         return front
     return question.answer(workers, progress, time_limit, given=front)
-
-
-def must_be_unchanged(front: ParetoFront, name: str) -> None:
-    """Refuse a front whose record is not what was saved."""
-    record = front.record
-    if record is None:
-        return  # just computed
-    content = {k: v for k, v in record.items() if k != "digest"}
-    if digest_of(content) != record.get("digest"):
-        raise InputError(name, str(front.folder), "a front.json as it was saved: its content does not fit its digest")
 
 
 def must_be_the_same(front: ParetoFront, question: Question, name: str) -> None:
