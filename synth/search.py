@@ -40,7 +40,7 @@ from synth.recall import recall
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
 from synth.scatter import read_remaining
-from synth.seeker import SCARCE, Seeker
+from synth.seeker import EDGE_WORTH, SCARCE, Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 
@@ -414,9 +414,14 @@ class FrontSearch:
         """Begin with the front of an earlier search of the same question: none of its designs is lost."""
         form = self.form
         points = np.array([[d.values[v.name] for v in form.model.variables] for d in front.designs])
+        points = points.reshape(len(front.designs), form.n)
         combinations = np.array([combination_of(self.instance, d) for d in front.designs], dtype=np.int64)
-        found = form.candidates(points.reshape(len(combinations), form.n), combinations, exact=True)
-        self.given = np.array([c.phi[: self.m] for c in found]).reshape(len(found), self.m)
+        closely, phi = form.feasible_rows(points, combinations)
+        edge, _ = form.edge_rows(points, combinations)
+        phi[edge] += EDGE_WORTH
+        rows = np.concatenate([closely, edge])
+        form.archive.add(combinations[rows], points[rows], phi[rows])
+        self.given = phi[rows, : self.m]
         self.given_gap = front.certificate.gap
 
     def _in_place_of_given(self, phi: np.ndarray) -> list[int]:
