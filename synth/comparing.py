@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from synth import scatter
-from synth.clock import Stopped
 from synth.comparison import Comparison, FamilyOutcome
+from synth.deadline import Stopped, until
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.instance import Instance
@@ -186,7 +186,8 @@ class _Comparing:
         if len(self.faults) == len(serving):
             raise next(iter(self.faults.values()))
         try:
-            self._challenge_all()
+            with until(self.deadline):
+                self._challenge_all()
         except Stopped as stop:
             self._stop(stop.reason)
         except KeyboardInterrupt:

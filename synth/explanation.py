@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 
 from synth.analysis import evaluate
-from synth.clock import Stopped
+from synth.deadline import Stopped, until
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.instance import SIGNS, Instance, as_mapping, catalogs_for
@@ -209,7 +209,8 @@ def explain(
     asking = _Question(problem, requirements, catalogs, parts, limits, fix, grid, seed, progress, time_limit)
     result = Explanation(guards=tuple(asking.guards))
     try:
-        _explain(asking, result)
+        with until(asking.deadline):
+            _explain(asking, result)
     except Stopped as stop:
         result.interrupted = stop.reason
     except KeyboardInterrupt:

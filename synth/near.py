@@ -21,6 +21,7 @@ from synth.analysis import make_design, part_row, with_ties
 from synth.batch_nlp import MISSED, Tasks
 from synth.clock import Clock, Stopped
 from synth.cover import cover
+from synth.deadline import until
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
 from synth.files import csv_text
@@ -304,7 +305,8 @@ class _Enumeration:
     def run(self, count: int) -> NearEquals:
         interrupted, complete = "", False
         try:
-            complete = self._enumerate()
+            with until(self.clock.deadline):
+                complete = self._enumerate()
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:

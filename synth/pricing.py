@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from synth.batch_nlp import MISSED, Solutions, Tasks
-from synth.clock import Stopped
+from synth.deadline import Stopped, until
 from synth.elasticity import NOISE, Optima, optima
 from synth.errors import InputError
 from synth.fingerprint import code_digest
@@ -141,14 +141,15 @@ class _Pricing:
         rows: list[Price] = []
         interrupted, kept = "", 0
         try:
-            for number, design in enumerate(designs):
-                rank = int(design.rank or 0)
-                known = store.get(rank)
-                kept += known is not None
-                if known is None:
-                    known = self._design(design, number, len(designs))
-                    store.put(rank, known)
-                rows += known
+            with until(self.deadline):
+                for number, design in enumerate(designs):
+                    rank = int(design.rank or 0)
+                    known = store.get(rank)
+                    kept += known is not None
+                    if known is None:
+                        known = self._design(design, number, len(designs))
+                        store.put(rank, known)
+                    rows += known
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:

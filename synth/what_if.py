@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from synth.breaks import find_breaks, weight_breaks
-from synth.clock import Stopped
+from synth.deadline import Stopped, until
 from synth.fingerprint import code_digest
 from synth.front_record import front_record
 from synth.loading import front_of_record
@@ -135,11 +135,12 @@ class _Run:
         stopped, found = "", list[Break]()
         self.share_of_steps = 0.5 if breaks else 1.0
         try:
-            self._search_together()
-            for position in range(len(self.steps)):
-                self.answered.append(self._answer(position))
-            if breaks:
-                self._find_breaks(found)
+            with until(self.deadline):
+                self._search_together()
+                for position in range(len(self.steps)):
+                    self.answered.append(self._answer(position))
+                if breaks:
+                    self._find_breaks(found)
         except Stopped as stop:
             stopped = stop.reason
         except KeyboardInterrupt:
