@@ -22,6 +22,7 @@ from synth.tables import Catalogs
 from synth.together import alike
 from synth.together_fronts import FrontsSearch
 from tests.certificates.claims import Answer, answer, refuted, run, signed, weak_reference, wrong_designs, wrong_form
+from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
@@ -38,6 +39,7 @@ INSTANCES = (
         "hard": 0,
     }
     | dict.fromkeys(SIGNS, 4)
+    | dict.fromkeys(KINKS, 8)
 )
 CASES = [(structure, seed) for structure, count in INSTANCES.items() for seed in range(count)]
 # Bounds of these are valid and cheap: all but one front of each must be proven.
