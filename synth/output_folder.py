@@ -50,23 +50,30 @@ class ResultKind:
     """A result that a command writes into a folder.
 
     ``command`` is what writes it, ``marks`` the files that tell that there is one, ``owned`` patterns of all its
-    files: what an earlier result has of them, and a new one has not, goes with the earlier one.
+    files: what an earlier result has of them, and a new one has not, goes with the earlier one. ``found`` are the keys
+    of a mark under which stands what was found; where all are empty, and it was stopped, there is no result yet.
     """
 
     command: str
     marks: tuple[str, ...]
     owned: tuple[str, ...]
+    found: tuple[str, ...] = ()
 
 
 FRONT = ResultKind(
     "run",
     ("front.json", "comparison.json"),
     ("designs.csv", "front.json", "design_*.yaml", "robust.csv", "explanation.txt", "comparison.json", "families.csv"),
+    ("designs",),
 )
-NEAR_EQUALS = ResultKind("near-equals", ("near_equals.json",), ("near_equals.csv", "near_equals.json", "design_*.yaml"))
-RATING = ResultKind("rate", ("rating.json",), ("rating.csv", "robust.csv", "rating.json"))
+NEAR_EQUALS = ResultKind(
+    "near-equals", ("near_equals.json",), ("near_equals.csv", "near_equals.json", "design_*.yaml"), ("found",)
+)
+RATING = ResultKind("rate", ("rating.json",), ("rating.csv", "robust.csv", "rating.json"), ("designs",))
 PRICES = ResultKind("prices", ("prices.csv",), ("prices.csv", "prices.json"))
-EXPLANATION = ResultKind("explain", ("explanation.json",), ("explanation.csv", "explanation.json"))
+EXPLANATION = ResultKind(
+    "explain", ("explanation.json",), ("explanation.csv", "explanation.json"), ("ways", "conflict")
+)
 STUDY = ResultKind("whatif", ("whatif.csv",), ("whatif.csv", "breaks.csv", "whatif.svg", "fronts.svg"))
 BATCH = ResultKind("batch", ("batch.json",), ("designs.csv", "rows.csv", "batch.json"))
 SIZE_RANGE = ResultKind(
@@ -78,17 +85,17 @@ KINDS = (FRONT, NEAR_EQUALS, RATING, PRICES, EXPLANATION, STUDY, BATCH, SIZE_RAN
 
 
 def holds(folder: Path, kind: ResultKind) -> bool:
-    """Tell whether a result of this kind stands in a folder; a search that was stopped before any design left none."""
+    """Tell whether a result of this kind stands in a folder; what was stopped before anything was found is none."""
     return any((folder / mark).exists() and not _found_nothing(folder / mark, kind) for mark in kind.marks)
 
 
 def _found_nothing(record: Path, kind: ResultKind) -> bool:
     """Tell whether a record says that a search was stopped before it had found anything."""
-    if kind is not FRONT:
+    if not kind.found:
         return False
     try:
-        content = read_json(record, "front", "a front")
-        return bool(content["interrupted"]) and not content["designs"]
+        content = read_json(record, "result", "a result that clutchsynth has written")
+        return bool(content["interrupted"]) and not any(content[key] for key in kind.found)
     except (ValueError, KeyError, TypeError):
         return False
 

@@ -126,7 +126,9 @@ class Store:
 
     def __init__(self, folder: Path | None, fingerprint: str) -> None:
         self.folder, self.fingerprint = folder, fingerprint
-        self.known: dict[int, list[dict[str, Any]]] = {} if folder is None else self._read(folder / RECORD)
+        earlier = None if folder is None else self._read(folder / RECORD)
+        self.known: dict[int, list[dict[str, Any]]] = earlier or {}
+        self.begun = earlier is not None
 
     @classmethod
     def of(cls, folder: Path | None, fingerprint: str) -> Store:
@@ -135,19 +137,19 @@ class Store:
             return cls(None, fingerprint)
         settle(folder)
         here = cls(folder, fingerprint)
-        if here.known or not (folder / RECORD).exists():
+        if here.begun or not (folder / RECORD).exists():
             return here
         return cls(folder / f"stopped_{fingerprint[:8]}", fingerprint)
 
-    def _read(self, path: Path) -> dict[int, list[dict[str, Any]]]:
-        """Return what an earlier run of the same question has finished; a file that is none begins a new one."""
+    def _read(self, path: Path) -> dict[int, list[dict[str, Any]]] | None:
+        """Return what an earlier run of the same question has finished; None where there was none."""
         try:
             content = read_json(path, "prices", "prices that clutchsynth has written")
             if content["format"] != FORMAT or content["fingerprint"] != self.fingerprint:
-                return {}
+                return None
             return {int(k): [asdict(Price(**row)) for row in rows] for k, rows in content["designs"].items()}
         except (ValueError, KeyError, TypeError, AttributeError):
-            return {}
+            return None
 
     def text(self) -> str:
         """Return what stands in the file."""

@@ -8,6 +8,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ import pytest
 from tests.endtoend.entry import COMMAND, at_once, clutchsynth
 from tests.endtoend.test_choice_cli import SEVERAL
 from tests.endtoend.test_cli import HOIST, SMALL, refused
+from tests.unit.test_output_folder import small_disk
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
 
@@ -185,6 +187,20 @@ def test_a_batch_without_room_says_so_in_one_sentence(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["rows.csv"]
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux") or os.geteuid() != 0, reason="only root can mount a disk")
+def test_a_batch_whose_disk_gets_full_keeps_what_it_has_and_goes_on(tmp_path: Path) -> None:
+    rows(tmp_path / "rows.csv", *range(500, 530))
+    with small_disk(tmp_path / "out", 400) as disk:
+        full = clutchsynth(*BATCH, "-q", folder=tmp_path)
+        assert full.returncode == 4
+        assert len(full.stderr.splitlines()) == 1
+        assert "is full" in full.stderr
+        assert "what was found is in the database, the same command goes on" in full.stderr
+        subprocess.run(["mount", "-o", "remount,size=20m", str(disk)], check=True)
+        assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
+        assert len((disk / "rows.csv").read_text().splitlines()) == 31
+
+
 def test_what_a_batch_has_found_is_kept_where_it_cannot_be_written(tmp_path: Path) -> None:
     rows(tmp_path / "rows.csv", 600)
     assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
@@ -210,13 +226,19 @@ def test_a_batch_of_other_rows_that_is_stopped_stands_beside(tmp_path: Path) -> 
     before = {name: raw for name, raw in contents(out).items() if not name.startswith("jobs.sqlite")}
     rows(tmp_path / "rows.csv", *range(600, 760))
     with subprocess.Popen(
-        [*COMMAND, *BATCH], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*COMMAND, *BATCH],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     ) as process:
         assert process.stderr is not None
         assert "rows" in process.stderr.readline()  # of the progress: it is at work
-        process.send_signal(signal.SIGTERM)
+        os.killpg(process.pid, signal.SIGTERM)  # its workers as well, as a scheduler does
         said, errors = process.communicate(timeout=100)
     assert process.returncode == 4, errors
+    assert "failed" not in said
     kept, stopped = beside(out)
     assert {name: raw for name, raw in kept.items() if not name.startswith("jobs.sqlite")} == before
     assert {name.split("/")[1] for name in stopped} == {"designs.csv", "rows.csv", "batch.json"}

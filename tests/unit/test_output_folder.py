@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -309,15 +310,14 @@ def test_ctrl_c_waits_until_all_is_saved(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="only root can be somebody else")
-def test_what_somebody_else_has_left_is_in_nobodys_way(tmp_path: Path) -> None:
-    (tmp_path / output_folder.LOCK).touch(mode=0o644)
-    for place in (tmp_path, *tmp_path.parents[:2]):
-        place.chmod(0o777)
-    child = os.fork()
-    if child == 0:
-        os.setuid(65534)
-        try:
-            save_result(tmp_path, OLD, FRONT, stopped=False)
-        finally:
-            os._exit(0 if texts(tmp_path) == OLD else 1)
-    assert os.waitpid(child, 0)[1] == 0
+def test_what_somebody_else_has_left_is_in_nobodys_way() -> None:
+    program = (
+        "import json, os, sys\nfrom pathlib import Path\nfrom synth.output_folder import FRONT, save_result\n"
+        "os.setuid(65534)\nsave_result(Path(sys.argv[1]), json.loads(sys.argv[2]), FRONT, False)"
+    )
+    with tempfile.TemporaryDirectory() as name:  # pytest's own folders are for one user
+        folder = Path(name)
+        folder.chmod(0o777)
+        (folder / output_folder.LOCK).touch(mode=0o644)
+        subprocess.run([sys.executable, "-c", program, name, json.dumps(OLD)], check=True)
+        assert texts(folder) == OLD
