@@ -14,6 +14,7 @@ import json
 import os
 import socket
 import sqlite3
+import time
 import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,6 +30,7 @@ from synth.errors import InputError
 from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Question, Result, Row, Unit, moment
 
 HEAD = "1"  # the last of the migrations
+PATIENCE = 60.0  # seconds that whoever opens or writes waits for others
 LEASE = 60.0  # seconds that a claim lasts without a sign of life
 CHUNK = 500  # rows written or read at a time
 WHOLE = "a job database that is whole"
@@ -127,7 +129,7 @@ def engine_for(url: str | sa.URL) -> sa.Engine:
         address = address.set(drivername="postgresql+psycopg")
     try:
         engine = sa.create_engine(
-            address, connect_args={"timeout": 60} if kind == "sqlite" else {}, pool_pre_ping=True,
+            address, connect_args={"timeout": PATIENCE} if kind == "sqlite" else {}, pool_pre_ping=True,
             json_deserializer=lambda text: _read_back(text, shown),
         )  # fmt: skip
     except (ImportError, NoSuchModuleError) as error:
@@ -170,10 +172,30 @@ def _tell_fault(context: sa.engine.ExceptionContext) -> None:
 
 def _prepare_sqlite(connection: Any, _: Any) -> None:
     cursor = connection.cursor()
-    # Readers and one writer at a time; a killed process loses nothing that was committed.
-    for pragma in ("journal_mode=WAL", "synchronous=NORMAL", "foreign_keys=ON", "busy_timeout=60000"):
+    for pragma in (f"busy_timeout={1000 * PATIENCE:.0f}", "synchronous=NORMAL", "foreign_keys=ON"):
         cursor.execute(f"PRAGMA {pragma}")
+    _write_ahead(cursor)
     cursor.close()
+
+
+def _write_ahead(cursor: Any) -> None:
+    """Let there be readers and one writer at a time; a killed process loses nothing that was committed.
+
+    While another process writes into a file that is new, SQLite refuses to change it so without waiting at all.
+    """
+    deadline, pause = time.monotonic() + PATIENCE, 0.005
+    while True:
+        try:
+            cursor.execute("PRAGMA journal_mode=WAL")
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode & 0xFF not in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+                raise
+            if time.monotonic() > deadline:
+                raise
+        else:
+            return
+        time.sleep(pause)
+        pause = min(2 * pause, 0.25)
 
 
 def file_url(path: Path) -> sa.URL:
@@ -187,28 +209,30 @@ def migrate(engine: sa.Engine) -> None:
     Raises
     ------
     InputError
-        The database was made by a later version.
+        The database was made by a later version: its tables are at none of the migrations that this one knows.
     """
     if _version(engine) == HEAD:
         return
     from alembic import command  # costly to import; a database needs it once
     from alembic.config import Config
+    from alembic.script import ScriptDirectory
 
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).with_name("migrations")).replace("%", "%%"))
+    chain = {revision.revision for revision in ScriptDirectory.from_config(config).walk_revisions()}
     with engine.connect() as connection:
         if engine.dialect.name == "sqlite":
             connection.exec_driver_sql("BEGIN IMMEDIATE")
         else:
             connection.execute(sa.select(sa.func.pg_advisory_xact_lock(LOCK)))
         known = _version_on(connection)
-        if known is not None and known > HEAD:
+        if known is not None and known not in chain:
             raise InputError(
                 "--database",
                 engine.url.render_as_string(hide_password=True),
                 f"tables of version {HEAD}; these are {known}",
             )
         if known != HEAD:
-            config = Config()
-            config.set_main_option("script_location", str(Path(__file__).with_name("migrations")).replace("%", "%%"))
             config.attributes["connection"] = connection
             command.upgrade(config, "head")
         connection.commit()

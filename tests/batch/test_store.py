@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ from alembic.migration import MigrationContext
 from synth.errors import InputError
 from synth.jobs import store as module
 from synth.jobs.models import VERSION_TABLE, Base, Unit
-from synth.jobs.store import CANCELLED, OPEN, Outcome, Store, digest, has_died, new_owner
+from synth.jobs.store import CANCELLED, OPEN, Outcome, Store, digest, file_url, has_died, new_owner
 
 
 def outcome(text: str = "found", status: str = "optimal") -> Outcome:
@@ -221,11 +223,37 @@ def test_migrations_make_what_the_models_say(store: Store) -> None:
         assert again.jobs() == []
 
 
-def test_tables_of_a_later_version_are_left_alone(store: Store) -> None:
+@pytest.mark.parametrize("version", ["9", "10", "0", "02-later"])
+def test_tables_of_a_later_version_are_left_alone(store: Store, version: str) -> None:
+    # What counts is the chain of migrations that is known, not how the names of two versions sort as words.
     with store.engine.begin() as connection:
-        connection.execute(sa.text(f"UPDATE {VERSION_TABLE} SET version_num = '9'"))
-    with pytest.raises(InputError, match="these are 9"):
+        connection.execute(sa.text(f"UPDATE {VERSION_TABLE} SET version_num = '{version}'"))
+    with pytest.raises(InputError, match=f"these are {version}"):
         Store(store.engine.url)
+
+
+def test_a_new_file_that_another_process_writes_into_is_waited_for(tmp_path: Path) -> None:
+    file = tmp_path / "jobs.sqlite"
+    other = sqlite3.connect(file, isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN IMMEDIATE")
+    with pytest.raises(sqlite3.OperationalError, match="locked"), closing(sqlite3.connect(file, timeout=60)) as first:
+        first.execute("PRAGMA journal_mode=WAL")  # SQLite itself does not wait
+    done = threading.Timer(0.5, other.execute, ["COMMIT"])
+    done.start()
+    with Store(file_url(file)) as store:
+        assert store.jobs() == []
+        with store.engine.connect() as connection:
+            assert connection.exec_driver_sql("PRAGMA journal_mode").scalar() == "wal"
+    done.join()
+    other.close()
+
+
+def test_what_is_no_database_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "jobs.sqlite"
+    file.write_text("no database at all, but text that is long enough to be looked at " * 20, encoding="utf-8")
+    monkeypatch.setattr(module.time, "sleep", lambda seconds: pytest.fail("it waited"))
+    with pytest.raises(InputError, match="--database"):
+        Store(file_url(file))
 
 
 def test_two_processes_may_open_a_new_database_at_once(database: str) -> None:
