@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.count_domain import stated
 from synth.declaration import Variable
-from synth.errors import InputError, at
+from synth.errors import InputError, RefusedError, at
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.model import Evaluation, Model, part_column_value
@@ -455,7 +455,7 @@ def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[st
             if float(function(*[symbols[str(s)] for s in used])) > 0.5:
                 name = min(kinds)
                 path = ("parts" if name in model.declaration.slots else "values", name)
-                raise InputError(refusal.code, ", ".join(sorted(kinds)), refusal.message, path)
+                raise RefusedError(refusal.code, ", ".join(sorted(kinds)), refusal.message, path)
     remarks = []
     for slot, (table, index) in rows.items():
         part = model.declaration.slots[slot]

@@ -236,6 +236,7 @@ def explain(
     folder: Annotated[
         Path | None, typer.Option("--output", "-o", help="Folder for explanation.csv and .json.", metavar="DIR")
     ] = None,
+    physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
     time_limit: TimeLimit = None,
     quiet: Quiet = False,
 ) -> None:
@@ -254,7 +255,9 @@ def explain(
         problem = _load(asked.family, asked.options)
         settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
         catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-        found = explain_question(problem, asked.requirements, catalogs=catalogs, progress=progress, **settings)
+        found = explain_question(
+            problem, asked.requirements, catalogs=catalogs, progress=progress, physics=physics, **settings
+        )
     if not quiet:
         print_explanation(found, problem.title, output())
     if folder is not None:

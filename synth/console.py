@@ -74,7 +74,12 @@ def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = No
 def print_explanation(found: Explanation, title: str, console: Console) -> None:
     """Print why nothing is feasible, and every way out with the smallest change first."""
     console.print(f"{title}: {found.message}")
-    titles = {"requirement": "One requirement alone", "limit": "One limit alone", "joint": "All limits together",
+    for guard in found.fired:
+        console.print(f"\nRefused: {guard.name}: expected {guard.message}", soft_wrap=True)
+        for name, value in guard.lifted_by.items():
+            console.print(f"  not refused with {name} {value}", soft_wrap=True)
+    titles = {"requirement": "One requirement alone", "limit": "One limit alone", "fix": "One pin alone",
+              "choice": "Another choice", "joint": "All that was asked together", "physics": "All limits together",
               "part": "Another part"}  # fmt: skip
     for kind, heading in titles.items():
         ways = [way for way in found.ways if way.kind == kind]

@@ -56,6 +56,10 @@ class UnknownOptionError(InputError):
     """An option that a problem does not have, as it is or with the other options; its name is the last key."""
 
 
+class RefusedError(InputError):
+    """What a family refuses by its declaration: every word is understood, but nothing can be asked so."""
+
+
 class at:
     """Say where in the input one is: what is refused inside stands under these keys.
 

@@ -18,7 +18,7 @@ import numpy as np
 from synth.conditions import may_be_condition, parse_condition
 from synth.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.declaration import Part, Refusal
-from synth.errors import InputError, at
+from synth.errors import InputError, RefusedError, at
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import above, within
 from synth.model import Model, part_column_value
@@ -172,6 +172,8 @@ class Instance:
     restrict : bool
         False for the analysis of a given design: then rows are not filtered, and limits on what it is made of bound
         nothing.
+    refuse : bool
+        False where the family's refusals are to be explained: they are neither raised nor leave out rows.
     """
 
     def __init__(
@@ -184,6 +186,7 @@ class Instance:
         fix: Mapping[str, Any] | None = None,
         grid: bool = True,
         restrict: bool = True,
+        refuse: bool = True,
     ) -> None:
         asked = known_requirements(problem, requirements, catalogs)
         self.problem = problem
@@ -195,7 +198,8 @@ class Instance:
         self.requirements = self._requirement_values(asked)
         self.given = frozenset(asked)
         self.not_asked = [r.name for r in d.requirements.values() if r.sx is None]
-        self._refuse_requirements()
+        if refuse:
+            self._refuse_requirements()
         self.lower = np.array([v.lower for v in self.model.variables])
         self.upper = np.array([v.upper for v in self.model.variables])
         self.pinned = np.zeros(len(self.model.variables), dtype=bool)
@@ -219,6 +223,7 @@ class Instance:
         if restrict:
             self._select_rows(rules)
             self._select_counts()
+        if restrict and refuse:
             self._refuse_rows()
             self._refuse_without_partner()
         self.apart = 0  # factors, from the first, that tell questions apart and are not for the search to choose
@@ -324,7 +329,7 @@ class Instance:
         place = "requirements" if shown else "options"
         shown = shown or {o.name: f"{o.name} = {o.chosen}" for o in d.options.values() if o.chosen != o.default}
         path = (place, *shown) if len(shown) == 1 else (place,)
-        return InputError(refusal.code, ", ".join(shown.values()), refusal.message, path)
+        return RefusedError(refusal.code, ", ".join(shown.values()), refusal.message, path)
 
     def moved(self, name: str, value: float) -> Instance:
         """Return this question with another value of a requirement, and of those whose default is made of it.
@@ -336,13 +341,18 @@ class Instance:
         InputError
             When the requirement cannot have that value.
         """
+        other = self.shifted(name, value)
+        other._refuse_requirements()
+        return other
+
+    def shifted(self, name: str, value: float) -> Instance:
+        """Return this question with another value of a requirement, as :meth:`moved`, whether it is refused or not."""
         other, declared = copy.copy(self), self.model.declaration.requirements
         values = {n: self.requirements[n] for n in self.given} | {name: value}
         other.requirements = other._requirement_values(
             {n: format_quantity(v, declared[n].unit, None) for n, v in values.items()}
         )
         other.given = self.given | {name}
-        other._refuse_requirements()
         return other
 
     # -- limits and fix ------------------------------------------------------------------------
@@ -620,7 +630,7 @@ class Instance:
             shown = ", ".join(labels[:5])
             choice = name in model.declaration.choices
             place = "parts" if slot is not None else "fix" if name in self._fixed_discrete else "limits"
-            raise InputError(refusal.code, f"{name} = {shown}" if choice else shown, refusal.message, (place, name))
+            raise RefusedError(refusal.code, f"{name} = {shown}" if choice else shown, refusal.message, (place, name))
         if slot is not None:
             position = selection.slots.index(slot)
             selection.slots[position] = SlotRows(

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Limit, Objective, Variable
+from synth.fired_guards import wanted
 from synth.instance import ExtraLimit, Instance
 from synth.model import Model
 from synth.problem import DesignProblem
@@ -40,6 +41,10 @@ class Relaxed(DesignProblem):
         (kind, name) of a requirement, limit or part column (``slot.column``) -> 1 or -1, upwards or downwards.
     kept : collection of str
         The limits that count; guards always do.
+    rooms : mapping, optional
+        Requirement -> the largest amount that its declared range allows, where others may move on.
+    free : collection of str
+        Slots whose rules do not count.
     """
 
     def __init__(
@@ -48,11 +53,14 @@ class Relaxed(DesignProblem):
         own: Sequence[ExtraLimit],
         give: Mapping[tuple[str, str], float],
         kept: Collection[str],
+        rooms: Mapping[str, float] | None = None,
+        free: Collection[str] = (),
     ) -> None:
         self.name = f"{instance.problem.name} (relaxed)"
         self.title = instance.problem.title
         super().__init__(**instance.problem.options)
-        self._instance, self._own, self._give, self._kept = instance, own, give, kept
+        self._instance, self._own, self._give, self._kept, self._rooms = instance, own, give, kept, rooms or {}
+        self._free = free
         self._model = self._traced()
 
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
@@ -66,13 +74,18 @@ class Relaxed(DesignProblem):
             AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
         )
         before, after = self._moved_inputs(amount.sx)
+        negative = {x.name for x in self._own if x.limit < 0}
 
         def moved(expression: Any) -> Any:
             return ca.substitute([ca.SX(expression)], before, after)[0] if before else expression
 
         def loosened(limit: Limit) -> Limit:
             sign = self._give.get((LIMIT, limit.name))
-            return limit if sign is None else replace(limit, limit=limit.limit * np.exp(sign * amount.sx))
+            if sign is None:
+                return limit
+            # A negative bound that is to be less strict moves to the other side of a factor.
+            sign = -sign if limit.name in negative else sign
+            return replace(limit, limit=limit.limit * np.exp(sign * amount.sx))
 
         target = copy.copy(source)
         target.problem = self.name
@@ -89,12 +102,17 @@ class Relaxed(DesignProblem):
         own = len(source.refusals) - len(self._instance.compared)
         for refusal in source.refusals[:own]:
             when = moved(expanded(refusal.when, original.calls))
-            if any(str(s) == AMOUNT for s in ca.symvar(when)):
-                name = f"refused: {refusal.code}"
-                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", when, ca.SX(0.5), False, 1e-9)
-            else:
+            if not any(str(s) == AMOUNT for s in ca.symvar(when)):
                 target.refusals.append(refusal)
-        target.refusals += source.refusals[own:]  # rows are compared as they are, whatever gives way
+                continue
+            sides = [(w.smaller, w.larger) for w in wanted(refusal.when) or ()] or [(refusal.when, 0.5)]
+            for k, pair in enumerate(sides):
+                name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
+                value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
+                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", value, bound, False, 1e-9)
+        # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
+        rules = zip(self._instance.compared, source.refusals[own:], strict=True)
+        target.refusals += [refusal for rule, refusal in rules if rule.slot not in self._free]
         target.variables = {**source.variables, AMOUNT: amount}
         target.objectives = {AMOUNT: Objective(AMOUNT, "min", True), **source.objectives}
         target.advices = []
@@ -117,7 +135,9 @@ class Relaxed(DesignProblem):
                 value = ca.substitute([expanded(r.default, calls)], before, after)[0]
             if sign or value is not r.sx:
                 before.append(r.sx)
-                after.append(value * np.exp(sign * amount) if sign else value)
+                room = self._rooms.get(r.name, MOST)
+                step = ca.fmin(amount, room) if room < MOST else amount
+                after.append(value * np.exp(sign * step) if sign else value)
         for part in d.slots.values():
             for key, column in part.columns.items():
                 sign = self._give.get((COLUMN, f"{part.slot}.{key}"), 0.0)

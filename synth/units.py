@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -836,6 +836,44 @@ def _least_digits(value: float, unit: Unit) -> int:
         while abs(float(f"{value:.{digits - 1}e}") - value) > _FAR * abs(value):
             digits += 1
     return digits
+
+
+def outward(si: float, unit: str | Unit, up: bool, digits: int = 6) -> Iterator[str]:
+    """Write an SI value with its unit, rounded to one side, and then further and further on that side.
+
+    Parameters
+    ----------
+    si : float
+        SI value.
+    unit : str or Unit
+        Unit to write.
+    up : bool
+        Whether what is larger is on the side where it does.
+    digits : int
+        Significant digits of the first.
+
+    Yields
+    ------
+    str
+        First the nearest number on the side, or one that is nearer than a hundredth of its last digit.
+
+    Examples
+    --------
+    >>> list(outward(0.1202016, "mm", up=True))
+    ['120.202 mm', '120.203 mm', '120.22 mm', '120.4 mm', '122 mm']
+    >>> next(outward(4.0000000001e-3, "mm", up=False))
+    '4 mm'
+    """
+    unit = unit if isinstance(unit, Unit) else parse_unit(unit)
+    shown = float(from_si(si, unit))
+    size = math.floor(math.log10(abs(shown))) if shown else 0
+    for less in range(digits - 1):
+        step = 10.0 ** (size - digits + 1 + max(less - 1, 0))
+        whole = math.ceil(shown / step - 0.01) if up else math.floor(shown / step + 0.01)
+        # The first is rounded; then comes the next number, and those of fewer digits beyond it.
+        whole += (1 if up else -1) if less else 0
+        text = f"{float(f'{whole * step:.{digits}g}'):.{digits}g}"
+        yield text if unit.text == "-" else f"{text} {unit.text}"
 
 
 def header(name: str, unit: str | Unit) -> str:

@@ -9,6 +9,7 @@ from synth.explanation import _rounded
 from synth.search import synthesize
 from synth.units import parse_quantity
 from tests.conformance.cases import CASES
+from tests.endtoend.entry import at_once
 
 FAMILIES = ("wrap_spring", "roller_coupling")
 
@@ -40,6 +41,38 @@ def test_applying_a_relaxation_is_feasible_and_one_per_cent_less_is_not(explaine
         shown = _rounded(less, unit, way.sense)
         assert parse_quantity(shown, unit, way.name) != pytest.approx(way.needed, rel=1e-6)
         assert not feasible(problem, {**case.requirements, way.name: shown}, settings), way.sentence
+
+
+def test_every_patch_is_feasible(explained):
+    problem, case, settings, explanation = explained
+    spec = {"requirements": case.requirements, **settings}
+    ways = [way for way in explanation.ways if way.patch is not None]
+    assert {way.kind for way in explanation.ways if way.patch is None} <= {"part"}
+    assert "joint" in {way.kind for way in ways}
+    for way in ways:
+        if way.kind != "requirement":  # those are asked above
+            front = synthesize(problem, points=1, objectives=["outer_diameter"], **way.applied(spec))
+            assert front.designs, way.sentence
+
+
+def test_a_refusal_ends_with_amounts_and_exit_code_3(tmp_path):
+    spec = tmp_path / "small.yaml"
+    spec.write_text(
+        "family: roller_coupling\n"
+        "requirements: {required_torque: 300 N*m, driver_speed: 960 1/min, offset: 5 mm, outer_diameter_limit: 60 mm}\n"
+        "parts: {roller: ['6203', '6204'], float_material: [100Cr6]}\n",
+        encoding="utf-8",
+    )
+    done = at_once("explain", spec, "-o", tmp_path / "why")
+    assert done.returncode == 3
+    told = json.loads((tmp_path / "why" / "explanation.json").read_text(encoding="utf-8"))
+    assert [guard["name"] for guard in told["refused"]] == ["envelope_too_small"]
+    assert told["refused"][0]["missed_by"] == pytest.approx(0.4427, rel=1e-3)
+    assert "outer_diameter_limit is 60 mm where at least 107.66 mm is needed" in " ".join(done.stdout.split())
+    asked = {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}
+    parts = {"roller": ["6203", "6204"], "float_material": ["100Cr6"]}
+    first = told["ways"][0]["patch"]["requirements"]
+    assert feasible(synth.load("roller_coupling"), {**asked, **first}, {"parts": parts})
 
 
 def test_the_conflict_is_one_and_every_limit_of_it_counts(explained):
