@@ -398,7 +398,9 @@ class Instance:
             return False
         if name not in self.model.declaration.counts:
             example = f"comparisons, for example '<= 260 {self.model.units[name]}'; a set of values is for counts"
-            raise InputError(f"limits: {name}", conditions, example, ("limits", name))
+            place = next((k for k, text in enumerate(entries(conditions)) if not compares(text)), None)
+            path = ("limits", name) if place is None or isinstance(conditions, str) else ("limits", name, place)
+            raise InputError(f"limits: {name}", conditions, example, path)
         return True
 
     def _allow(self, name: str, values: Any, field: str) -> None:
