@@ -729,7 +729,9 @@ class _Question:
         amount = math.expm1(found.amount)
         shown += [f"{name} {self._choice(found.design, name)}" for name in freed]
         sentence = f"together, each by {_percent(amount)}: {'; '.join(shown)}"
-        design = self._as_asked(found.design, patch) if freed else self._missing(found.design)
+        # What is not offered as it was asked can only be told with the change.
+        offered = all(pin.low <= found.design.values[x] <= pin.high for x, pin in self.pins.items())
+        design = self._missing(found.design) if offered and not freed else self._as_asked(found.design, patch)
         return Relaxation(
             "joint", "all that was asked", "", math.nan, math.nan, "-", amount, design, found.closed, sentence, patch
         )  # fmt: skip
