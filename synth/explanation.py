@@ -409,14 +409,16 @@ class _Question:
             Instance(whole, requirements, self.catalogs, parts, limits, fix, grid)
 
     def _pins(self, fix: Mapping[str, Any]) -> dict[str, _Pin]:
-        """Return what is pinned to a number, and the counts of which some values are left."""
+        """Return what is pinned to a number, and the counts of which comparisons leave some values."""
         model, found = self.instance.model, dict[str, _Pin]()
         for k, variable in enumerate(model.variables):
             if variable.name in fix:
                 value = float(self.instance.lower[k])
                 found[variable.name] = _Pin(variable.name, "fix", value, value, variable.unit)
+        # A set of values is kept as it is: between them lies nothing that would be nearer.
+        sets = {name for name, _ in self.instance._count_sets}
         for name, left in self.instance.selection.counts.items():
-            if len(left) < len(model.declaration.counts[name].values):
+            if name not in sets and len(left) < len(model.declaration.counts[name].values):
                 found[name] = _Pin(name, "fix" if name in fix else "limits", float(left[0]), float(left[-1]), "-")
         return found
 
