@@ -24,6 +24,7 @@ from synth.instance import Instance
 from synth.pareto import rank, spread_subset
 from synth.posed import posed
 from synth.rating import Rater
+from synth.resolution import rounded_up
 from synth.results import Certificate, Design, ParetoFront
 from synth.robust import NOTHING_STANDS, robust_front
 from synth.search import FrontSearch, Question, pose
@@ -331,7 +332,8 @@ class _Comparing:
         owners: list[str] = []
         if listed:
             values = self._signed([d for _, d in listed]) * self.senses
-            ranking = rank(self.objectives, values, weights)
+            complete = certificate.kind == "global" and all(m.front.complete for m in self.members)
+            ranking = rank(self.objectives, values, weights, complete)
             proven = certificate.kind == "global"
             for position, k in enumerate(ranking.order):
                 member, design = listed[k]
@@ -360,10 +362,26 @@ class _Comparing:
         if kind == "global" and not self.proven:
             kind = KINDS[0]
         gap = float(self.settings["gap"]) if kind == "global" and any_design else None
+        amounts = self._amounts() if gap is not None else {}
+        units = {name: next(c.units[name] for c in own if name in c.units) for name in amounts}
         return Certificate(
             kind, gap, sum(c.combinations for c in own), sum(c.excluded_by_bound for c in own),
-            sum(c.solved for c in own), sum(c.unresolved for c in own),
+            sum(c.solved for c in own), sum(c.unresolved for c in own), resolution=amounts, units=units,
         )  # fmt: skip
+
+    def _amounts(self) -> dict[str, float]:
+        """Return in SI by how much a design must be better where that is no share of its value in every family."""
+        told = [m.front.certificate for m in self.members if m.designs]
+        values = np.abs(self._signed([d for m in self.members for d in m.designs]))
+        result = {}
+        for k, name in enumerate(self.objectives):
+            unit = next((c.units[name] for c in told if name in c.resolution), None)
+            if unit is not None:
+                # In some families the share of a value, in others an amount: the largest of them all serves every one.
+                own = [c.resolution.get(name, float(self.settings["gap"]) * float(values[:, k].max())) for c in told]
+                least = max(*own, *(float(m.search.against[k]) for m in self.members))
+                result[name] = rounded_up(least, unit)
+        return result
 
     def _outcome(
         self,

@@ -73,6 +73,7 @@ class Comparison:
             return (
                 f"proven: over all {n} combinations of parts and counts of {those} searched no design improves one "
                 f"listed here by more than {100 * (self.certificate.gap or 0):.3g} % in every objective"
+                f"{self.certificate.amounts()}"
             )
         if self.certificate.kind == "global":
             return f"proven: none of the {n} combinations of parts and counts of {those} searched is feasible"

@@ -362,8 +362,12 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
         console.print(f"proven: none of the {_brief(front.certificate.combinations)} combinations is feasible")
     else:
         console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
+    few = len(front.designs) < len(front.frame.objectives) and not front.complete
+    if front.designs and few:
+        best = list(front.frame.objectives)[: len(front.designs)]
+        console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
     if front.complete and front.designs:
-        console.print("the front is complete: no other non-dominated design exists")
+        console.print("the front is complete: beyond that gap no other non-dominated design exists")
     for line in statistics_lines(front.statistics):
         console.print(line)
     if front.designs:

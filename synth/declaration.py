@@ -229,6 +229,7 @@ class Objective:
     name: str
     sense: str
     default: bool
+    resolution: float | None = None  # in the unit of the quantity
 
 
 @dataclass(frozen=True)
@@ -535,11 +536,26 @@ class Declaration:
         size = 1e-9 if scale is None else float(to_si(scale, parsed))
         self.limits[name] = Limit(name, sense, unit, text, source, ca.SX(value), ca.SX(limit), guard, size)
 
-    def objective(self, name: str, sense: str = "min", default: bool = True) -> None:
-        """Offer a named quantity as objective."""
+    def objective(self, name: str, sense: str = "min", default: bool = True, resolution: float | None = None) -> None:
+        """Offer a named quantity as objective.
+
+        Parameters
+        ----------
+        name : str
+        sense : {"min", "max"}
+        default : bool
+            Whether it counts where the question names none.
+        resolution : float, optional
+            In the unit of the quantity: what is better by less counts as equal where the objective may be zero or
+            negative, so that a share of its value tells nothing.
+        """
         if sense not in ("min", "max"):
             raise DeclarationError(f"{self.problem}: objective {name} has sense {sense!r}; write 'min' or 'max'")
-        self.objectives[name] = Objective(name, sense, default)
+        if resolution is not None and not (np.isfinite(resolution) and resolution > 0):
+            raise DeclarationError(
+                f"{self.problem}: objective {name} has resolution {resolution!r}; it must be above 0"
+            )
+        self.objectives[name] = Objective(name, sense, default, resolution)
 
     def refuse(self, code: str, when: Any, message: str) -> None:
         """Refuse input (or leave out rows) for which ``when`` holds."""

@@ -25,6 +25,7 @@ from synth.pareto import non_dominated
 from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.propagation import Propagation
 from synth.refused_cells import RefusedCells
+from synth.resolution import declared_resolution, goal_scales, slack
 
 CHUNK = 4096
 # Work of the solver, as ``Formulation.work`` counts it, that costs about as much as compiling it.
@@ -233,7 +234,8 @@ class Formulation:
         self._span = np.concatenate([self.upper - self.lower, np.zeros(len(carried))])
         positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
         self.log_goals = np.array(positive, dtype=bool)
-        self.goal_scales = np.where(self.log_goals, 1.0, self.propagation.goal_sizes)
+        declared = [declared_resolution(model.declaration, name) for name in self.names]
+        self.goal_scales, self.finest = goal_scales(self.log_goals, self.propagation.goal_sizes, declared)
         self._kinks = self._open_kinks()
         self._prepare_screen()
 
@@ -510,6 +512,10 @@ class Formulation:
         with np.errstate(all="ignore"):
             values: np.ndarray = np.exp(phi) if self.log_goals[k] else phi * self.goal_scales[k]
         return values
+
+    def slack(self, gap: float, sizes: np.ndarray | None = None) -> np.ndarray:
+        """Return a gap as a distance in phi, per objective; ``sizes`` in phi where it is no share of the value."""
+        return slack(gap, self.log_goals, self.finest, np.ones(len(self.goals)) if sizes is None else sizes)
 
     def phi_of(self, values: np.ndarray) -> np.ndarray:
         """Return phi for signed objective values (batch, objectives), all or the first ones."""

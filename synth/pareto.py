@@ -137,7 +137,9 @@ class Ranking:
     notes: list[str]
 
 
-def rank(objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[float]) -> Ranking:
+def rank(
+    objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[float], complete: bool = False
+) -> Ranking:
     """Rank designs by their weighted distance to the ideal point.
 
     Parameters
@@ -148,6 +150,8 @@ def rank(objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[fl
         SI.
     weights : list of float
         One per objective.
+    complete : bool
+        Whether there are no other non-dominated designs.
 
     Returns
     -------
@@ -168,6 +172,8 @@ def rank(objectives: Mapping[str, str], values: np.ndarray, weights: Sequence[fl
             notes[int(np.argmin(signed[:, k]))].append(f"{word} {name}")
         if len(order) > 2 and signed.shape[1] > 1:
             notes[int(np.argmin(unit.sum(axis=1)))].append("knee")
-    else:
-        notes[0].append("only non-dominated design" if signed.shape[1] > 1 else "optimum")
+    elif signed.shape[1] == 1:
+        notes[0].append("optimum")
+    elif complete:
+        notes[0].append("only non-dominated design")
     return Ranking(order, scores, ["; ".join(n) for n in notes])

@@ -536,17 +536,6 @@ class ProofTree:
             regions = Clusters(levels, np.zeros(levels.shape[1], dtype=bool), scale)
             return self._grow(regions, confirm, deadline, most_nodes)
 
-    def surely_positive(self, k: int, confirm: Callable[[Point], bool], deadline: float = INF) -> bool:
-        """Tell whether objective k is positive in every feasible design, as far as that can be proven.
-
-        ``confirm`` takes a design and tells whether it is feasible and the objective is not positive.
-        """
-        if self.empty or self.positive[k]:
-            return True
-        ends = np.full((1, len(self._goals)), INF)
-        ends[0, k] = 0.0
-        return self._senses[k] > 0 and self.prove(ends, confirm, deadline).closed
-
     def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float, most_nodes: int) -> Outcome:
         pool, nodes, stuck = [self._begin(regions)], 0, 0
         while pool:

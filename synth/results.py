@@ -13,6 +13,7 @@ from synth.files import csv_text, yaml_text
 from synth.front_record import digest_of, front_record, record_text
 from synth.output_folder import FRONT, save_result
 from synth.rated import COLUMNS, limits_table, rating_row
+from synth.resolution import in_words
 from synth.units import format_quantity, from_si, header
 
 if TYPE_CHECKING:
@@ -128,6 +129,9 @@ class Certificate:
     bound excludes was solved from several starts) or ``heuristic``. ``gap`` is what bounds prove, whatever the kind;
     None where they prove nothing, or there is no design. ``budget`` is the time, in seconds, that ended the search
     where it was the default budget; such a search may end otherwise on another machine.
+
+    ``resolution`` tells, in SI, by how much a design must be better in an objective for the claim to speak of it, where
+    that is no share of its value because it may be zero or negative, or is to be made large; ``units`` are theirs.
     """
 
     kind: str
@@ -137,6 +141,12 @@ class Certificate:
     solved: int
     unresolved: int = 0
     budget: float | None = None
+    resolution: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def amounts(self) -> str:
+        """Return in words what the gap stands for where it is no share of the value."""
+        return in_words(self.resolution, self.units)
 
     def sentence(self) -> str:
         """Return the certificate in words."""
@@ -146,16 +156,17 @@ class Certificate:
         if self.kind == "global":
             return (
                 f"proven: over all {n} combinations of parts and counts no design improves one listed here "
-                f"by more than {100 * (self.gap or 0):.3g} % in every objective"
+                f"by more than {100 * (self.gap or 0):.3g} % in every objective{self.amounts()}"
             )
         end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
         if self.kind == "exhaustive":
             return (
                 f"exhaustive: of {n} combinations {self.excluded_by_bound} are excluded by bounds; every other one "
                 f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
-                f"which prove a gap of {_percent(self.gap)}{end})"
+                f"which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
             )
-        return f"not proven: stopped before all of {n} combinations were covered; gap {_percent(self.gap)}{end}"
+        gap = f"gap {_percent(self.gap)}{self.amounts()}{end}"
+        return f"not proven: stopped before all of {n} combinations were covered; {gap}"
 
 
 @dataclass(frozen=True)

@@ -309,6 +309,6 @@ def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
         ]
     if not kept:
         # Nothing says that there is no robust design; there is none here that anything could be proven of.
-        certificate = replace(front.certificate, kind="heuristic", gap=None)
+        certificate = replace(front.certificate, kind="heuristic", gap=None, resolution={}, units={})
         return replace(front, designs=[], complete=False, status=Status.NOT_SOLVED, certificate=certificate)
     return replace(front, designs=kept, complete=False)

@@ -37,6 +37,7 @@ from synth.purposes import Cover, Purpose, Staircase, Tabled
 from synth.question import combination_of
 from synth.rating import Rater
 from synth.recall import recall
+from synth.resolution import ROOM, ranges, rounded_up
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
 from synth.scatter import read_remaining
@@ -62,7 +63,6 @@ MARGIN = 0.99
 ROWS = 256  # of a large comparison at a time
 ROUNDED = 2e-9
 LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
-SMALLEST_SIZE = 1e-6  # of an objective that may be zero, in units of its usual size
 EXHAUSTIVE_LIMIT = 3000
 OUTER_TRIALS = 576
 
@@ -383,10 +383,12 @@ class FrontSearch:
         self.looked = 0
         self.by_steps = False  # whether a front at once has turned out to cost too much
         self.may_find_more = True  # unless a try was given up
+        self.against = np.zeros(self.m)  # in SI: by how much designs of others must be beaten to be taken for beaten
         self.recalled = list(known)
         self.to_report: tuple[Sequence[float], Mapping[str, Any], bool] = ([1.0] * self.m, {}, False)
         self.given = np.empty((0, self.m))  # phi of the designs of an earlier search
         self.given_gap: float | None = None
+        self.given_amounts = np.full(self.m, math.inf)  # in SI: of its claim, where that is no share of the value
         self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
 
     def _formulation(self, conflict: bool) -> Formulation:
@@ -398,17 +400,8 @@ class FrontSearch:
     def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> Cover:
         """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
         form = self.form
-        slack = np.maximum(self._slack(ranges)[: self.m], least)
+        slack = np.maximum(form.slack(self.gap, ranges)[: self.m], least)
         return Cover(range(self.m), slack, np.full(len(form.goals), np.inf), form.archive)
-
-    def _slack(self, sizes: np.ndarray | None) -> np.ndarray:
-        """Return the gap as a distance in phi, per objective.
-
-        Positive objectives: a factor 1 - gap. Others: a share of their range on the front, or of their size.
-        """
-        form = self.form
-        sizes = np.ones(len(form.goals)) if sizes is None else sizes
-        return np.where(form.log_goals, -np.log1p(-self.gap), self.gap * np.maximum(sizes, 1e-9))
 
     def begin_from(self, front: ParetoFront) -> None:
         """Begin with the front of an earlier search of the same question: none of its designs is lost."""
@@ -423,6 +416,8 @@ class FrontSearch:
         form.archive.add(combinations[rows], points[rows], phi[rows])
         self.given = phi[rows, : self.m]
         self.given_gap = front.certificate.gap
+        told = front.certificate.resolution
+        self.given_amounts = np.array([told.get(name, math.inf) for name in self.chosen])
 
     def _in_place_of_given(self, phi: np.ndarray) -> list[int]:
         """Return the positions of those designs that take the places of the given ones: each as good in everything."""
@@ -445,9 +440,8 @@ class FrontSearch:
             return
         phi = np.array([c.phi[: self.m] for c in self.front])
         self.front = [self.front[k] for k in sorted(self._in_place_of_given(phi))]
-        sizes = np.where(np.ptp(self.given, axis=0) > 0, np.ptp(self.given, axis=0), np.abs(self.given).max(axis=0))
         share = -math.log1p(-self.given_gap) if logs.any() else 0.0
-        slack = np.where(logs, share, self.given_gap * sizes)
+        slack = np.where(logs, share, self.given_amounts / self.form.goal_scales[: self.m])
         self.bounds.append(Bound(slack, np.empty((0, self.m))))
 
     # -- the run -------------------------------------------------------------------------------
@@ -548,9 +542,28 @@ class FrontSearch:
         if not self.front or not self.bounds:
             return None
         phi = np.array([c.phi[: self.m] for c in self.front])
-        sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
-        least = least_gap(self.bounds, phi, self.form.log_goals[: self.m], np.maximum(sizes, 1e-9))
+        least = least_gap(self.bounds, phi, self.form.log_goals[: self.m], self._sizes())
         return None if least is None else max(least, self.gap)
+
+    def _sizes(self) -> np.ndarray:
+        """Return what the gap of objectives that may be zero is a share of on this front, in phi."""
+        phi = np.array([c.phi[: self.m] for c in self.front])
+        sizes: np.ndarray = np.maximum(ranges(phi), self.form.finest[: self.m] / self.gap)
+        return sizes
+
+    def _amounts(self, gap: float) -> dict[str, float]:
+        """Return in SI what the gap of a claim stands for, where it is no share of the value."""
+        form = self.form
+        least = gap * self._sizes()
+        if self.m > 1:
+            # The range of a few designs may be less than that of the front they were chosen from.
+            least = np.maximum(least, self.purpose.slack + ROOM)
+        amounts = least * form.goal_scales[: self.m]
+        return {
+            name: rounded_up(float(amounts[k]), self.instance.model.units[name])
+            for k, name in enumerate(self.chosen)
+            if not form.log_goals[k]
+        }
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
         begin = time.monotonic()
@@ -630,8 +643,7 @@ class FrontSearch:
     ) -> tuple[Candidate | None, Covered, float]:
         """Return the best design found with so much effort, how the search ended, and the slack it had."""
         form = self.form
-        sizes = np.ones(len(form.goals)) if start is None else np.maximum(np.abs(start.phi), SMALLEST_SIZE)
-        slack = float(self._slack(sizes)[k])
+        slack = float(form.slack(self.gap, None if start is None else np.abs(start.phi))[k])
         found, outcome = self._tree_for_best(k, plain, slack, start, effort)
         while found is not None and outcome.closed:
             # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
@@ -654,7 +666,7 @@ class FrontSearch:
         """Return the slack that the gap means at the best value known; None where the slack is as fine as that."""
         if self.m > 1 or not len(known) or self.form.log_goals[k]:
             return None
-        finer = float(self._slack(np.maximum(np.abs(known[0].phi), SMALLEST_SIZE))[k])
+        finer = float(self.form.slack(self.gap, np.abs(known[0].phi))[k])
         return finer if finer < slack else None
 
     def _begin_tree(self, slack: np.ndarray | None) -> None:
@@ -714,9 +726,7 @@ class FrontSearch:
             self.front, self.complete = known, self.closed
         elif known:
             phi = np.array([c.phi for c in known])
-            self.purpose = self._purpose(
-                np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
-            )
+            self.purpose = self._purpose(ranges(phi))
 
     # -- the front -----------------------------------------------------------------------------
 
@@ -878,8 +888,7 @@ class FrontSearch:
     def _rescale(self) -> None:
         """Measure the gap of objectives that can be zero against their range on this front."""
         phi = np.array([c.phi for c in self.front])
-        sizes = np.where(np.ptp(phi, axis=0) > 0, np.ptp(phi, axis=0), np.abs(phi).max(axis=0))
-        needed = self._slack(sizes)[: self.m]
+        needed = self.form.slack(self.gap, ranges(phi))[: self.m]
         too_wide = needed < self.purpose.slack
         if np.any(too_wide):
             # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
@@ -958,12 +967,14 @@ class FrontSearch:
         phi[:, :m] = form.phi_of(listed)
         every = np.concatenate([phi[:, :m], *(c.phi[None, :m] for c in self.front)])
         sizes = np.ones(len(form.goals))
-        sizes[:m] = np.where(np.ptp(every, axis=0) > 0, np.ptp(every, axis=0), np.abs(every).max(axis=0))
+        sizes[:m] = ranges(every)
         nowhere = np.full(form.n, np.nan)
         designs = [*(Candidate(-1, nowhere, row) for row in phi), *self.front]
         own = {c.phi.tobytes() for c in self.front}
         nothing = Archive(range(m), form.n, len(form.goals))
-        stairs = Staircase(designs, range(m), self._slack(sizes)[:m], nothing, own)
+        slack = form.slack(self.gap, sizes)[:m]
+        self.against = np.maximum(self.against, (slack + ROOM) * form.goal_scales[:m])
+        stairs = Staircase(designs, range(m), slack, nothing, own)
         stairs.take(form.archive.combination, form.archive.variables, form.archive.phi)
         outcome = cover(form, self.pool, stairs, Clock(deadline, self._working), self.rng, EFFORT)
         better = [c for c in stairs.designs if c.combination >= 0 and c.phi.tobytes() not in own]
@@ -988,7 +999,7 @@ class FrontSearch:
         points = np.array([c.variables for c in settled]).reshape(len(settled), self.form.n)
         result = self.form.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
         values = np.stack([result.values[name] for name in self.chosen], axis=1)
-        ranking = rank(self.chosen, values, weights)
+        ranking = rank(self.chosen, values, weights, settle and self.complete)
         proven = self.closed and settle
         more = [
             {
@@ -1041,7 +1052,9 @@ class FrontSearch:
         solved = len(self.form.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
         spent = FURTHER.seconds if self.budget_spent and kind != "global" else None
-        certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved, spent)
+        amounts = self._amounts(gap) if designs and gap is not None else {}
+        units = {name: self.instance.model.units[name] for name in amounts}
+        certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved, spent, amounts, units)
         statistics = {
             **offered(self.instance),
             "excluded_by_bound": excluded,

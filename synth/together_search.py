@@ -18,8 +18,9 @@ from synth.feasibility import Status
 from synth.formulation import TIE, Boxes, Candidate, Formulation, rows_of
 from synth.pareto import rank
 from synth.recall import combination_like
+from synth.resolution import rounded_up, slack
 from synth.results import Certificate, Design, Frame, ParetoFront
-from synth.search import SMALLEST_SIZE, Question
+from synth.search import Question
 from synth.settle import settle_ties
 from synth.together import BestOfEach, Each, Together
 from synth.together_look import Lookout
@@ -273,9 +274,9 @@ class TogetherSearch:
 
     def _slack(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
         """Return the gap as a distance in phi of an objective, per design."""
-        if self.form.log_goals[k]:
-            return lambda phi: np.full(len(phi), -math.log1p(-self.gap))
-        return lambda phi: self.gap * np.maximum(np.abs(phi), SMALLEST_SIZE)
+        form = self.form
+        own = (form.log_goals[k], form.finest[k])
+        return lambda phi: slack(self.gap, *own, np.abs(phi))
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
@@ -338,13 +339,23 @@ class TogetherSearch:
                 status=Status.OPTIMAL,
                 complete=traded == 1,
                 statistics=statistics,
-                certificate=Certificate("global", self.gap, total, total - own, own, 0),
+                certificate=Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded)),
                 explanation=None,
                 settings=question.settings,
                 interrupted="",
                 question=question.instance,
             )
         return fronts
+
+    def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
+        """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""
+        form, units = self.form, designs[0].frame.units
+        amounts = {}
+        for k, name in enumerate(list(designs[0].frame.objectives)[:traded]):
+            if not form.log_goals[k]:
+                size = abs(designs[0].values[name]) / form.goal_scales[k]
+                amounts[name] = rounded_up(max(self.gap * size, form.finest[k]) * form.goal_scales[k], units[name])
+        return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
 
     def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
         """Return the designs of each question in order of rank, from candidates with what ties with each.

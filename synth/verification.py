@@ -20,7 +20,8 @@ class Verification:
 
     ``findings`` say in a sentence each what is not as claimed, ``open`` which claims could be neither proven again nor
     refuted within the effort. ``proven_gap`` is the smallest gap that could be proven (None: none was claimed, or none
-    could be), ``nodes`` counts the boxes of that proof.
+    could be), ``nodes`` counts the boxes of that proof, ``amounts`` tells in words what the gap stands for where it is
+    no share of the value.
     """
 
     findings: tuple[str, ...]
@@ -31,6 +32,7 @@ class Verification:
     proven_gap: float | None
     nodes: int
     seconds: float
+    amounts: str = ""
 
     @property
     def verdict(self) -> Verdict:
@@ -59,7 +61,7 @@ class Verification:
             return f"holds: proven again that no design is feasible {effort}"
         return (
             f"holds: {listed} as saved, and proven again that no feasible design improves one of them by more than "
-            f"{percent(self.claimed_gap or 0.0)} in every objective {effort}"
+            f"{percent(self.claimed_gap or 0.0)} in every objective{self.amounts} {effort}"
         )
 
 

@@ -77,6 +77,7 @@ def verify(
         certificate=front.certificate.kind,
         designs=len(front.designs),
         claimed_gap=front.certificate.gap,
+        amounts=front.certificate.amounts(),
         proven_gap=check.proven,
         nodes=check.nodes,
         seconds=time.monotonic() - started,
@@ -206,7 +207,7 @@ class Check:
         if front.designs and not (isinstance(gap, float) and 0 < gap < 1):
             self.find("the certificate claims a proof but no gap")
             return False
-        return True
+        return not front.designs or self._measured(front.certificate.resolution, gap or 0.0)
 
     def _frame(self) -> None:
         frame, model = self.front.frame, self.model
@@ -386,8 +387,10 @@ class Check:
             if len(designs) > 2 and len(frame.objectives) > 1:
                 total = unit.sum(axis=1)
                 deserving["knee"] = total <= total.min() + SAME
-        else:
-            deserving["optimum" if len(frame.objectives) == 1 else "only non-dominated design"] = np.ones(1, dtype=bool)
+        elif len(frame.objectives) == 1:
+            deserving["optimum"] = np.ones(1, dtype=bool)
+        elif self.front.complete:
+            deserving["only non-dominated design"] = np.ones(1, dtype=bool)
         told = [[note for note in d.note.split("; ") if note] for d in designs]
         for word, right in deserving.items():
             at = [k for k, notes in enumerate(told) if word in notes]
@@ -434,14 +437,15 @@ class Check:
         if front.status is Status.OPTIMAL and not proven:
             self.find("status optimal, but the certificate is no proof")
 
-    def against(self, values: Mapping[str, np.ndarray], gap: float) -> None:
+    def against(self, values: Mapping[str, np.ndarray], gap: float, resolution: Mapping[str, float]) -> None:
         """Prove that no design of this question improves some others by more than a gap in every objective.
 
-        ``values``: objectives of the others in SI, and of the designs of this front.
+        ``values``: objectives of the others in SI, and of the designs of this front; ``resolution``: as certified.
         """
         self.signed = np.stack([values[name] for name in self.front.frame.objectives], axis=1) * self.senses
+        if not self._measured(resolution, gap):
+            return
         self.tree = ProofTree(self.instance, self.front.frame.objectives)
-        self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
         outcome = self._prove(self._thresholds(gap))
         self._judge(outcome, f"no design improves one listed by more than {percent(gap)}", "feasible")
 
@@ -456,7 +460,6 @@ class Check:
             self._judge(self._prove(everywhere), "no design is feasible", "feasible")
             return
         gap = front.certificate.gap or 0.0
-        self.relative = np.array([self._is_relative(k) for k in range(len(self.senses))])
         if front.complete:
             outcome = self._prove(uncovered(self._thresholds(gap)))
             if self._judge(outcome, "the front is complete", "feasible and no listed design covers it"):
@@ -466,13 +469,15 @@ class Check:
         self.proven, decisive = (gap, outcome) if outcome.closed else self._smallest_gap(gap, outcome)
         self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "")
 
-    def _is_relative(self, k: int) -> bool:
-        """Tell whether objective k is surely positive and to be small, so that a gap is a share of its value."""
-        if not np.all(self.signed[:, k] > 0):
-            return False
-        ends = np.full((1, len(self.senses)), math.inf)
-        ends[0, k] = 0.0
-        return self.tree.surely_positive(k, lambda point: self._lies_below(point, ends), self.deadline)
+    def _measured(self, resolution: Mapping[str, float], gap: float) -> bool:
+        """Read what a gap is a share of: the value, or what makes it the amount that the certificate tells."""
+        amounts = np.array([resolution.get(name, math.nan) for name in self.front.frame.objectives])
+        self.per_gap = amounts / gap
+        unclear = np.isnan(amounts) & ~np.all(self.signed > 0, axis=0) | ~(np.isnan(amounts) | (amounts > 0))
+        for name, doubtful in zip(self.front.frame.objectives, unclear, strict=True):
+            if doubtful:
+                self.find(f"the certificate does not tell by how much {name} must be better to count")
+        return not unclear.any()
 
     def _prove(self, ends: np.ndarray) -> Outcome:
         """Prove that no feasible design lies below any of the ends (rows) in all objectives."""
@@ -498,11 +503,8 @@ class Check:
         return ends
 
     def _sizes(self) -> np.ndarray:
-        """Return what a gap of an objective is measured by: its value, or its range on the front where it has signs."""
-        span = np.ptp(self.signed, axis=0)
-        size = np.where(span > 0, span, np.abs(self.signed))
-        sizes: np.ndarray = np.where(self.relative, np.abs(self.signed), size)
-        return sizes
+        """Return what a gap of an objective is a share of: its value, or what makes it the amount that is told."""
+        return np.where(np.isnan(self.per_gap), np.abs(self.signed), self.per_gap)
 
     def _improvement(self, point: Point) -> tuple[float, int]:
         """Return by how much a design improves a listed one in every objective, and which."""

@@ -72,7 +72,7 @@ def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verifica
         provable = kind == "global" and gap is not None and bool(values) and not check.findings
         if provable and front.certificate.kind == "global" and front.designs:
             check.deadline = time.monotonic() + time_limit
-            check.against(values, float(gap))
+            check.against(values, float(gap), certificate.get("resolution", {}))
         elif kind == "global" and front.certificate.kind != "global":
             findings.append(f"{label}: its own front is not proven, so that nothing over all families can be")
         findings += [f"{label}: {finding}" for finding in check.findings]

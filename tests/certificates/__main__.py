@@ -10,7 +10,7 @@ import argparse
 import sys
 from collections import Counter
 
-from tests.certificates.claims import Answer, refuted, run, wrong_designs, wrong_form
+from tests.certificates.claims import Answer, faults, run
 from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
@@ -29,7 +29,7 @@ def tried(structure: str, seeds: range, verify: bool) -> Counter[str]:
         except ValueError:
             continue  # a formula does not exist at the design that limits are drawn for
         a = Answer(case, run(case), Reference(case))
-        wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+        wrong = faults(a)
         count["tried"] += 1
         count["wrong"] += bool(wrong)
         count["proven"] += a.proven

@@ -50,19 +50,36 @@ def signed(a: Answer) -> np.ndarray:
     return a.reference.signs * np.array(rows, dtype=float).reshape(len(rows), len(a.case.objectives))
 
 
-def slack(a: Answer, gap: float, listed: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Return, per listed design and objective, what a gap forgives.
+def slack(a: Answer, gap: float, listed: np.ndarray) -> np.ndarray:
+    """Return, per listed design and objective, what a claim forgives: what the certificate says, and nothing else."""
+    told = a.front.certificate.resolution
+    amounts = np.array([told.get(n, np.nan) for n in a.case.objectives])
+    return np.where(np.isnan(amounts), gap * np.abs(listed), amounts)
 
-    Objectives that are positive and made small: a share of the value. Others: a share of their range on the
-    front, for a single design of the value. An objective that is merely never seen at zero may count either way.
-    """
-    size = np.abs(listed)
-    span = np.broadcast_to(np.ptp(listed, axis=0), listed.shape) if len(listed) > 1 else size
-    if a.case.positive:
-        return gap * size
-    seen = np.concatenate([listed, known])
-    positive = (a.reference.signs > 0) & np.all(seen > 0, axis=0)
-    return gap * np.maximum(np.where(positive, np.maximum(size, span), span), 1e-9)
+
+def wrong_resolution(a: Answer) -> list[str]:
+    """Tell where the certificate forgives what no gap stands for, or does not say what it forgives."""
+    front, found = a.front, list[str]()
+    if not front.designs or front.certificate.gap is None:
+        return []
+    listed, known = signed(a), a.reference.feasible().objectives
+    for j, (name, sense) in enumerate(a.case.objectives.items()):
+        told = front.certificate.resolution.get(name)
+        if told is None:
+            if sense != "min" or not np.all(np.concatenate([listed, known])[:, j] > 0):
+                found.append(f"{name} need not be positive, yet its gap is told as a share of its value")
+            continue
+        size = np.ptp(known[:, j]) + np.abs(listed[:, j]).max()
+        gap = front.certificate.gap
+        if not 0 < told <= 1.02 * gap * size + 1e-7 * gap / a.case.gap * spread_of(a, j):
+            found.append(f"{name}: a resolution of {told} where the gap is a share of {size}")
+    return found
+
+
+def spread_of(a: Answer, j: int) -> float:
+    """Return the usual size of an objective among all designs, feasible or not."""
+    values = np.abs(a.reference.explored.objectives[:, j])
+    return float(np.max(values[np.isfinite(values)], initial=0.0))
 
 
 def rounding(listed: np.ndarray, known: np.ndarray) -> np.ndarray:
@@ -141,7 +158,7 @@ def refuted(a: Answer) -> list[str]:
     if gap is None:
         return []
     listed, found = signed(a), list[str]()
-    room, fuzz = slack(a, gap, listed, known.objectives), rounding(listed, known.objectives)
+    room, fuzz = slack(a, gap, listed), rounding(listed, known.objectives)
     tried = reference.attack(_points(a, listed).take(np.arange(min(len(listed), ATTACKED))), room[:ATTACKED])
     known = Points.joined([known, tried.take(np.flatnonzero(tried.worst <= TOLERANCE))])
     for d, own, more, small in zip(front.designs, listed, room, fuzz, strict=True):
@@ -150,6 +167,11 @@ def refuted(a: Answer) -> list[str]:
             k = int(np.argmax(better))
             found.append(f"design {d.rank} {own} is beaten by more than {gap}: {_words(reference, known, k)}")
     return found + (_left_out(a, listed, known, room, fuzz) if a.proven else [])
+
+
+def faults(a: Answer) -> list[str]:
+    """Tell all that is wrong with a front, its designs and its claim."""
+    return wrong_designs(a) + wrong_form(a) + wrong_resolution(a) + refuted(a)
 
 
 def _points(a: Answer, listed: np.ndarray) -> Points:
@@ -164,7 +186,7 @@ def _left_out(a: Answer, listed: np.ndarray, known: Points, room: np.ndarray, fu
     case, reference, found = a.case, a.reference, list[str]()
     for j, name in enumerate(list(case.objectives)[: case.points]):
         k, best = int(np.argmin(known.objectives[:, j])), int(np.argmin(listed[:, j]))
-        forgiven = max(room[best, j], case.gap * abs(listed[best, j])) + fuzz[best, j]
+        forgiven = room[best, j] + fuzz[best, j]
         if known.objectives[k, j] < listed[best, j] - forgiven:
             found.append(f"best {name} {listed[best, j]} is not the best: {_words(reference, known, k)}")
     if not reference.free:
@@ -199,9 +221,7 @@ def weak_reference(a: Answer) -> list[str]:
     known = known.take(np.flatnonzero(known.worst <= TOLERANCE))
     if not len(known):
         return ["the reference finds no feasible point, the front lists some"]
-    room = np.maximum(slack(a, a.case.gap, listed, known.objectives), a.case.gap * np.abs(listed)) + rounding(
-        listed, known.objectives
-    )
+    room = np.maximum(slack(a, a.case.gap, listed), a.case.gap * np.abs(listed)) + rounding(listed, known.objectives)
     found = []
     for j, name in enumerate(a.case.objectives):
         best = int(np.argmin(listed[:, j]))

@@ -21,7 +21,7 @@ from synth.steps import cover_by_steps
 from synth.tables import Catalogs
 from synth.together import alike
 from synth.together_fronts import FrontsSearch
-from tests.certificates.claims import Answer, answer, refuted, run, signed, weak_reference, wrong_designs, wrong_form
+from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference
 from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
@@ -55,7 +55,7 @@ HANDFUL = [("posynomial", 1), ("gridded", 3), ("polynomials", 1), ("maximised", 
 @pytest.mark.parametrize(("structure", "seed"), CASES)
 def test_a_front_claims_nothing_that_is_wrong(structure, seed):
     a = answer(structure, seed)
-    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
     assert not weak_reference(a)
 
@@ -66,7 +66,7 @@ def test_compiled_code_loses_no_value_of_any_sign(structure, seed, monkeypatch):
     monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     case = make(structure, 4 + seed)
     a = Answer(case, run(case, time_limit=PATIENT), Reference(case))
-    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{4 + seed}: {a.front.certificate}", *wrong])
 
 
@@ -108,7 +108,7 @@ def test_a_front_step_by_step_claims_nothing_that_is_wrong(steps, monkeypatch, s
     case = make(structure, seed)
     a = Answer(case, run(case), Reference(case))
     assert steps or not a.front.designs or len(a.case.objectives) != 2 or a.proven
-    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
 
 
@@ -131,7 +131,7 @@ def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, monkeypatch,
     monkeypatch.setattr("synth.steps.NARROW", 20.0 if points == 5 else 0.0)
     case = of_two(structure, seed, points)
     a = Answer(case, run(case), Reference(case))
-    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
 
 
@@ -141,7 +141,7 @@ def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(ste
     case = of_two("hard", seed, 5)
     a = Answer(case, run(case, time_limit=seconds), Reference(case))
     assert a.proven or a.front.interrupted == "time limit"
-    wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+    wrong = faults(a)
     assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])
 
 
@@ -172,7 +172,7 @@ def test_a_front_searched_with_others_claims_nothing_that_is_wrong(points, struc
     front = together(case) if len(case.objectives) == 2 else None
     if front is not None:
         a = Answer(case, front, Reference(case))
-        wrong = wrong_designs(a) + wrong_form(a) + refuted(a)
+        wrong = faults(a)
         assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
         assert a.proven
 
@@ -224,7 +224,7 @@ def test_a_front_that_was_stopped_claims_nothing_that_is_wrong(seconds):
     assert a.front.interrupted == "time limit"
     assert a.front.certificate.kind == "heuristic"
     assert not a.front.complete
-    assert not wrong_designs(a) + wrong_form(a) + refuted(a)  # a gap may be told, but then it must hold
+    assert not faults(a)  # a gap may be told, but then it must hold
 
 
 def told(front: synth.ParetoFront, folder) -> tuple:
