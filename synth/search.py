@@ -263,10 +263,13 @@ def one_best(
     return search.run([1.0], {"points": 1, "gap": gap}, explained=False)
 
 
-def distinct(candidates: Sequence[Candidate], m: int) -> list[Candidate]:
-    """Return the designs that no other one equals or beats in the first objectives, but for rounding."""
+def distinct(candidates: Sequence[Candidate], m: int, alike: np.ndarray | float = 0.0) -> list[Candidate]:
+    """Return the designs that no other one equals or beats in the first objectives, but for rounding.
+
+    ``alike``: what else in phi counts as equal, per objective.
+    """
     phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
-    room = ROUNDED * np.maximum(np.abs(phi), 1.0)
+    room = np.maximum(ROUNDED * np.maximum(np.abs(phi), 1.0), alike)
     number, gone = np.arange(len(phi)), np.zeros(len(phi), dtype=bool)
     for first in range(0, len(phi), ROWS):
         own = slice(first, first + ROWS)
@@ -525,7 +528,7 @@ class FrontSearch:
         self.closed = self.exhausted = self.complete = False
         proven = self.stairs.finished() if self.stairs is not None and len(self.form.archive) else []
         some = self._spread(proven or list(self.form.archive), self._more_than_asked)
-        self.front = self._spread(distinct(some, self.m), self.points)
+        self.front = self._spread(self._distinct(some), self.points)
         self._claim_no_less()
 
     def _note_open(self) -> None:
@@ -878,6 +881,10 @@ class FrontSearch:
             return [designs[int(some[k])] for k in spread_subset(phi[some], most)]
         return [designs[int(k)] for k in spread_subset(phi, most, some.tolist())]
 
+    def _distinct(self, designs: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs that still differ when ties are settled, which gives away some of what may be zero."""
+        return distinct(designs, self.m, np.where(self.form.log_goals[: self.m], 0.0, ROOM))
+
     def _stand_for_all(self) -> bool:
         """Tell whether the designs of the front cover all that are known."""
         listed = np.array([c.phi[: self.m] for c in self.front])
@@ -909,7 +916,7 @@ class FrontSearch:
             better = settle_variables(form, rough, self.m, range(self.m))
             done.update(c.phi[: self.m].tobytes() for c in better)
             archive.add(*rows_of(better))
-        return self._spread(distinct(list(archive), self.m), most)
+        return self._spread(self._distinct(list(archive)), most)
 
     def _look_for_more(self) -> bool:
         """Without slack everything non-dominated is found, or more than enough; tell whether anything was."""
@@ -938,7 +945,7 @@ class FrontSearch:
         self.stairs, self.under_way = None, None
         replaced = any(a is not b for a, b in zip(stairs.designs, self.front, strict=True))
         finished = stairs.finished()
-        self.front = distinct(finished, self.m)
+        self.front = self._distinct(finished)
         if not len(left):
             proven.update(c.phi.tobytes() for c in finished)
         return bool(len(left)) or not replaced or len(self.front) >= self.points

@@ -79,7 +79,7 @@ def wrong_resolution(a: Answer) -> list[str]:
 def spread_of(a: Answer, j: int) -> float:
     """Return the usual size of an objective among all designs, feasible or not."""
     values = np.abs(a.reference.explored.objectives[:, j])
-    return float(np.max(values[np.isfinite(values)], initial=0.0))
+    return float(np.max(values[np.isfinite(values)], initial=0.0)) or 1.0
 
 
 def rounding(listed: np.ndarray, known: np.ndarray) -> np.ndarray:
