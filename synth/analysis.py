@@ -511,7 +511,7 @@ def _solve_for(
         return relative
 
     rng = np.random.default_rng(0)
-    starts = [np.sqrt(np.maximum(lower, 1e-9) * upper)]
+    starts = [np.where(upper > 0, np.sqrt(np.maximum(lower, 1e-9) * np.maximum(upper, 0.0)), 0.5 * (lower + upper))]
     starts += list(lower + (upper - lower) * rng.random((24, len(unknown))))
     for x in _solutions(difference, slope, starts, lower, upper):
         return x

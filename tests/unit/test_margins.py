@@ -95,3 +95,20 @@ def test_what_falls_without_end_beside_a_pole_is_not_proven(monkeypatch):
     front = one_best(Instance(problem, {}, catalogs_for(problem, None)), "cost", 1e-3, 3000)
     assert front.statistics["boxes"] > 3000
     assert front.certificate.kind != "global"
+
+
+class Cube(synth.DesignProblem):
+    """A cube of a size below zero."""
+
+    name, title, sources = "cube", "Cube", ("none",)
+
+    def declare(self, d):
+        x = d.variable("x", "-", -3, -1)
+        d.derive("volume", "-", x**3)
+        d.objective("volume")
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_size_below_zero_is_found_from_what_it_gives():
+    design = synth.evaluate(Cube, {}, values={"volume": -8.0})
+    assert design.values["x"] == pytest.approx(-2.0, rel=1e-12)
