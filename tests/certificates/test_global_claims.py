@@ -21,6 +21,7 @@ from synth.steps import cover_by_steps
 from synth.tables import Catalogs
 from synth.together import alike
 from synth.together_fronts import FrontsSearch
+from tests.certificates.__main__ import tried
 from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference
 from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
@@ -68,6 +69,14 @@ def test_compiled_code_loses_no_value_of_any_sign(structure, seed, monkeypatch):
     a = Answer(case, run(case, time_limit=PATIENT), Reference(case))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{4 + seed}: {a.front.certificate}", *wrong])
+
+
+@pytest.mark.parametrize("structure", SIGNS)
+def test_what_is_proven_of_values_of_any_sign_is_proven_again(structure):
+    count = tried(structure, range(20, 23), verify=True)
+    assert count["tried"] == 3
+    assert not count["wrong"]
+    assert count["verified"] == count["proven"] >= 1
 
 
 @pytest.mark.parametrize("structure", PROVABLE)
