@@ -102,12 +102,14 @@ def read_json(path: str | Path, field: str, right: str, most: int = LARGEST) -> 
     raw = read_bytes(path, field, right, most)
     try:
         return json.loads(raw.decode("utf-8"), parse_constant=_no_number)
-    except (ValueError, RecursionError) as error:
-        raise InputError(field, str(path), right) from error
+    except RecursionError as error:
+        raise InputError(field, str(path), f"{right}; this one is nested too deeply") from error
+    except ValueError as error:
+        raise InputError(field, str(path), f"{right}; this one is no JSON ({error})") from error
 
 
 def _no_number(word: str) -> NoReturn:
-    raise ValueError(word)
+    raise ValueError(f"{word} is no finite number")
 
 
 def _too_large(field: str, path: str | Path, right: str, most: int) -> NoReturn:
