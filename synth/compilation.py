@@ -1,7 +1,8 @@
 """A C compiler that works beside the program, and is ended with it.
 
 What is compiled is part of how a question is answered: the last digits depend on it. A search that needs it waits, so
-that the same question always goes the same way; while it waits it may do something else, see :func:`meanwhile`.
+that the same question always goes the same way; while it waits it may do something else, see :func:`meanwhile`. Under a
+time limit that a compiler may use up nothing is compiled: the other work would have begun anew, for nothing.
 """
 
 from __future__ import annotations
@@ -18,13 +19,19 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from synth import deadline
+from synth.effort import CompilingEffort
 
-MOST_SECONDS = 300.0
+EFFORT = CompilingEffort()
 TURN = 0.02  # s between looks at the compiler
 PREFIX = "compiling_"  # of the folders it works in, beside what is finished
 
 _other_work: ContextVar[Callable[[Callable[[], bool]], None] | None] = ContextVar("other_work", default=None)
 _off: ContextVar[bool] = ContextVar("off", default=False)
+_refused: ContextVar[deadline.End | None] = ContextVar("refused", default=None)
+
+
+class NotCompiled(Exception):
+    """The time limit is too short for compiling: what it limits is done without compiled code from now on."""
 
 
 @contextmanager
@@ -52,11 +59,12 @@ def switched_off() -> Iterator[None]:
 
 def switched_on() -> bool:
     """Tell whether compiled code is wanted."""
-    return os.environ.get("CLUTCHSYNTH_NATIVE") != "0" and not _off.get()
+    wanted = os.environ.get("CLUTCHSYNTH_NATIVE") != "0" and not _off.get()
+    return wanted and _refused.get() is not deadline.current()
 
 
 def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:
-    """Compile a C source into a shared library.
+    """Compile a C source into a shared library, unless the time limit is too short for that.
 
     It is made beside its final place and moved there at once: another process sees all of it or nothing. Whatever ends
     the wait ends the compiler, and nothing of it is left.
@@ -76,7 +84,13 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
         It cannot be compiled, or not written.
     Stopped
         Time is over.
+    NotCompiled
+        It is not even begun; compiled code is switched off for all that has this time limit.
     """
+    end = deadline.current()
+    if end.given < EFFORT.worthwhile:
+        _refused.set(end)
+        raise NotCompiled
     _clear_away(path.parent)
     folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=path.parent))
     process: subprocess.Popen[bytes] | None = None
@@ -110,8 +124,8 @@ def _wait(process: subprocess.Popen[bytes]) -> None:
             _other_work.reset(without)
     while process.poll() is None:
         deadline.check()
-        if time.monotonic() > begun + MOST_SECONDS:
-            raise subprocess.TimeoutExpired(process.args, MOST_SECONDS)
+        if time.monotonic() > begun + EFFORT.most:
+            raise subprocess.TimeoutExpired(process.args, EFFORT.most)
         with suppress(subprocess.TimeoutExpired):
             process.wait(TURN)
 
@@ -128,5 +142,5 @@ def _clear_away(folder: Path) -> None:
     """Remove what programs that were killed have left behind."""
     for left in folder.glob(f"{PREFIX}*"):
         with suppress(OSError):
-            if time.time() - left.stat().st_mtime > 2 * MOST_SECONDS:
+            if time.time() - left.stat().st_mtime > 2 * EFFORT.most:
                 shutil.rmtree(left, ignore_errors=True)

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 
 
 class Stopped(Exception):
@@ -24,7 +25,26 @@ def _never() -> bool:
     return False
 
 
-_end: ContextVar[tuple[float, Callable[[], bool]]] = ContextVar("end", default=(math.inf, _never))
+@dataclass(frozen=True, eq=False)
+class End:
+    """When some work ends.
+
+    Parameters
+    ----------
+    time : float
+        In s, as of ``time.monotonic``.
+    given : float
+        In s: how long the work may take in all.
+    needless : callable
+        Tells whether nobody waits for it any more.
+    """
+
+    time: float = math.inf
+    given: float = math.inf
+    needless: Callable[[], bool] = _never
+
+
+_end: ContextVar[End] = ContextVar("end", default=End())  # noqa: B039 - it is frozen
 
 
 @contextmanager
@@ -33,8 +53,12 @@ def until(end: float, needless: Callable[[], bool] | None = None) -> Iterator[No
 
     ``needless`` tells whether the block does what nobody waits for any more.
     """
-    outside, other = _end.get()
-    before = _end.set((min(end, outside), other if needless is None else needless))
+    outside = _end.get()
+    if end < outside.time:
+        inside = End(end, min(end - time.monotonic(), outside.given), needless or outside.needless)
+    else:
+        inside = outside if needless is None else End(outside.time, outside.given, needless)
+    before = _end.set(inside)
     try:
         yield
     finally:
@@ -43,8 +67,13 @@ def until(end: float, needless: Callable[[], bool] | None = None) -> Iterator[No
 
 def check() -> None:
     """Raise Stopped when time is over."""
-    end, needless = _end.get()
-    if time.monotonic() > end:
+    end = _end.get()
+    if time.monotonic() > end.time:
         raise Stopped("time limit")
-    if needless():
+    if end.needless():
         raise Stopped("needless")
+
+
+def current() -> End:
+    """Return the end of the work that is being done; while nothing brings it forward it is the same object."""
+    return _end.get()

@@ -31,3 +31,20 @@ class SearchEffort:
     patience: int = 10
     most_waiting: int = 1_000_000
     most_stuck: int = 20_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompilingEffort:
+    """How long a compiler may work, and when it is not begun at all.
+
+    Parameters
+    ----------
+    worthwhile : float
+        In s: a time limit shorter than that may be over before anything is compiled. What has such a limit is done
+        without code that is not there yet.
+    most : float
+        In s, after which a compiler is given up.
+    """
+
+    worthwhile: float = 10.0
+    most: float = 300.0

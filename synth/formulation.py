@@ -12,7 +12,7 @@ import numpy as np
 
 from synth import deadline
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
-from synth.compilation import switched_on
+from synth.compilation import NotCompiled, switched_on
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
@@ -707,6 +707,12 @@ class Formulation:
 
     def batch_nlp(self) -> BatchNlp | KinkedNlp:
         """Return the NLP of this question for many designs at once; built once per model and set of rows."""
+        try:
+            return self._batch_nlp()
+        except NotCompiled:
+            return self._batch_nlp()  # over arrays: compiled code is switched off now
+
+    def _batch_nlp(self) -> BatchNlp | KinkedNlp:
         rows, kinks, model = self.rows(), self._kinks, self.model
         large = self.instance.combinations * self.alike >= COMPILED_FROM
         long = self.work > COMPILE_NLP_AFTER
@@ -774,14 +780,20 @@ class Formulation:
         void = self.void(data, count) if skipped is None else self.void(data, count) | skipped
         start = np.clip(start, low, high)
 
-        nlp = self.batch_nlp()
-        before = nlp.evaluations
-        if isinstance(nlp, KinkedNlp):
-            found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers, rough)
-        else:
-            found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers)
-        self.work += (nlp.evaluations - before) * len(self.model.program.nodes)
-        return found
+        def solved() -> Solutions:
+            nlp = self.batch_nlp()
+            before = nlp.evaluations
+            if isinstance(nlp, KinkedNlp):
+                found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers, rough)
+            else:
+                found = nlp.solve(tasks, data, start, low, high, self.bounds, void, self.workers)
+            self.work += (nlp.evaluations - before) * len(self.model.program.nodes)
+            return found
+
+        try:
+            return solved()
+        except NotCompiled:
+            return solved()  # pieces ask for code of their own; compiled code is switched off now
 
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""

@@ -116,6 +116,8 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL |
     ------
     Stopped
         Time is over before it is compiled.
+    NotCompiled
+        The time limit is too short for compiling it.
     """
     compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
     if compiler is None or folder is None:

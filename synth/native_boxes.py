@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from synth import native_rules as rules
-from synth.compilation import switched_on
+from synth.compilation import NotCompiled, switched_on
 from synth.contractor import CONSTANT, Assign, Check, Code, Contractor, Enclose, Hold, Kill, Narrow, Root, Statement
 from synth.margins import MARGINS
 from synth.native import FLAGS, library
@@ -331,7 +331,10 @@ def compiled(code: Code) -> BoxCode | None:
         return None
     if code.compiled is None and not code.hopeless:
         text = source(code)
-        loaded = None if text is None else library("boxes", text, BOX_FLAGS)
+        try:
+            loaded = None if text is None else library("boxes", text, BOX_FLAGS)
+        except NotCompiled:
+            return None
         if loaded is not None:
             code.compiled = BoxCode(loaded, code.sweeps.limits)
         code.hopeless = loaded is None

@@ -7,15 +7,24 @@ import subprocess
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import synth
-from synth import compilation, deadline, native, propagation, search
+from synth import compilation, deadline, formulation, native, propagation, search
+from synth.batch_nlp import BatchNlp, Tasks
 from synth.compilation import compile_shared, meanwhile, switched_off, switched_on
 from synth.deadline import Stopped
-from tests.unit.strut import NEEDED, RODS, Strut
+from synth.effort import CompilingEffort
+from tests.unit.strut import NEEDED, RODS, Strut, strut_form
 
 SOURCE = "int one(void) { return 1; }"
+
+
+@pytest.fixture
+def always_worthwhile(monkeypatch):
+    """Let a compiler begin however short the time limit is."""
+    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=0.0))
 
 
 def compiler(folder: Path, seconds: float) -> str:
@@ -64,6 +73,7 @@ def begun(tmp_path: Path) -> int:
     return int(child.read_text())
 
 
+@pytest.mark.usefixtures("always_worthwhile")
 @pytest.mark.parametrize("how", ["time limit", "interrupted"])
 def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
     folder, children = tmp_path / "cache", []
@@ -118,8 +128,8 @@ def test_compiled_code_can_be_switched_off_for_a_block(monkeypatch):
 # -- beside a search -------------------------------------------------------------------------------
 
 
-def ask(**more):
-    return synth.synthesize(Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
+def ask(problem=None, **more):
+    return synth.synthesize(problem or Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
 
 
 @pytest.fixture
@@ -133,6 +143,7 @@ def never_done(tmp_path, monkeypatch):
     return tmp_path / "home" / "clutchsynth"
 
 
+@pytest.mark.usefixtures("always_worthwhile")
 def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_done):
     begin = time.monotonic()
     front = ask(time_limit=4.0, gap=1e-6)
@@ -159,6 +170,75 @@ def test_what_is_proven_while_the_compiler_works_is_an_answer_where_time_is_over
     assert front.certificate.kind == "global"
     assert not front.interrupted
     assert not list(never_done.glob("*"))
+
+
+@pytest.fixture
+def wanted(monkeypatch, tmp_path):
+    """Let all time limits of less than a year be too short for compiling, with an empty cache; what is compiled."""
+    monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
+    monkeypatch.setattr(formulation, "COMPILED_FROM", 0)
+    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=3e7))
+    monkeypatch.setattr(native, "_compiler", lambda: ("cc", "a compiler"))
+    begun = []
+
+    def refuse(command, **_):
+        begun.append(command)
+        raise OSError
+
+    monkeypatch.setattr(compilation.subprocess, "Popen", refuse)
+    return begun
+
+
+def test_under_a_short_time_limit_nothing_is_compiled(wanted, tmp_path):
+    limited = ask(time_limit=1e6)
+    assert not wanted
+    assert not list(tmp_path.rglob("*.so"))
+    assert limited.certificate.kind == "global"
+    with switched_off():
+        assert limited.files()["designs.csv"] == ask().files()["designs.csv"]
+
+
+def test_a_short_time_limit_keeps_no_other_question_from_compiling(wanted):
+    problem = Strut()
+    ask(problem, time_limit=1e6)
+    assert switched_on()
+    assert not wanted
+    ask(problem, time_limit=6e7)
+    assert wanted
+
+
+def test_pieces_that_ask_for_code_late_are_solved_without(monkeypatch):
+    form, solved = strut_form(), BatchNlp.solve
+    tasks = Tasks(np.ones((1, 3)), np.zeros((1, 3)), np.full((1, 3), np.inf), form.goal_scales, 0.0)
+    start, asked = form.inside(form.leaves(np.zeros(1, dtype=np.int64)), 0.5), []
+    expected = form.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
+
+    def late(nlp, *args):
+        asked.append(switched_on())
+        if asked == [True]:
+            compile_shared("cc", SOURCE, Path("code.so"), [])
+        return solved(nlp, *args)
+
+    monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
+    monkeypatch.setattr(BatchNlp, "solve", late)
+    with deadline.until(time.monotonic() + 5.0):
+        found = form.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
+    assert asked == [True, False]
+    assert np.allclose(found.variables, expected.variables, rtol=1e-5)
+
+
+def test_what_is_part_of_a_limited_question_has_its_time_limit():
+    now = time.monotonic()
+    with deadline.until(now + 5.0):
+        whole = deadline.current()
+        assert 0 < whole.given <= 5.0
+        with deadline.until(now + 60.0):
+            assert deadline.current() is whole
+        with deadline.until(now + 1.0, lambda: False):
+            assert deadline.current().given <= 1.0
+    assert deadline.current().given == float("inf")
 
 
 def test_ctrl_c_while_the_compiler_works_is_heard(never_done, monkeypatch):
@@ -195,6 +275,6 @@ def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatc
 
 
 def test_a_compiler_that_takes_too_long_is_given_up(tmp_path, monkeypatch):
-    monkeypatch.setattr(compilation, "MOST_SECONDS", 0.2)
+    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(most=0.2))
     with pytest.raises(subprocess.TimeoutExpired):
         compile_shared(compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [])
