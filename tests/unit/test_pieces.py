@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -22,6 +21,7 @@ from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Rows, Task
 from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.program import Program
+from tests.regimes import best_in_any_regime
 
 ROOT = Path(__file__).parents[2]
 HAS_COMPILER = shutil.which("cc") is not None
@@ -86,14 +86,13 @@ class Kinked:
 
     def best(self, starts: np.ndarray, low: np.ndarray, high: np.ndarray, allowed: float) -> float:
         """Return the least cost that IPOPT finds in any regime, from any of the starts."""
-        task, least = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), np.ones(1), 0.0), np.inf
-        for regime in itertools.product((False, True), repeat=len(self.referee.branches.decisions)):
-            for start in starts:
-                answer, _ = self.referee._solve_branch(regime, task, [], start, low, high, self.bounds, self.void)
-                if answer is not None:
-                    (cost,), (worst,) = self.judged(answer.variables[None, :])
-                    least = min(least, cost) if worst <= allowed else least
-        return least
+
+        def cost_of(point: np.ndarray) -> float:
+            (cost,), (worst,) = self.judged(point[None, :])
+            return float(cost) if worst <= allowed else np.inf
+
+        task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), np.ones(1), 0.0)
+        return best_in_any_regime(self.referee, task, [], starts, (low, high), self.bounds, self.void, cost_of)
 
 
 def _monomial(rng: np.random.Generator, n: int) -> Formula:
@@ -330,15 +329,16 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
     tasks = Tasks(*(np.tile(x, (len(own), 1)) for x in (weights, 0 * weights, free)), form.goal_scales, 0.0)
     found = form.solve_many(tasks, own, start)
     rows, phi = form.feasible_rows(found.variables, own)
-    nlp, least = form.nlp(), np.inf
     data = [float(np.asarray(x).ravel()[0]) for x in form.instance.data(own[:1])]
     task = Task(weights[0], 0 * weights[0], free[0], form.goal_scales, 0.0)
-    for regime in itertools.product((False, True), repeat=len(nlp.branches.decisions)):
-        for point in (*start[:3], found.variables[rows[0]]):
-            ends = point, form.lower, form.upper, form.bounds, form.void(data, 1)[0]
-            answer, _ = nlp._solve_branch(regime, task, data, *ends)
-            kept, values = form.feasible_rows(answer.variables[None, :], own[:1])
-            least = min(least, values[0, 0]) if len(kept) else least
+
+    def mass_of(point: np.ndarray) -> float:
+        kept, values = form.feasible_rows(point[None, :], own[:1])
+        return float(values[0, 0]) if len(kept) else np.inf
+
+    ends, void = (form.lower, form.upper), form.void(data, 1)[0]
+    starts = np.array([*start[:3], found.variables[rows[0]]])
+    least = best_in_any_regime(form.nlp(), task, data, starts, ends, form.bounds, void, mass_of)
     assert found.converged.sum() >= 11
     assert np.isfinite(least)
     np.testing.assert_allclose(phi[rows, 0][found.converged[rows]], least, atol=1e-7)
