@@ -2,7 +2,8 @@
 
 Only discrete unknowns are drawn: flat samplers over continuous dimensions as well end several per cent off.
 A trial is one combination (and a direction, where objectives are traded off), its value the optimum of the
-continuous problem. The study is kept in a journal file, so that a search that was stopped goes on where it was.
+continuous problem. The study is kept in a journal file, so that a search that was stopped goes on where it was; who
+asks the same meanwhile has a study of its own in memory.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
+from synth.file_locks import alone
 from synth.fingerprint import code_digest, problem_digest
 from synth.formulation import Boxes, Formulation
 from synth.instance import Instance
@@ -47,7 +49,8 @@ def search_parts(
         Takes the designs as well.
     clock : Clock
     journal : Path, optional
-        Where the study is kept until it is finished; None keeps it in memory.
+        Where the study is kept until it is finished; None keeps it in memory. So it is kept as well while another
+        process is at work on the file.
     seed : int
     trials : int
         Combinations to try, those of an earlier run that was stopped included.
@@ -57,6 +60,19 @@ def search_parts(
     int
         Trials of this run.
     """
+    if journal is None:
+        return _searched(form, left, purpose, clock, None, seed, trials)
+    with alone(journal.with_suffix(".lock")) as own:
+        done = _searched(form, left, purpose, clock, journal if own else None, seed, trials)
+        if own:
+            journal.unlink(missing_ok=True)
+    return done
+
+
+def _searched(
+    form: Formulation, left: Boxes, purpose: Purpose, clock: Clock, journal: Path | None, seed: int, trials: int
+) -> int:
+    """Look for designs as :func:`search_parts` does, with a study that nobody else is at work on."""
     import optuna  # costly to import; few questions need it
     from optuna.storages import JournalStorage
     from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
@@ -91,8 +107,6 @@ def search_parts(
                 trial.set_constraint("limits", float(violation))
                 study.tell(trial, [float(x) for x in phi])
             done += len(asked)
-    if journal is not None:
-        journal.unlink(missing_ok=True)
     return done - before
 
 

@@ -21,14 +21,10 @@ from pathlib import Path, PurePosixPath
 from typing import TextIO
 
 from synth.errors import InputError
+from synth.file_locks import SAFELY, has_lock, is_at, unlock
 from synth.files import read_json
 from synth.interrupts import held_back
 from synth.plain_text import file_text
-
-try:
-    import fcntl
-except ImportError:  # a system without these locks: nobody is kept out
-    fcntl = None  # type: ignore[assignment]
 
 LOCK = ".clutchsynth.lock"  # who works for the folder
 MOVING = ".clutchsynth.moving.lock"  # who exchanges its files at the moment
@@ -38,8 +34,6 @@ STOPPED = "stopped"  # the folder beside an earlier result, for what a stopped r
 MOVE_PATIENCE = 30.0  # seconds to wait for another process that exchanges files; it takes far less than one
 JOIN_PATIENCE = 1.0  # seconds for another process of the same job to say which job it is
 PAUSE = 0.02
-SAFELY = getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOFOLLOW", 0)
-NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)  # file systems that have none
 
 
 # ---- kinds of results -----------------------------------------------------------------------------------------------
@@ -405,7 +399,7 @@ def claimed(folder: Path, job: str = "") -> Iterator[None]:
             yield
         finally:
             del _claims[key]
-            _unlock(folder / LOCK, handle)
+            unlock(folder / LOCK, handle)
 
 
 @contextmanager
@@ -433,7 +427,7 @@ def _moving(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        _unlock(folder / MOVING, handle)
+        unlock(folder / MOVING, handle)
 
 
 def _lock(path: Path, job: str, patience: float) -> int | None:
@@ -449,13 +443,13 @@ def _lock(path: Path, job: str, patience: float) -> int | None:
             _take_away(path)
             handle = os.open(path, os.O_RDWR | os.O_CREAT | SAFELY, 0o666)
         try:
-            taken = _has_lock(handle, shared=False)
+            taken = has_lock(handle, shared=False)
             if taken:
                 _sign(handle, job)
             if job:
-                taken = _has_lock(handle, shared=True)
+                taken = has_lock(handle, shared=True)
             # Whoever let go of the file has taken it away, or another job came between.
-            if taken and _is_at(handle, path) and (not job or _signed(handle) == job):
+            if taken and is_at(handle, path) and (not job or _signed(handle) == job):
                 return handle
         except BaseException:
             os.close(handle)
@@ -471,39 +465,10 @@ def _take_away(path: Path) -> None:
     """Take away what somebody else has left whose program is gone; it is in the way where one cannot write into it."""
     handle = os.open(path, os.O_RDONLY | SAFELY)
     try:
-        if _has_lock(handle, shared=False) and _is_at(handle, path):
+        if has_lock(handle, shared=False) and is_at(handle, path):
             path.unlink()
     finally:
         os.close(handle)
-
-
-def _has_lock(handle: int, shared: bool) -> bool:
-    if fcntl is None:
-        return True
-    try:
-        fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-    except OSError as error:
-        if error.errno in NO_LOCKS:
-            return True
-        if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
-            return False
-        raise
-    return True
-
-
-def _unlock(path: Path, handle: int) -> None:
-    """Let go of a locked file; the last one takes it away."""
-    with suppress(OSError):
-        if _has_lock(handle, shared=False) and _is_at(handle, path):
-            path.unlink()
-    os.close(handle)
-
-
-def _is_at(handle: int, path: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(handle), path.stat())
-    except FileNotFoundError:
-        return False
 
 
 def _sign(handle: int, job: str) -> None:

@@ -1,5 +1,8 @@
 """Optuna over parts: what it does where bounds do not close and enumeration does not reach."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -7,6 +10,7 @@ import synth
 from synth import outer, search
 from synth.clock import Clock, Stopped
 from synth.effort import SearchEffort
+from synth.file_locks import alone
 from synth.formulation import Archive, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.outer import search_parts, study_file
@@ -95,6 +99,56 @@ def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
     assert resumed.certificate.kind == "heuristic"
     assert limits_hold(resumed)
     assert journals(tmp_path) == []
+
+
+def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, tmp_path):
+    inner, others = outer._inner, []
+
+    def beside(*args):
+        if not others:  # while the first study is under way another one begins and ends
+            others.append(None)
+            others.append(ask())
+        return inner(*args)
+
+    monkeypatch.setattr(outer, "_inner", beside)
+    front = ask()
+    assert front.statistics["outer_trials"] == TRIALS
+    assert others[1].statistics["outer_trials"] == TRIALS
+    assert others[1].files()["designs.csv"] == front.files()["designs.csv"]
+    assert not list((tmp_path / "clutchsynth" / "studies").iterdir())
+
+
+PROCESS = """
+import sys
+from pathlib import Path
+from synth.file_locks import alone
+with alone(Path(sys.argv[1])) as own:
+    print(own, flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_a_lock_keeps_other_processes_out_until_its_own_is_gone(tmp_path):
+    path = tmp_path / "study.lock"
+
+    def begun():
+        process = subprocess.Popen(
+            [sys.executable, "-c", PROCESS, str(path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        return process, process.stdout.readline().strip()
+
+    first, own = begun()
+    assert own == "True"
+    second, own = begun()
+    assert own == "False"
+    second.communicate()
+    with alone(path) as own:
+        assert not own
+    first.kill()  # what is killed locks nothing any more, although the file stays
+    first.communicate()
+    with alone(path) as own:
+        assert own
+    assert not path.exists()
 
 
 def test_another_question_does_not_take_up_the_study(monkeypatch, tmp_path):
