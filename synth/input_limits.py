@@ -14,7 +14,8 @@ class InputLimits:
     message : int
         Characters of the input that a message repeats in one place.
     points : int
-        Designs of a front.
+        Designs of a front: its record, of 5 to 11 kB per design and up to 23 kB where much scatters, must stay well
+        within the size of a file that is read back.
     limits : int
         Limits of one question, on all quantities together.
     steps : int
@@ -36,7 +37,7 @@ class InputLimits:
     """
 
     message: int = 120
-    points: int = 10_000
+    points: int = 500
     limits: int = 200
     steps: int = 1000
     seed: int = 2**64 - 1

@@ -159,6 +159,7 @@ def test_a_row_keeps_no_more_of_a_cell_than_it_says(tmp_path: Path) -> None:
         ({"weights": {"mass": -1}}, ("weights", "mass")),
         ({"points": 0}, ("points",)),
         ({"points": 10**9}, ("points",)),
+        ({"points": 501}, ("points",)),
         ({"seed": 2**70}, ("seed",)),
         ({"workers": 10**6}, ("workers",)),
         ({"gap": 2}, ("gap",)),
