@@ -231,7 +231,8 @@ def _signs_equality(b: Builder) -> None:
     values = np.broadcast_to(free(b.cloud()), (CLOUD,))
     low, high = float(values.min()), float(values.max())
     room = max(high - low, 0.5)
-    b.variable("y", round(low - b.uniform(-0.2, 0.3) * room, 3), round(high + b.uniform(-0.2, 0.3) * room, 3))
+    ends = sorted((low - b.uniform(-0.2, 0.3) * room, high + b.uniform(-0.2, 0.3) * room))
+    b.variable("y", round(ends[0], 3), round(ends[1], 3))
     b.case.solved["y"] = free
     difference: Formula = lambda u: u["y"] - free(u)  # noqa: E731
     if b.chance():

@@ -220,10 +220,14 @@ def test_impossible_input_is_refused_by_name(requirements, code):
     assert refusal.value.expected
 
 
-@pytest.mark.parametrize("angle", ["0 deg", "-5 deg", "90 deg"])
+@pytest.mark.parametrize("angle", ["0 deg", "-5 deg"])
 def test_what_is_no_cone_is_refused(angle):
     with pytest.raises(synth.InputError, match="cone_half_angle"):
         design(values={"cone_half_angle": angle})
+
+
+def test_a_flat_cone_is_computed_and_told_to_be_outside_the_range_that_is_searched():
+    assert list(design(values={"cone_half_angle": "90 deg"}).outside) == ["cone_half_angle"]
 
 
 @pytest.mark.parametrize(

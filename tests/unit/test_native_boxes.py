@@ -16,6 +16,7 @@ from synth.contractor import Contractor, Layout
 from synth.formulation import PINNED, SNAP, Formulation
 from synth.instance import Instance, as_catalogs
 from synth.intervals import BACKWARD, FORWARD, Cut, Goal
+from synth.margins import above
 from synth.native_source import VECTORS
 from synth.program import OP_SELECT, Program
 from synth.special import TABLE, recorded
@@ -113,7 +114,7 @@ class Case:
             low[b], high[b] = [float(x[0]) for x, _ in ends], [float(y[0]) for _, y in ends]
             goals[b] = [float(np.asarray(x).ravel()[0]) for x in least]
             opens[b] = [bool(np.asarray(x).ravel()[0]) for x in flags]
-        alive &= ~np.any(low > high * (1 + SNAP) + PINNED, axis=1)
+        alive &= ~np.any(low > above(high, SNAP, PINNED), axis=1)
         return alive, low, np.maximum(low, high), goals, opens
 
     def compiled(self, code, capped, passes, workers=1):

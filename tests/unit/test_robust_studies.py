@@ -244,6 +244,7 @@ def test_what_a_longer_study_has_left_behind_is_removed(tmp_path: Path) -> None:
     study({"torque": "90, 100, 110 N*m"}, None, folder=tmp_path)
     again = study({"torque": "90, 100 N*m"}, None, folder=tmp_path)
     assert len(again.steps) == 2
+    again.save(tmp_path)  # until then the earlier study stays
     assert sorted(p.name for p in (tmp_path / "steps").iterdir()) == ["step_0001.json", "step_0002.json"]
     assert "step 3" not in (tmp_path / "study.json").read_text()
     assert study({"torque": "90, 100 N*m"}, None, folder=tmp_path).statistics["kept"] == 2
