@@ -279,7 +279,11 @@ class _Between:
                 return
             low, high = yield from self._break(holder, place)
             before, after = yield from self._sides(holder, low, high)
-            proven = self._best(low).proven and self._best(high).proven
+            sides = self._best(low), self._best(high)
+            empty = [side for side in sides if side.design is None]
+            # An end of what is feasible is proven by the side that has no design: the other one has its design to show,
+            # which on the edge of the tolerance cannot be proven to be the best to the last digits.
+            proven = all(side.proven for side in (empty if len(empty) == 1 else sides))
             remark = "" if proven else UNPROVEN
             if not (self._stands(before, low) and self._stands(after, high)):
                 proven, remark = False, NOT_ROBUST

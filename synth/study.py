@@ -106,7 +106,8 @@ class Break:
 
     It lies between ``low`` and ``high``, in the unit of what is varied; ``before`` is best at ``low``, ``after`` at
     ``high`` (None: nothing is feasible). ``others`` are the values of what else is varied. ``proven``: over all
-    combinations, on both sides; where it is not, ``remark`` says why.
+    combinations, on both sides, or on the side that has no design where the other one has; where it is not, ``remark``
+    says why.
     """
 
     objective: str

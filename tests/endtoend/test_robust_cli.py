@@ -196,7 +196,7 @@ def test_a_study_that_rates_shows_the_yield(saved: Path) -> None:
     assert "yield" in done.stdout
     assert "none of 4 designs keeps all limits over the whole range" in done.stdout
     leading = [row for row in rows(out / "whatif.csv") if row["rank"] == "1"]
-    assert [row["robust.friction"] for row in leading] == ["'+-5 %", "'+-10 %"]  # a spreadsheet would take them for formulas
+    assert [row["robust.friction"] for row in leading] == ["'+-5 %", "'+-10 %"]
     for row in leading:
         assert percent(float(row["yield"])) in done.stdout
 
