@@ -19,7 +19,6 @@ def best_in_any_regime(
     bounds: Sequence[float],
     void: np.ndarray,
     cost_of: Callable[[np.ndarray], float],
-    converged: bool = False,
 ) -> float:
     """Return the least cost that IPOPT finds in any regime, from any of the starts; infinite where it finds nothing.
 
@@ -33,14 +32,11 @@ def best_in_any_regime(
         The box that is looked into, SI.
     cost_of : callable
         The cost of variables by the formulas as they were written; infinite where a limit does not hold.
-    converged : bool
-        Whether only what IPOPT calls an optimum counts.
     """
     clean = [1.0 if np.isnan(x) else float(x) for x in data]
     least = np.inf
     for regime in itertools.product((False, True), repeat=len(nlp.branches.decisions)):
         for start in starts:
             answer, _ = nlp._solve_branch(regime, task, clean, start, *ends, bounds, void)
-            if answer is not None and (answer.converged or not converged):
-                least = min(least, cost_of(answer.variables))
+            least = least if answer is None else min(least, cost_of(answer.variables))
     return least

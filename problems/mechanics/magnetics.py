@@ -91,12 +91,8 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
     return iron_reluctance * flux_density / (1 - flux_density / iron_saturation)
 
 
-@special((0.0, 1.0), (0.0, 1.0), curvature="log-convex")
 def larger(first: Quantity, second: Quantity) -> Quantity:
-    """Return the larger of two, as one node: of two flux densities in series, or of two radii outside.
-
-    One of the two is the larger nearly everywhere, and dimensions are makeable steps: the edge between both needs no
-    care of its own, which a plain maximum would get.
+    """Return the larger of two: of two flux densities in series, or of two radii outside.
 
     Parameters
     ----------

@@ -227,7 +227,7 @@ def test_the_table_is_complete():
     assert names == {
         "sum_geometric", "sum_lipka", "sum_exact", "peak_rise_per_work", "reactive_friction_work",
         "reactive_slip_time", "reactive_peak_slip_power", "grip_factor", "iron_field", "resistance_rise",
-        "hot_copper_loss", "larger", "rim_section_width", "ramp_gain",
+        "hot_copper_loss", "rim_section_width", "ramp_gain",
     }  # fmt: skip
     assert all(isinstance(TABLE[n], SpecialFunction) for n in NAMES)
     assert {n.rsplit(".", 1)[1] for n in NAMES if TABLE[n].curvature is None} == {
