@@ -295,7 +295,7 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
     with subprocess.Popen(
-        [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "2000", "--gap", "1e-6", "--no-grid"],
+        [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "500", "--gap", "1e-6", "--no-grid"],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as process:  # fmt: skip
         assert process.stderr is not None
@@ -310,7 +310,7 @@ def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
     done = clutchsynth(
-        "run", HOIST, "-o", tmp_path / "out", "--points", "2000", "--gap", "1e-6", "--no-grid", "--time-limit", "1 s"
+        "run", HOIST, "-o", tmp_path / "out", "--points", "500", "--gap", "1e-6", "--no-grid", "--time-limit", "1 s"
     )
     assert done.returncode == 4
     assert "stopped: time limit" in done.stdout

@@ -20,7 +20,7 @@ from tests.unit.test_output_folder import small_disk
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
 
-LONG = ["--points", "2000", "--gap", "1e-6", "--no-grid"]
+LONG = ["--points", "500", "--gap", "1e-6", "--no-grid"]
 TIGHT = SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")
 HEADER = "family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits"
 PARTS = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
