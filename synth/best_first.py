@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,6 +23,39 @@ from synth.seeker import Seeker
 STEPS_PER_DOUBLING = 2  # levels of room
 MOST_LEVELS = 64
 MOST_BATCHES = 64  # of a level, before they are joined
+
+
+@dataclass(frozen=True, kw_only=True)
+class Progress:
+    """What tells whether boxes keep closing.
+
+    Parameters
+    ----------
+    highest : int
+        The level of the boxes with most room.
+    waiting : int
+        Boxes that wait.
+    extent : float
+        How much of everything they hold: it only falls, while their number may stand still for long.
+    """
+
+    highest: int
+    waiting: int
+    extent: float
+
+    def after(self, known: Progress, closing: float) -> Progress | None:
+        """Return the least that is known now, where less is open than was known; None where nothing has closed.
+
+        Of the extent a share of at least ``closing`` counts. Less than that adds up, because nothing is returned then.
+        """
+        as_many = self.highest >= known.highest and self.waiting >= known.waiting
+        if as_many and self.extent > (1 - closing) * known.extent:
+            return None
+        return Progress(
+            highest=min(self.highest, known.highest),
+            waiting=min(self.waiting, known.waiting),
+            extent=min(self.extent, known.extent),
+        )
 
 
 class OpenBoxes:
@@ -82,6 +116,11 @@ class OpenBoxes:
         """All that wait."""
         return [b for own in self.levels for b in own]
 
+    def progress(self) -> Progress:
+        """Return how much is open."""
+        extent = sum(self.form.extent(b) for b in self.batches)
+        return Progress(highest=self.highest, waiting=len(self), extent=extent)
+
     @property
     def highest(self) -> int:
         """The level of the boxes with most room; -1 where none waits."""
@@ -120,7 +159,7 @@ def best_first(
     boxes = boxes if every else form.lean(boxes)
     waiting, stuck = OpenBoxes(form, purpose, effort.most_waiting), boxes.take(slice(0, 0))
     waiting.add(boxes)
-    least, idle, mark = (waiting.highest, len(waiting)), 0, effort.spell
+    least, idle, mark = waiting.progress(), 0, effort.spell
     while len(waiting):
         clock.check([*waiting.batches, stuck])
         if over():
@@ -128,9 +167,8 @@ def best_first(
             break
         if looked >= mark:
             mark = looked + effort.spell
-            now = waiting.highest, len(waiting)
-            idle = 0 if now[0] < least[0] or now[1] < least[1] else idle + 1
-            least = min(least[0], now[0]), min(least[1], now[1])
+            closed = waiting.progress().after(least, effort.closing)
+            idle, least = (idle + 1, least) if closed is None else (0, closed)
             if idle >= effort.patience or len(stuck) > effort.most_stuck:
                 break
         children, small, seen = further(form, waiting.next(), purpose, seeker, every, np.inf)

@@ -19,7 +19,10 @@ class SearchEffort:
     spell : int
         Boxes between two looks at whether boxes keep closing.
     patience : int
-        Spells in which neither fewer boxes wait nor the gap of those that wait is smaller, after which it ends.
+        Spells in which neither fewer boxes wait, nor the gap of those that wait is smaller, nor what they hold together
+        is, after which it ends.
+    closing : float
+        The share of what open boxes hold together by which it must fall to count.
     most_waiting : int
         Boxes that may wait; when there are more, those that nearly close come first, so that they become fewer.
     most_stuck : int
@@ -29,6 +32,7 @@ class SearchEffort:
     seconds: float = 60.0
     spell: int = 1_000_000
     patience: int = 10
+    closing: float = 0.05
     most_waiting: int = 1_000_000
     most_stuck: int = 20_000
 

@@ -32,6 +32,7 @@ CHUNK = 4096
 COMPILE_NLP_AFTER = 150_000_000
 SNAP = 1e-9
 PINNED = 1e-12
+POINT_SHARE = 1e-8  # of a range, as which a point counts
 TIE = 1e-9
 # Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
 SEARCH_TOLERANCE = 1e-8
@@ -664,6 +665,15 @@ class Formulation:
             ratio = low * (high / low) ** share
         points: np.ndarray = np.where(low > 0, ratio, low + share * (high - low))
         return points
+
+    def extent(self, boxes: Boxes) -> float:
+        """Return how much of everything boxes hold together: combinations times shares of the ranges of variables.
+
+        What is narrower than a hundred-millionth of its range counts as that wide, so that one point is not nothing.
+        """
+        ranged = np.flatnonzero(self._span[: self.n] > 0)
+        shares = (boxes.high[:, ranged] - boxes.low[:, ranged]) / self._span[ranged]
+        return float(self.cells.size(boxes.cell) @ np.maximum(shares, POINT_SHARE).prod(axis=1))
 
     def makeable(self, variables: np.ndarray) -> np.ndarray:
         """Return points with gridded variables moved to the nearest makeable value."""

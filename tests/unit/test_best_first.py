@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import synth
 from synth import search
-from synth.best_first import OpenBoxes, best_first
+from synth.best_first import OpenBoxes, Progress, best_first
 from synth.clock import Clock, Stopped
 from synth.cover import best, cover
 from synth.effort import SearchEffort
-from synth.formulation import Formulation
+from synth.formulation import Boxes, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover
@@ -78,6 +80,38 @@ def test_what_does_not_close_ends_by_the_count_of_boxes(form):
         best_first(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
 
 
+def test_boxes_close_where_fewer_wait_or_promise_less_or_hold_less():
+    known = Progress(highest=5, waiting=100, extent=1.0)
+    assert known.after(known, 0.05) is None
+    for closed in ({"highest": 4}, {"waiting": 99}, {"extent": 0.9}):
+        now = replace(known, **closed)
+        assert now.after(known, 0.05) == now
+    # Little counts as nothing, and adds up.
+    first, second = replace(known, extent=0.97), replace(known, extent=0.94)
+    assert first.after(known, 0.05) is None
+    assert second.after(known, 0.05) == second
+    # More of one does not spoil what is known of another.
+    assert replace(known, highest=4, waiting=200).after(known, 0.05) == replace(known, highest=4)
+
+
+def test_what_waits_holds_less_the_more_is_closed(form):
+    purpose = whole(form, 0.01)
+
+    def left(effort: int) -> Boxes:
+        return cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), effort).open
+
+    extents = [form.extent(boxes) for boxes in (form.root(), left(50), left(100), left(200))]
+    assert extents == sorted(extents, reverse=True)
+    assert extents[0] > extents[-1] > 0
+    # Halves hold as much as what was split, be it along a variable or between combinations; but for what lies between
+    # makeable values.
+    boxes = form.root()
+    for _ in range(6):
+        halves = Boxes.joined(list(form.split(boxes)))
+        assert 0.98 * form.extent(boxes) < form.extent(halves) <= form.extent(boxes) * (1 + 1e-9)
+        boxes = halves
+
+
 def test_the_gap_of_open_boxes_is_what_they_allow(form):
     plain = np.full(2, np.inf)
     found, ended = best(form, form.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
@@ -114,6 +148,35 @@ def test_the_tension_spring_is_proven():
     assert front.certificate.kind == "global"
     assert front.certificate.budget is None
     assert front.designs[0].objectives["volume"] == pytest.approx(OPTIMUM, rel=2e-6)
+
+
+def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
+    front = synth.synthesize(
+        "centrifugal_two_spring",
+        requirements={
+            "required_torque": "90 N*m",
+            "lining_wear": "0.4 mm",
+            "driven_inertia": "0.1 kg*m2",
+            "idle_speed": "80 rad/s",
+            "contact_speed_min": "95 rad/s",
+            "contact_speed_max": "135 rad/s",
+            "full_torque_speed": "200 rad/s",
+            "top_speed": "500 rad/s",
+        },
+        parts={
+            "ball": ["ball 25", "ball 30"],
+            "return_spring": ["CS-1.25x6.3x5.5"],
+            "clamp_spring": ["CS-2.5x12.5x5.5", "CS-2x10x3.5"],
+            "friction_pair": ["metal_ceramic_bronze_dry"],
+        },
+        limits={"balls": "4 .. 5", "return_springs": "2 .. 3", "clamp_springs": "3 .. 4"},
+        fix={"friction_surfaces": 8, "plate_travel": "1 mm"},
+        objectives=["engagement_band"],
+        points=1,
+        grid=False,
+    )
+    assert front.certificate.kind == "global"
+    assert front.statistics["boxes"] > search.EFFORT_WITH_MANY  # more than a first effort
 
 
 @pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
