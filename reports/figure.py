@@ -30,8 +30,14 @@ from synth.units import split_header
 # The colours of M. Okabe and K. Ito, told apart by the colour-blind; each has a dash of its own, for print without.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9")
 DASHES: tuple[Any, ...] = (
-    "-", (0, (6, 2)), (0, (2, 1.2)), (0, (6, 1.5, 1.5, 1.5)), "-", (0, (9, 2, 2, 2)), (0, (3, 1)),
-)  # fmt: skip
+    "-",
+    (0, (6, 2)),
+    (0, (2, 1.2)),
+    (0, (6, 1.5, 1.5, 1.5)),
+    "-",
+    (0, (9, 2, 2, 2)),
+    (0, (3, 1)),
+)
 LEGEND_LETTERS = 21  # of a line beside the panels
 JOINT = re.compile(r"(?<=[0-9]) (?=[^0-9\s])")  # between a number and its unit no line is broken
 BESIDE = 0.03  # inches by which the name of a line may stand below it
@@ -165,8 +171,12 @@ def make_figure(frame: pd.DataFrame) -> Figure:
         figure.text(
             (left + axis_width * (position - limits[0]) / (limits[1] - limits[0])) / WIDTH,
             1 - (top - 0.05 - ROW * row) / height,
-            text, ha="center", va="bottom", fontsize=7.5, color=colour,
-        )  # fmt: skip
+            text,
+            ha="center",
+            va="bottom",
+            fontsize=7.5,
+            color=colour,
+        )
     for k, text in enumerate(title):
         figure.text(left / WIDTH, 1 - (0.1 + 0.19 * k) / height, text, ha="left", va="top", fontsize=10, weight="bold")
     for k, text in enumerate(reversed(footer)):
@@ -321,9 +331,14 @@ def _name_lines(axis: Axes, lines: Sequence[Mapping[str, Any]], factor: float, i
         middle = min(level, ceiling - 0.07 * len(texts))
         ceiling = middle - 0.07 * len(texts)
         axis.text(
-            1.016, middle / height, "\n".join(texts),
-            transform=axis.transAxes, va="center", fontsize=7.5, color="#333333",
-        )  # fmt: skip
+            1.016,
+            middle / height,
+            "\n".join(texts),
+            transform=axis.transAxes,
+            va="center",
+            fontsize=7.5,
+            color="#333333",
+        )
         if level - middle > BESIDE:
             joined = {"arrowstyle": "-", "shrinkA": 0, "shrinkB": 0, "color": "#777777", "lw": 0.6}
             axis.annotate("", (1.0, level / height), (1.014, middle / height), "axes fraction", arrowprops=joined)

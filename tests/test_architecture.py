@@ -80,14 +80,20 @@ def test_imports_are_found_wherever_they_stand() -> None:
 # package: what it may import besides the standard library
 MAY_IMPORT = {
     "problems": {
-        "problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special",
+        "problems",
+        "numpy",
+        "pandas",
+        "synth.DesignProblem",
+        "synth.declaration",
+        "synth.errors",
+        "synth.special",
     },
     "problems/blocks": {"problems", "numpy", "synth.declaration", "synth.errors"},
     "problems/centrifugal_blocks": {"problems", "synth.declaration"},
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
     "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("package", MAY_IMPORT)
@@ -183,10 +189,24 @@ def test_a_wheel_contains_all_tables_schemas_and_the_type_marker(tmp_path: Path)
     for package in OURS:
         shutil.copytree(ROOT / package, source / package, ignore=shutil.ignore_patterns("__pycache__"))
     done = subprocess.run(
-        [sys.executable, "-m", "pip", "wheel", str(source), "--no-deps", "--no-build-isolation", "--quiet",
-         "--disable-pip-version-check", "--wheel-dir", str(wheels)],
-        capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "pip",
+            "wheel",
+            str(source),
+            "--no-deps",
+            "--no-build-isolation",
+            "--quiet",
+            "--disable-pip-version-check",
+            "--wheel-dir",
+            str(wheels),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     (wheel,) = wheels.glob("clutchsynth-*.whl")
     with zipfile.ZipFile(wheel) as archive:

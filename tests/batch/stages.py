@@ -21,10 +21,15 @@ from tests.batch.rod import Rod
 def rows() -> list[dict[str, object]]:
     """Return rows of two structures, one of them bad, two of them the same."""
     table: list[dict[str, object]] = [
-        {"id": f"R{k}", "force [kN]": 10 + k % 13, "parts": "steel = S185, 42CrMo4", "length [mm]": 100,
-         "diameter_limit [mm]": 30 if k % 2 else ""}
+        {
+            "id": f"R{k}",
+            "force [kN]": 10 + k % 13,
+            "parts": "steel = S185, 42CrMo4",
+            "length [mm]": 100,
+            "diameter_limit [mm]": 30 if k % 2 else "",
+        }
         for k in range(14)
-    ]  # fmt: skip
+    ]
     return [*table, {"id": "bad", "force [kN]": "much", "parts": "", "length [mm]": "", "diameter_limit [mm]": ""}]
 
 

@@ -31,11 +31,15 @@ PARTS = "steel = S185, 42CrMo4"
 def rows(count: int) -> list[dict[str, Any]]:
     return [
         {
-            "id": f"R{k}", "force [kN]": 10 + k, "section": "square" if k % 3 == 0 else "", "parts": PARTS,
-            "diameter_limit [mm]": 30 if k % 2 else None, "length [mm]": 100,
+            "id": f"R{k}",
+            "force [kN]": 10 + k,
+            "section": "square" if k % 3 == 0 else "",
+            "parts": PARTS,
+            "diameter_limit [mm]": 30 if k % 2 else None,
+            "length [mm]": 100,
         }
         for k in range(count)
-    ]  # fmt: skip
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -79,9 +83,11 @@ def test_the_files_say_what_became_of_each_row(plain: synth.BatchResult) -> None
 def test_a_row_has_the_designs_that_the_search_finds_alone(plain: synth.BatchResult) -> None:
     row = plain.designs().set_index("id").loc["R3"]
     alone = synth.synthesize(
-        Rod(section="square"), {"force": "13 kN", "diameter_limit": "30 mm"}, parts={"steel": ["S185", "42CrMo4"]},
+        Rod(section="square"),
+        {"force": "13 kN", "diameter_limit": "30 mm"},
+        parts={"steel": ["S185", "42CrMo4"]},
         fix={"length": "100 mm"},
-    ).to_frame()  # fmt: skip
+    ).to_frame()
     assert len(alone) == 1
     for name in alone.columns:
         if name != "alternatives":

@@ -42,9 +42,12 @@ class Parts:
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"}
         with (self.folder / f"{module}.log").open("ab") as log:
             process = subprocess.Popen(
-                [sys.executable, "-m", f"distributed.cli.{module}", *words, "--no-dashboard"], stdout=log, stderr=log,
-                env=environment, cwd=self.folder,
-            )  # fmt: skip
+                [sys.executable, "-m", f"distributed.cli.{module}", *words, "--no-dashboard"],
+                stdout=log,
+                stderr=log,
+                env=environment,
+                cwd=self.folder,
+            )
         self.processes.append(process)
         return process
 

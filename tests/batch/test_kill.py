@@ -25,8 +25,10 @@ ROW = "{},multi_plate_clutch,{},254,30,cz,2,friction_pair = seed_multiplate_ref;
 
 def small_table(folder: Path, count: int) -> Path:
     path = folder / "rows.csv"
-    lines = [ROW.format(f"A{k}", 400 + 10 * k).replace("friction_pair", '"friction_pair').replace(
-        "core 2,", 'core 2",') for k in range(count)]  # fmt: skip
+    lines = [
+        ROW.format(f"A{k}", 400 + 10 * k).replace("friction_pair", '"friction_pair').replace("core 2,", 'core 2",')
+        for k in range(count)
+    ]
     path.write_text(ROWS.format("\n".join(lines)) + "\n")
     return path
 
@@ -36,9 +38,14 @@ def small_table(folder: Path, count: int) -> Path:
 def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:
     kills = 14 if database.startswith("sqlite") else 8
     done = subprocess.run(
-        [sys.executable, "-m", "tests.batch.stages", str(tmp_path), database, str(kills), "7"], cwd=ROOT, check=False,
-        capture_output=True, text=True, timeout=300, env={**os.environ, "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
+        [sys.executable, "-m", "tests.batch.stages", str(tmp_path), database, str(kills), "7"],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+    )
     assert done.returncode == 0, done.stderr
     words = done.stdout.split("\n")
     assert words.count("killed") >= 3

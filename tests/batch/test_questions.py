@@ -43,9 +43,18 @@ GOOD = {"force [kN]": "10", "parts": "steel = S185"}
 
 def test_a_row_becomes_a_question() -> None:
     row = {
-        "id": "A", "F [kN]": "10", "n": "2", "D_max": "3 cm", "section": "square", "length [mm]": 100, "z": 2,
-        "steel": "", "parts": "steel = S185, 42CrMo4", "limits": "mass <= 20 kg", "fix": "d = 20 mm",
-    }  # fmt: skip
+        "id": "A",
+        "F [kN]": "10",
+        "n": "2",
+        "D_max": "3 cm",
+        "section": "square",
+        "length [mm]": 100,
+        "z": 2,
+        "steel": "",
+        "parts": "steel = S185, 42CrMo4",
+        "limits": "mass <= 20 kg",
+        "fix": "d = 20 mm",
+    }
     found = asked(row)
     assert found.faults == ()
     assert found.question == {
@@ -95,7 +104,7 @@ def test_a_question_is_known_by_its_content() -> None:
         ({"limits": "mass < 3; mass > 4"}, "limits that do not exclude each other"),
         ({"fix": "length = 90", "length": "90"}, "in one place"),
     ],
-)  # fmt: skip
+)
 def test_faults_name_line_column_and_what_is_right(change: dict[str, str], words: str) -> None:
     assert words in fault({**GOOD, **change})
 
@@ -110,8 +119,11 @@ def test_a_line_with_too_few_cells_is_a_fault(tmp_path: Path) -> None:
     path.write_text("force [kN],id\n10,A\n10\n10,B,C\n10,D,\n")
     found = list(questioner(path, parts={"steel": "S185"}).rows())
     assert [[x.sentence()[:22] for x in row.faults] for row in found] == [
-        [], ["line 3: got '1 cells';"], ["line 4: got '3 cells';"], [],
-    ]  # fmt: skip
+        [],
+        ["line 3: got '1 cells';"],
+        ["line 4: got '3 cells';"],
+        [],
+    ]
 
 
 @pytest.mark.parametrize(
@@ -179,9 +191,13 @@ def test_families_and_their_options_are_checked_row_by_row() -> None:
 
 def test_refusals_of_a_family_are_told_beforehand() -> None:
     tight = {
-        "family": "multi_plate_clutch", "load_torque": "600", "driver_speed": "254", "driven_inertia": "30",
-        "hub_bore_diameter": "90 mm", "outer_diameter_limit": "100 mm",
-    }  # fmt: skip
+        "family": "multi_plate_clutch",
+        "load_torque": "600",
+        "driver_speed": "254",
+        "driven_inertia": "30",
+        "hub_bore_diameter": "90 mm",
+        "outer_diameter_limit": "100 mm",
+    }
     assert "no_room_for_ring" in fault(tight, None)
 
 

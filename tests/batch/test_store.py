@@ -32,9 +32,15 @@ def rows(count: int, structure: str = "s") -> Iterator[dict[str, Any]]:
         key = digest([structure, k])
         question = {"key": key, "structure": structure, "position": b"%05d" % k, "content": {"n": k}}
         yield {
-            "line": k + 2, "position": b"%05d" % (count - k), "key": key, "family": "f", "cells": [str(k), "é;\n"],
-            "remarks": "", "faults": [], "question": question,
-        }  # fmt: skip
+            "line": k + 2,
+            "position": b"%05d" % (count - k),
+            "key": key,
+            "family": "f",
+            "cells": [str(k), "é;\n"],
+            "remarks": "",
+            "faults": [],
+            "question": question,
+        }
 
 
 def job(name: str = "j", basis: str = "b") -> dict[str, Any]:
@@ -163,8 +169,9 @@ def test_a_question_that_fails_is_tried_alone_and_at_last_keeps_its_error(store:
         assert [list(c.questions) for c in claims] == ([[bad], [other]] if attempt == 2 else [[bad]])
         for c in claims:
             (key,) = c.questions
-            store.finish("j", c, owner, {} if key == bad else {key: outcome()}, {bad: f"boom {attempt}"} if key == bad
-                         else {}, 3)  # fmt: skip
+            store.finish(
+                "j", c, owner, {} if key == bad else {key: outcome()}, {bad: f"boom {attempt}"} if key == bad else {}, 3
+            )
     assert store.claim("j", owner, 9) == []
     assert store.account("j").status == {"optimal": 2, "failed": 1}
     (failed,) = (row for row in store.rows("j", canonical=False) if row.status == "failed")
@@ -177,8 +184,10 @@ def test_units_of_a_process_that_died_are_free_at_once(store: Store) -> None:
     store.create(job(), rows(2), 1)
     gone = subprocess.run(
         [sys.executable, "-c", "from synth.jobs.store import new_owner; print(new_owner())"],
-        capture_output=True, text=True, check=True,
-    ).stdout.strip()  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.strip()
     living = new_owner()
     store.claim("j", gone, 1)
     store.claim("j", living, 1)

@@ -83,8 +83,9 @@ def test_cells_of_programs_become_what_people_type() -> None:
 
 def test_entries_of_a_cell() -> None:
     assert read_parts("a = x y, z; b: 'p; q' in hint and mu > 0.1;", "") == {
-        "a": ["x y", "z"], "b": "'p; q' in hint and mu > 0.1",
-    }  # fmt: skip
+        "a": ["x y", "z"],
+        "b": "'p; q' in hint and mu > 0.1",
+    }
     assert read_limits("mass <= 20 kg; z: 10 .. 14; z == 12", "") == {"mass": ["<= 20 kg"], "z": ["10 .. 14", "== 12"]}
     assert read_fix("", "") == {}
 

@@ -54,9 +54,13 @@ def case(rows: int, points: int, size: str, folder: Path) -> BatchJob:
         if len(more):
             spec[name] = ["+", more]
     settings = {
-        "objectives": ["mass"] if points == 1 else ["mass", "actuation_force"], "points": points, "gap": 1e-3,
-        "grid": True, "seed": 0, "time_limit": None,
-    }  # fmt: skip
+        "objectives": ["mass"] if points == 1 else ["mass", "actuation_force"],
+        "points": points,
+        "gap": 1e-3,
+        "grid": True,
+        "seed": 0,
+        "time_limit": None,
+    }
     common = {"parts": question["parts"], "limits": None, "fix": None}
     return BatchJob(FAMILY, cases.requirement_rows(rows), folder, None, spec or None, common, None, settings)
 
@@ -203,10 +207,18 @@ def ranges(quick: bool) -> list[Report]:
         fewest, _ = chooser.fewest(begin + 60.0)
         number = max(12, len(fewest))
         choice = chooser.best(number, begin + 60.0, fewest)
-        table.append({
-            "kind": kind, "rows": len(costs), "candidates": columns, "not dominated": chooser.columns,
-            "fewest": len(fewest), "variants": number, "gap": choice.gap, "seconds": time.monotonic() - begin,
-        })  # fmt: skip
+        table.append(
+            {
+                "kind": kind,
+                "rows": len(costs),
+                "candidates": columns,
+                "not dominated": chooser.columns,
+                "fewest": len(fewest),
+                "variants": number,
+                "gap": choice.gap,
+                "seconds": time.monotonic() - begin,
+            }
+        )
     return [Report("ranges", table, ["gap 0.1 % asked, 60 s at most"])]
 
 

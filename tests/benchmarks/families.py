@@ -18,9 +18,13 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 THREADS = 2
 # Asked as the example asks, with all parts open, and again with all sizes open as well.
 SHIPPED = (
-    "centrifugal_ball_ramp", "centrifugal_two_spring", "centrifugal_lever", "centrifugal_reversed", "powder_winder",
+    "centrifugal_ball_ramp",
+    "centrifugal_two_spring",
+    "centrifugal_lever",
+    "centrifugal_reversed",
+    "powder_winder",
     "electromagnetic_spindle",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)
@@ -37,14 +41,23 @@ class Question:
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
 SKEW = {**MILL, "shaft_angle": "2 deg", "float_distance": "50 mm", "guide_angle": "75 deg"}
 CAR = {
-    "load_torque": "60 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.7 kg*m2", "safety_factor": 2.5,
-    "engagements_per_hour": "20 1/h", "startup_torque": "120 N*m", "jerk_limit": "300 rad/s3",
+    "load_torque": "60 N*m",
+    "driver_speed": "1500 1/min",
+    "driven_inertia": "0.7 kg*m2",
+    "safety_factor": 2.5,
+    "engagements_per_hour": "20 1/h",
+    "startup_torque": "120 N*m",
+    "jerk_limit": "300 rad/s3",
     "outer_diameter_limit": "240 mm",
-}  # fmt: skip
+}
 DRIVE = {
-    "load_torque": "200 N*m", "driver_speed": "700 1/min", "driven_inertia": "2 kg*m2",
-    "engagements_per_hour": "30 1/h", "jerk_limit": "600 rad/s3", "outer_diameter_limit": "400 mm",
-}  # fmt: skip
+    "load_torque": "200 N*m",
+    "driver_speed": "700 1/min",
+    "driven_inertia": "2 kg*m2",
+    "engagements_per_hour": "30 1/h",
+    "jerk_limit": "600 rad/s3",
+    "outer_diameter_limit": "400 mm",
+}
 QUESTIONS = [
     Question("disc_clutch", ("mass", "actuation_force"), CAR),
     Question("cone_clutch", ("mass", "actuation_force"), DRIVE),
@@ -85,9 +98,14 @@ def measure(question: Question, repeat: int, time_limit: float, points: int = PO
     for _ in range(repeat + 1):
         processor, clock = time.process_time(), time.perf_counter()
         front = synth.synthesize(
-            problem, question.requirements, objectives=list(question.objectives) or None, points=points,
-            time_limit=time_limit, workers=THREADS, **question.given,
-        )  # fmt: skip
+            problem,
+            question.requirements,
+            objectives=list(question.objectives) or None,
+            points=points,
+            time_limit=time_limit,
+            workers=THREADS,
+            **question.given,
+        )
         used.append(time.process_time() - processor)
         passed.append(time.perf_counter() - clock)
     return {

@@ -65,9 +65,16 @@ def search_case(
 ) -> dict[str, Any]:
     """Run one search case."""
     case = {
-        "kind": "search", "size": size, "objectives": list(objectives), "grid": grid, "gap": gap, "points": points,
-        "repeat": settings.repeat, "time_limit": settings.time_limit, **more,
-    }  # fmt: skip
+        "kind": "search",
+        "size": size,
+        "objectives": list(objectives),
+        "grid": grid,
+        "gap": gap,
+        "points": points,
+        "repeat": settings.repeat,
+        "time_limit": settings.time_limit,
+        **more,
+    }
     return run(case, case["repeat"] * case["time_limit"] + GRACE)
 
 
@@ -154,9 +161,11 @@ def nlp(settings: Settings) -> list[Report]:
     more = {"count": 2000, "referee": 10, "repeats": 1} if settings.quick else {"repeats": settings.repeat}
     found = nlp_rate.measure(**more)
     ways = {
-        "arrays, no compiler": "numpy", "compiled once for all": "general", "compiled": "native",
+        "arrays, no compiler": "numpy",
+        "compiled once for all": "general",
+        "compiled": "native",
         "IPOPT one by one": "ipopt",
-    }  # fmt: skip
+    }
     table = [{"solver": label, "NLPs per second and core": found[name]} for label, name in ways.items()]
     return [Report("nlp", table, [f"a feasible optimum found for {100 * found['solved']:.2f} % of the problems"])]
 
@@ -185,9 +194,14 @@ def peers(settings: Settings) -> list[Report]:
         fronts[name] = []
         for seed in range(settings.seeds):
             case = {
-                "kind": "peer", "peer": name, "size": size, "grid": False, "objectives": TWO,
-                "checkpoints": checkpoints, "seed": seed,
-            }  # fmt: skip
+                "kind": "peer",
+                "peer": name,
+                "size": size,
+                "grid": False,
+                "objectives": TWO,
+                "checkpoints": checkpoints,
+                "seed": seed,
+            }
             result = run(case, checkpoints[-1] + GRACE)
             if "error" in result:
                 remarks.append(f"{name}: {result['error']}")
@@ -220,9 +234,15 @@ def _ipopt(settings: Settings, caps: Sequence[float]) -> Report:
     table = []
     for size in ("6k",) if settings.quick else ("110k", "1M"):
         case = {
-            "kind": "peer", "peer": "ipopt", "size": size, "grid": False, "objectives": TWO,
-            "sample": 20 if settings.quick else SAMPLE, "caps": list(caps), "seed": 0,
-        }  # fmt: skip
+            "kind": "peer",
+            "peer": "ipopt",
+            "size": size,
+            "grid": False,
+            "objectives": TWO,
+            "sample": 20 if settings.quick else SAMPLE,
+            "caps": list(caps),
+            "seed": 0,
+        }
         result = run(case, GRACE)
         own = search_case(settings, size, TWO, False, FRONT_GAP, USER_POINTS)
         row: dict[str, Any] = {"combinations": own.get("combinations", size), "points": USER_POINTS}
@@ -247,9 +267,14 @@ def rows(settings: Settings) -> list[Report]:
     # The limit of a single search, for all rows together: a hundredth of a second per row would be wanted.
     most = max(settings.time_limit, 0.5 * count)
     case = {
-        "kind": "rows", "size": size, "rows": count, "objectives": ["mass"], "gap": SINGLE_GAP, "grid": False,
+        "kind": "rows",
+        "size": size,
+        "rows": count,
+        "objectives": ["mass"],
+        "gap": SINGLE_GAP,
+        "grid": False,
         "time_limit": most,
-    }  # fmt: skip
+    }
     result = run(case, 2 * most + GRACE)
     if "error" in result:
         return [Report("rows", [{"combinations": size, "rows": "stopped", "note": result["error"]}])]

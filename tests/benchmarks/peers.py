@@ -172,13 +172,17 @@ def _optuna(model: Vectorised, sampler: Any, batch: int) -> None:
     model.start()
     while True:
         trials = [study.ask() for _ in range(batch)]
-        x = np.array([
+        x = np.array(
             [
-                trial.suggest_int(f"x{k}", int(a), int(b)) if k < model.discrete else trial.suggest_float(f"x{k}", a, b)
-                for k, (a, b) in enumerate(spans)
+                [
+                    trial.suggest_int(f"x{k}", int(a), int(b))
+                    if k < model.discrete
+                    else trial.suggest_float(f"x{k}", a, b)
+                    for k, (a, b) in enumerate(spans)
+                ]
+                for trial in trials
             ]
-            for trial in trials
-        ])  # fmt: skip
+        )
         values, violations = model.evaluate(x)
         for trial, f, g in zip(trials, values, violations, strict=True):
             for k, violation in enumerate(g):

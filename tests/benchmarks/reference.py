@@ -302,9 +302,15 @@ def search(size: str, grid: bool, time_limit: float) -> tuple[np.ndarray, str]:
     """Return the front of a size as the search finds it to a small gap, and how it was made."""
     question = cases.question(cases.SIZES[size])
     front = synth.synthesize(
-        cases.problem(), cases.HOIST, objectives=list(cases.OBJECTIVES), points=POINTS, gap=GAPS[size], grid=grid,
-        time_limit=time_limit, **question,
-    )  # fmt: skip
+        cases.problem(),
+        cases.HOIST,
+        objectives=list(cases.OBJECTIVES),
+        points=POINTS,
+        gap=GAPS[size],
+        grid=grid,
+        time_limit=time_limit,
+        **question,
+    )
     points = np.array([[d.values[name] for name in cases.OBJECTIVES] for d in front.designs])
     return points, f"The search with gap={GAPS[size]:g}, points={POINTS}: {front.certificate.sentence()}."
 

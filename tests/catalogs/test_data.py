@@ -31,10 +31,19 @@ DATA = {
 }
 ROWS = CATALOGUES | {name: rows for name, (_, rows) in DATA.items()}
 FAMILIES = {
-    "multi_plate_clutch", "disc_clutch", "cone_clutch", "centrifugal_ball_ramp", "centrifugal_two_spring",
-    "centrifugal_lever", "centrifugal_reversed", "wrap_spring", "wrap_spring_actuated", "electromagnetic_clutch",
-    "magnetic_powder_clutch", "roller_coupling",
-}  # fmt: skip
+    "multi_plate_clutch",
+    "disc_clutch",
+    "cone_clutch",
+    "centrifugal_ball_ramp",
+    "centrifugal_two_spring",
+    "centrifugal_lever",
+    "centrifugal_reversed",
+    "wrap_spring",
+    "wrap_spring_actuated",
+    "electromagnetic_clutch",
+    "magnetic_powder_clutch",
+    "roller_coupling",
+}
 
 
 @lru_cache(maxsize=64)
@@ -219,9 +228,12 @@ def test_plate_rings() -> None:
 def test_rollers() -> None:
     d = view("guide_rolling_bearings")
     assert set(d.kind) == {
-        "deep_groove_ball_bearing", "track_roller_cyl_full_complement", "track_roller_needle_full_complement",
-        "track_roller_needle_caged", "spherical_roller_bearing",
-    }  # fmt: skip
+        "deep_groove_ball_bearing",
+        "track_roller_cyl_full_complement",
+        "track_roller_needle_full_complement",
+        "track_roller_needle_caged",
+        "spherical_roller_bearing",
+    }
     assert (d.bore < d.outer_diameter).all()
     assert ((d.contact_width <= d.width) & (d.contact_width > 0.4 * d.width)).all()
     assert (d.C_dynamic_min <= d.C_dynamic_max).all()

@@ -45,10 +45,25 @@ INSTANCES = (
 CASES = [(structure, seed) for structure, count in INSTANCES.items() for seed in range(count)]
 # Bounds of these are valid and cheap: all but one front of each must be proven.
 PROVABLE = (
-    "posynomial", "three_objectives", "one_feasible", "discrete", "choices", "optional", "guards", "refusals",
-    "gridded", "grid_off", "alternatives", "asked", "knife_edge", "degenerate", "infeasible", "scales",
-    "signs_gridded", "signs_pinned",
-)  # fmt: skip
+    "posynomial",
+    "three_objectives",
+    "one_feasible",
+    "discrete",
+    "choices",
+    "optional",
+    "guards",
+    "refusals",
+    "gridded",
+    "grid_off",
+    "alternatives",
+    "asked",
+    "knife_edge",
+    "degenerate",
+    "infeasible",
+    "scales",
+    "signs_gridded",
+    "signs_pinned",
+)
 PATIENT = 120  # seconds; a question that is stopped by its own limit may get another answer each time
 HANDFUL = [("posynomial", 1), ("gridded", 3), ("polynomials", 1), ("maximised", 1), ("alternatives", 1), ("pieces", 1)]
 
@@ -88,9 +103,23 @@ def test_what_bounds_can_prove_is_proven(structure):
 # -- fronts step by step ---------------------------------------------------------------------------
 
 TWO_OBJECTIVES = (
-    "posynomial", "signomial", "waves", "pieces", "polynomials", "discrete", "choices", "optional", "gridded",
-    "grid_off", "alternatives", "maximised", "knife_edge", "equality", "scales", "one_feasible",
-)  # fmt: skip
+    "posynomial",
+    "signomial",
+    "waves",
+    "pieces",
+    "polynomials",
+    "discrete",
+    "choices",
+    "optional",
+    "gridded",
+    "grid_off",
+    "alternatives",
+    "maximised",
+    "knife_edge",
+    "equality",
+    "scales",
+    "one_feasible",
+)
 IN_STEPS = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(3)]
 
 

@@ -739,9 +739,12 @@ def known_design(family: str, name: str, optional: bool) -> tuple[np.ndarray, li
     if design is None:
         return None
     instance = question(
-        family, CASES[family].option_sets[name], optional,
-        fix={**design.sizes, **design.counts}, parts={slot: [row] for slot, row in design.parts.items()},
-    )  # fmt: skip
+        family,
+        CASES[family].option_sets[name],
+        optional,
+        fix={**design.sizes, **design.counts},
+        parts={slot: [row] for slot, row in design.parts.items()},
+    )
     data = [np.broadcast_to(np.asarray(x, dtype=float), (2,)) for x in instance.data(np.zeros(2, dtype=int))]
     return np.tile(instance.lower, (2, 1)), data
 

@@ -135,9 +135,16 @@ def test_no_makeable_design_beats_the_front(case):
     assert looked > 3e5
     assert len(every["mass"]) > 300
     front = synth.synthesize(
-        synth.load(family, **options), requirements, objectives=list(objectives), parts=parts, limits=limits,
-        fix=pins, points=3, gap=GAP, time_limit=60,
-    )  # fmt: skip
+        synth.load(family, **options),
+        requirements,
+        objectives=list(objectives),
+        parts=parts,
+        limits=limits,
+        fix=pins,
+        points=3,
+        gap=GAP,
+        time_limit=60,
+    )
     assert front.certificate.kind == "global"
     values = np.stack([every[n] for n in objectives], axis=1)
     own = np.array([[d.values[n] for n in objectives] for d in front.designs])

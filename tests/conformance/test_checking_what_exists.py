@@ -105,9 +105,13 @@ def test_sets_of_counts_are_kept_to(found):
             asked = {"limits": own, "fix": other}
             asked[key] = {**asked[key], name: allowed}
             posed = Instance(
-                synth.load(family, **case.options), case.requirements, as_catalogs(None), case.settings.get("parts"),
-                asked["limits"], asked["fix"],
-            )  # fmt: skip
+                synth.load(family, **case.options),
+                case.requirements,
+                as_catalogs(None),
+                case.settings.get("parts"),
+                asked["limits"],
+                asked["fix"],
+            )
             assert posed.selection.counts[name].tolist() == [x for x in allowed if x in instance_steps(instance, name)]
     if counts:
         name = next(iter(counts))
@@ -161,8 +165,9 @@ def test_slots_that_share_a_column_may_be_compared(found):
     posed, allowed, slots = left(text)
     a, b = (slots[name].table.number(column)[slots[name].rows] for name in (one, two))
     compare = {">": np.greater, "<": np.less, "==": np.equal}[sign]
-    np.testing.assert_array_equal(allowed if list(slots).index(one) < list(slots).index(two) else allowed.T,
-                                  compare(a[:, None], b[None, :]))  # fmt: skip
+    np.testing.assert_array_equal(
+        allowed if list(slots).index(one) < list(slots).index(two) else allowed.T, compare(a[:, None], b[None, :])
+    )
     assert allowed.any(axis=0).all()
     assert allowed.any(axis=1).all()
     assert posed.combinations_left_out

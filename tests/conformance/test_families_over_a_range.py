@@ -46,9 +46,11 @@ def designs_of(family, case, instance):
             for v, x in zip(instance.model.variables, variables[k], strict=True)
         }
         yield synth.evaluate(
-            instance.problem, case.requirements, values={**sizes, **counts, **choices},
+            instance.problem,
+            case.requirements,
+            values={**sizes, **counts, **choices},
             parts={slot: table.designations[row] for slot, (table, row) in parts.items()},
-        )  # fmt: skip
+        )
 
 
 @pytest.mark.parametrize("family", CASES)

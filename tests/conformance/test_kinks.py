@@ -102,9 +102,15 @@ class Question:
         """Return the least cost that IPOPT finds in any regime."""
         ends = np.maximum(self.form.lower, low), np.minimum(self.form.upper, high)
         return best_in_any_regime(
-            self.form.nlp(), task, self.data, starts, ends, self.form.bounds, self.void,
+            self.form.nlp(),
+            task,
+            self.data,
+            starts,
+            ends,
+            self.form.bounds,
+            self.void,
             lambda x: self.cost_of(task, x),
-        )  # fmt: skip
+        )
 
     def around(self, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return a small box around sizes."""

@@ -108,9 +108,15 @@ class Reader:
         if command.startswith("make "):
             command = recipe(command.removeprefix("make "))
         done = subprocess.run(
-            command, shell=True, cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300,
+            command,
+            shell=True,
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=300,
             check=False,
-        )  # fmt: skip
+        )
         self.code = done.returncode
         assert may_fail or self.code == 0, f"{where}: $ {command}\nended with {self.code}\n{done.stderr}"
         got = done.stdout if self.code in (0, 3) else done.stdout + done.stderr
@@ -298,8 +304,14 @@ def test_the_own_problem_is_short_and_reaches_the_known_optimum() -> None:
     assert front.certificate.kind == "global"
     # J. Golinski; best known 2994.471066 with 7.3 <= l1, l2 <= 8.3 (many later authors).
     assert best.values["weight"] == pytest.approx(2994.471066, rel=1e-6)
-    known = {"face_width": 3.5, "module": 0.7, "bearing_distance_1": 7.3, "bearing_distance_2": 7.71532,
-             "shaft_diameter_1": 3.350215, "shaft_diameter_2": 5.286654}  # fmt: skip
+    known = {
+        "face_width": 3.5,
+        "module": 0.7,
+        "bearing_distance_1": 7.3,
+        "bearing_distance_2": 7.71532,
+        "shaft_diameter_1": 3.350215,
+        "shaft_diameter_2": 5.286654,
+    }
     for name, value in known.items():
         assert best.values[name] / 0.01 == pytest.approx(value, rel=1e-5), name
     assert best.values["pinion_teeth"] == 17

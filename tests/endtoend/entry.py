@@ -20,9 +20,14 @@ COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
 def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run it in a process of its own, as a person does."""
     return subprocess.run(
-        [*COMMAND, *map(str, words)], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
-        timeout=120, check=False,
-    )  # fmt: skip
+        [*COMMAND, *map(str, words)],
+        cwd=folder,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
 
 
 def at_once(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:

@@ -18,10 +18,17 @@ from tests.endtoend.entry import at_once
 
 RULES = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
 GOOD = {
-    "id": "A1", "family": "multi_plate_clutch", "load_torque [N*m]": "600", "driver_speed [1/min]": "254",
-    "driven_inertia [kg*m2]": "30", "guide_model": "cz", "ramp_time [s]": "2", "parts": RULES,
-    "limits": "friction_surfaces == 10", "offset [mm]": "3",
-}  # fmt: skip
+    "id": "A1",
+    "family": "multi_plate_clutch",
+    "load_torque [N*m]": "600",
+    "driver_speed [1/min]": "254",
+    "driven_inertia [kg*m2]": "30",
+    "guide_model": "cz",
+    "ramp_time [s]": "2",
+    "parts": RULES,
+    "limits": "friction_surfaces == 10",
+    "offset [mm]": "3",
+}
 
 
 def clutchsynth(*words: str | Path, folder: Path) -> CompletedProcess[str]:

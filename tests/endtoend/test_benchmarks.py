@@ -70,9 +70,15 @@ def test_tables_are_aligned_and_written(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_case_runs_in_a_process_of_its_own() -> None:
     case = {
-        "kind": "search", "size": "tiny", "objectives": ["mass"], "grid": True, "gap": 0.05, "points": 1, "repeat": 1,
+        "kind": "search",
+        "size": "tiny",
+        "objectives": ["mass"],
+        "grid": True,
+        "gap": 0.05,
+        "points": 1,
+        "repeat": 1,
         "time_limit": 10.0,
-    }  # fmt: skip
+    }
     command = [sys.executable, "-m", "tests.benchmarks.child", json.dumps(case)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=100, check=True)
     result = json.loads(done.stdout.split(MARK)[1])

@@ -209,9 +209,10 @@ def test_a_comparison_is_verified_over_all_its_families(compared: tuple[Path, st
 
 def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Path) -> None:
     (tmp_path / "tight.yaml").write_text(
-        SEVERAL.replace("load_torque: 60 N*m", "load_torque: 60 N*m\n  actuation_force_limit: 300 N")
-        .replace("pressure_plate_thickness: 3 mm .. 4 mm}", "pressure_plate_thickness: 3 mm .. 4 mm}")
-    )  # fmt: skip
+        SEVERAL.replace("load_torque: 60 N*m", "load_torque: 60 N*m\n  actuation_force_limit: 300 N").replace(
+            "pressure_plate_thickness: 3 mm .. 4 mm}", "pressure_plate_thickness: 3 mm .. 4 mm}"
+        )
+    )
     done = at_once("run", tmp_path / "tight.yaml", "-o", tmp_path / "out")
     assert done.returncode == 3, done.stdout
     text = (tmp_path / "out" / "explanation.txt").read_text()

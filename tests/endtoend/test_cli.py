@@ -20,9 +20,18 @@ from tests.endtoend.entry import COMMAND, ROOT, at_once, clutchsynth
 LECTURE = ROOT / "examples" / "lecture_design.yaml"
 HOIST = ROOT / "examples" / "hoist_multi_plate.yaml"
 HEAVY = (
-    "casadi", "cvxpy", "pandas", "numpy", "scipy", "optuna", "matplotlib", "sqlalchemy", "alembic", "distributed",
+    "casadi",
+    "cvxpy",
+    "pandas",
+    "numpy",
+    "scipy",
+    "optuna",
+    "matplotlib",
+    "sqlalchemy",
+    "alembic",
+    "distributed",
     "multiprocessing",
-)  # fmt: skip
+)
 
 # One ring, three plate numbers: the force is all that is left to find.
 SMALL = """
@@ -197,7 +206,7 @@ def test_own_limits_on_variables_and_counts_are_tested_as_well(tmp_path: Path) -
         ("check", SMALL + "values: {z: 10}\n", ["fix", "under values"]),
         ("check", "family: multi_plate_clutch\nvalues: {q: 1}\n", ["load_torque"]),
     ],
-)  # fmt: skip
+)
 def test_bad_input_is_one_sentence_and_nothing_written(
     tmp_path: Path, command: str, text: str, words: list[str]
 ) -> None:
@@ -236,9 +245,14 @@ def test_a_fault_of_the_program_is_short_unless_debugging(tmp_path: Path) -> Non
     program = "import synth.spec, synth.cli\nsynth.spec.read_spec = lambda path: 1 / 0\nsynth.cli.main()"
     for debug, traceback in (("", False), ("1", True)):
         done = subprocess.run(
-            [sys.executable, "-c", program, "check", "x.yaml"], env={**os.environ, "CLUTCHSYNTH_DEBUG": debug},
-            cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False,
-        )  # fmt: skip
+            [sys.executable, "-c", program, "check", "x.yaml"],
+            env={**os.environ, "CLUTCHSYNTH_DEBUG": debug},
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
         assert done.returncode == 1
         assert "ZeroDivisionError" in done.stderr
         assert ("Traceback" in done.stderr) is traceback
@@ -296,8 +310,11 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
 def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
     with subprocess.Popen(
         [*COMMAND, "run", str(HOIST), "-o", "out", "--points", "500", "--gap", "1e-6", "--no-grid"],
-        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    ) as process:  # fmt: skip
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
         assert process.stderr is not None
         assert "designs" in process.stderr.readline()  # of the progress: the search has begun
         process.send_signal(signal.SIGINT)

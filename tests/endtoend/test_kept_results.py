@@ -65,8 +65,10 @@ def begun(folder: Path, *words: object) -> subprocess.Popen[str]:
     """Start a long search into a folder, and wait until it has begun."""
     process = subprocess.Popen(
         [*COMMAND, "run", str(HOIST), "-o", str(folder), *LONG, *map(str, words)],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     assert process.stderr is not None
     assert "designs" in process.stderr.readline()
     return process
@@ -171,9 +173,13 @@ def test_without_room_the_earlier_result_stays_and_one_sentence_says_so(out: Pat
     before = contents(out)
     (tmp_path / "other.yaml").write_text(SMALL.replace("600 N*m", "610 N*m"))
     done = subprocess.run(
-        [*COMMAND, "run", str(tmp_path / "other.yaml"), "-o", str(out), "-q"], preexec_fn=cramped,
-        env={**os.environ, "CLUTCHSYNTH_NATIVE": "0"}, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [*COMMAND, "run", str(tmp_path / "other.yaml"), "-o", str(out), "-q"],
+        preexec_fn=cramped,
+        env={**os.environ, "CLUTCHSYNTH_NATIVE": "0"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert "a folder that can be written (File too large)" in refused(done)
     assert contents(out) == before
 

@@ -94,9 +94,11 @@ def test_a_clutch_that_never_starts_is_shown_slipping(tmp_path: Path) -> None:
 
 def test_worst_case_friction_is_simulated_from_both_sides(tmp_path: Path) -> None:
     path = changed(
-        tmp_path, options={"friction_basis": "worst_case"}, requirements={"startup_torque": None},
+        tmp_path,
+        options={"friction_basis": "worst_case"},
+        requirements={"startup_torque": None},
         values={"F0": "20 kN", "z": 12},
-    )  # fmt: skip
+    )
     design = yaml.safe_load(path.read_text())
     design["parts"]["friction_pair"] = "paper_wet"
     path.write_text(yaml.safe_dump(design))
@@ -166,8 +168,11 @@ def test_bad_input_is_one_sentence_and_nothing_written(tmp_path: Path, words: li
 
 
 def test_a_guide_that_jams_has_no_torque_to_simulate(tmp_path: Path) -> None:
-    path = changed(tmp_path, requirements={"startup_torque": None, "lug_clearance": "30 mm", "guide_friction": 0.5},
-                   values={"dm": "70 mm"})  # fmt: skip
+    path = changed(
+        tmp_path,
+        requirements={"startup_torque": None, "lug_clearance": "30 mm", "guide_friction": 0.5},
+        values={"dm": "70 mm"},
+    )
     done = at_once("simulate", path, "-o", tmp_path / "out")
     assert "a design whose torque exists; this one violates" in refused(done)
     assert not (tmp_path / "out").exists()

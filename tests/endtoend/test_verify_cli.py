@@ -48,9 +48,7 @@ def rewritten(folder: Path, change: object) -> None:
 
 
 def test_a_front_that_was_saved_holds(saved: Path) -> None:
-    done = subprocess.run(
-        [*COMMAND, "verify", str(saved)], capture_output=True, text=True, timeout=120, check=False
-    )  # fmt: skip
+    done = subprocess.run([*COMMAND, "verify", str(saved)], capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     text = " ".join(done.stdout.split())
     assert text.startswith("holds: 3 designs are as saved, and proven again that no feasible design improves one")

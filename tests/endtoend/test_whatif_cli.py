@@ -88,10 +88,23 @@ def test_break_points_are_where_parts_or_counts_change(folder: Path) -> None:
 def test_without_breaks_and_with_two_objectives(folder: Path) -> None:
     out = folder / "two"
     done = at_once(
-        "whatif", folder / "spec.yaml", "--vary", "parts.pair=seed_multiplate_ref,cork_wet", "--vary",
-        "friction_surfaces <= 14, 20", "--objective", "mass", "--objective", "actuation_force", "--points", 3,
-        "--no-breaks", "--quiet", "-o", out,
-    )  # fmt: skip
+        "whatif",
+        folder / "spec.yaml",
+        "--vary",
+        "parts.pair=seed_multiplate_ref,cork_wet",
+        "--vary",
+        "friction_surfaces <= 14, 20",
+        "--objective",
+        "mass",
+        "--objective",
+        "actuation_force",
+        "--points",
+        3,
+        "--no-breaks",
+        "--quiet",
+        "-o",
+        out,
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""
     assert {"fronts.svg", "whatif.svg", "whatif.csv", "breaks.csv"} <= {p.name for p in out.iterdir()}

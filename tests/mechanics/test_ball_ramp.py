@@ -136,7 +136,7 @@ SEEN = {
     "ratio": math.tan(ALPHA),
     "preload": 240.0,
     "rate": 60e3,
-}  # fmt: skip
+}
 
 
 def unbalanced(x):

@@ -32,10 +32,22 @@ POINT = {
 }
 PARTS = {"ball": "ball 20", "return_spring": "CS-1.25x6.3x5.5", "friction_pair": "metal_ceramic_bronze_dry"}
 ALWAYS = {
-    "idle_release", "contact_not_too_late", "contact_not_too_early", "lining_pressure", "engagement_heat",
-    "ring_ratio_min", "ring_ratio_max", "clamp_cap", "ball_hertz", "pitch_circle_room", "hub_clearance", "ramp_returns",
-    "torque_at_full_speed", "no_snap", "spring_force",
-}  # fmt: skip
+    "idle_release",
+    "contact_not_too_late",
+    "contact_not_too_early",
+    "lining_pressure",
+    "engagement_heat",
+    "ring_ratio_min",
+    "ring_ratio_max",
+    "clamp_cap",
+    "ball_hertz",
+    "pitch_circle_room",
+    "hub_clearance",
+    "ramp_returns",
+    "torque_at_full_speed",
+    "no_snap",
+    "spring_force",
+}
 
 
 def design(requirements=None, values=None, parts=None, **more):
@@ -235,8 +247,11 @@ def test_curves_pass_through_the_borders_of_the_regimes():
     found = design()
     frames = synth.curves(FAMILY, BASE, values=POINT, parts=PARTS)
     assert set(frames) == {
-        "idle_margin_over_ramp", "clamp_force_over_lining", "engaging_over_speed", "releasing_over_speed",
-    }  # fmt: skip
+        "idle_margin_over_ramp",
+        "clamp_force_over_lining",
+        "engaging_over_speed",
+        "releasing_over_speed",
+    }
     for name, quantity in (("engaging_over_speed", "contact_speed"), ("releasing_over_speed", "release_speed")):
         frame, speed = frames[name], found.values[quantity] * 30 / math.pi
         spans = {s["label"]: s for s in frame.attrs["spans"]}

@@ -16,9 +16,16 @@ from problems.mechanics.lever_motion import CONTACT, ReversedLever, RodLever
 RPM = math.pi / 30
 # Practice 3. The arms stand on a lost figure: ratios 1 : 1 : 1/2 give exactly 600/min at the start.
 PRACTICE = RodLever(
-    mass=1.0, rest_radius=0.152, flyweight_arm=0.100, preload=1200.0, rate=1e5, contact_travel=0.010, stop_angle=0.3,
-    spring_arm=0.100, rod_arm=0.050,
-)  # fmt: skip
+    mass=1.0,
+    rest_radius=0.152,
+    flyweight_arm=0.100,
+    preload=1200.0,
+    rate=1e5,
+    contact_travel=0.010,
+    stop_angle=0.3,
+    spring_arm=0.100,
+    rod_arm=0.050,
+)
 
 
 # -- practice 3 ------------------------------------------------------------------------------------
@@ -152,10 +159,16 @@ def random_rod_levers(count):
     while len(found) < count:
         spring_arm = rng.uniform(0.02, 0.06)
         lever = RodLever(
-            mass=rng.uniform(0.2, 2), rest_radius=rng.uniform(0.06, 0.15), flyweight_arm=rng.uniform(0.02, 0.1),
-            preload=rng.uniform(200, 900), rate=rng.uniform(3e4, 3e5), contact_travel=rng.uniform(0.001, 0.004),
-            stop_angle=rng.uniform(0.15, 0.35), spring_arm=spring_arm, rod_arm=spring_arm * rng.uniform(0.3, 0.8),
-        )  # fmt: skip
+            mass=rng.uniform(0.2, 2),
+            rest_radius=rng.uniform(0.06, 0.15),
+            flyweight_arm=rng.uniform(0.02, 0.1),
+            preload=rng.uniform(200, 900),
+            rate=rng.uniform(3e4, 3e5),
+            contact_travel=rng.uniform(0.001, 0.004),
+            stop_angle=rng.uniform(0.15, 0.35),
+            spring_arm=spring_arm,
+            rod_arm=spring_arm * rng.uniform(0.3, 0.8),
+        )
         if lever.contact_angle < lever.stop_angle and not lever.borders().snaps:
             found.append(lever)
     return found
@@ -166,11 +179,17 @@ def random_reversed_levers(count):
     found = []
     while len(found) < count:
         lever = ReversedLever(
-            mass=rng.uniform(0.2, 2), rest_radius=rng.uniform(0.06, 0.15), flyweight_arm=rng.uniform(0.02, 0.1),
-            preload=rng.uniform(600, 2000), rate=rng.uniform(3e4, 3e5), contact_travel=rng.uniform(0.001, 0.004),
-            stop_angle=rng.uniform(0.15, 0.35), short_leg=rng.uniform(0.015, 0.05),
-            return_preload=rng.uniform(30, 300), return_rate=rng.uniform(1e4, 1e5),
-        )  # fmt: skip
+            mass=rng.uniform(0.2, 2),
+            rest_radius=rng.uniform(0.06, 0.15),
+            flyweight_arm=rng.uniform(0.02, 0.1),
+            preload=rng.uniform(600, 2000),
+            rate=rng.uniform(3e4, 3e5),
+            contact_travel=rng.uniform(0.001, 0.004),
+            stop_angle=rng.uniform(0.15, 0.35),
+            short_leg=rng.uniform(0.015, 0.05),
+            return_preload=rng.uniform(30, 300),
+            return_rate=rng.uniform(1e4, 1e5),
+        )
         ordered = lever.borders().forces[1] <= lever.borders().forces[2]
         if ordered and lever.contact_angle < lever.stop_angle and not lever.borders().snaps:
             found.append(lever)
@@ -247,10 +266,17 @@ def test_the_reversed_lever_snaps_exactly_below_the_gradual_radius():
     seen = set()
     for _ in range(400):
         lever = ReversedLever(
-            mass=0.8, rest_radius=rng.uniform(0.03, 0.15), flyweight_arm=rng.uniform(0.02, 0.2),
-            preload=rng.uniform(300, 3000), rate=1e5, contact_travel=0.003, stop_angle=0.3,
-            short_leg=rng.uniform(0.012, 0.05), return_preload=rng.uniform(30, 900), return_rate=3e4,
-        )  # fmt: skip
+            mass=0.8,
+            rest_radius=rng.uniform(0.03, 0.15),
+            flyweight_arm=rng.uniform(0.02, 0.2),
+            preload=rng.uniform(300, 3000),
+            rate=1e5,
+            contact_travel=0.003,
+            stop_angle=0.3,
+            short_leg=rng.uniform(0.012, 0.05),
+            return_preload=rng.uniform(30, 900),
+            return_rate=3e4,
+        )
         start, contact, lift, stop = lever.borders().speeds
         travel = levers.gradual_radius(lever.return_preload / lever.return_rate, lever.flyweight_arm, lever.short_leg)
         clamp = levers.gradual_radius(lever.preload / lever.rate - 0.003, lever.flyweight_arm, lever.short_leg)

@@ -97,9 +97,11 @@ def test_the_state_lies_on_the_curves(clutch):
     _, problem, requirements, design = clutch
     drawn = synth.curves(problem, requirements, design)
     names = {
-        "speeding up": "engaging_over_speed", "slowing down": "releasing_over_speed",
-        "new linings": "over_speed", "worn linings": "over_speed_worn",
-    }  # fmt: skip
+        "speeding up": "engaging_over_speed",
+        "slowing down": "releasing_over_speed",
+        "new linings": "over_speed",
+        "worn linings": "over_speed_worn",
+    }
     compared = 0
     for speed in np.linspace(0.3, 1.9, 23) * design.values["contact_speed"]:
         for course, row in state(clutch, float(speed)).iterrows():

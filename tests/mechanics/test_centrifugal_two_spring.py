@@ -41,11 +41,25 @@ SPRINGS = {
 }
 PARTS = {"ball_ramp": SPRINGS | {"ball": "ball 25"}, "lever": SPRINGS}
 ALWAYS = {
-    "idle_release", "contact_not_too_late", "contact_not_too_early", "lining_pressure", "engagement_heat",
-    "ring_ratio_min", "ring_ratio_max", "clamp_cap", "pitch_circle_room", "torque_worn", "full_clamp_speed",
-    "preload_order", "stop_after_contact", "no_snap_tension", "no_snap_plate", "no_snap_clamp", "spring1_force",
+    "idle_release",
+    "contact_not_too_late",
+    "contact_not_too_early",
+    "lining_pressure",
+    "engagement_heat",
+    "ring_ratio_min",
+    "ring_ratio_max",
+    "clamp_cap",
+    "pitch_circle_room",
+    "torque_worn",
+    "full_clamp_speed",
+    "preload_order",
+    "stop_after_contact",
+    "no_snap_tension",
+    "no_snap_plate",
+    "no_snap_clamp",
+    "spring1_force",
     "spring2_force",
-}  # fmt: skip
+}
 OWN = {
     "ball_ramp": {"ball_hertz", "hub_clearance", "ramp_returns"},
     "lever": {"weight_clear_of_hub", "lever_angle"},
@@ -218,9 +232,11 @@ def test_limits_that_keep_the_order_of_the_regimes():
     snap = design(values={"rest_radius": "30 mm", "ramp_ratio": 2, "return_preload_deflection": "20 mm"})
     assert "no_snap_plate" in snap.violated
     frames = synth.curves(
-        FAMILY, BASE, parts=PARTS["ball_ramp"],
+        FAMILY,
+        BASE,
+        parts=PARTS["ball_ramp"],
         values=POINTS["ball_ramp"] | {"rest_radius": "30 mm", "ramp_ratio": 2, "return_preload_deflection": "20 mm"},
-    )  # fmt: skip
+    )
     assert "jump" in frames["engaging_over_speed"].attrs["title"]
 
 
@@ -269,10 +285,14 @@ def test_practice_2_through_the_family():
         "lever",
         {"mechanism_efficiency": 1, "lining_wear": "0 mm"},
         {
-            "plate_travel": "10 mm", "stop_travel": "20 mm", "flyweight_arm": "60 mm", "axial_arm": "60 mm",
-            "return_preload_deflection": "10 mm", "clamp_preload_deflection": "0.5 mm",
+            "plate_travel": "10 mm",
+            "stop_travel": "20 mm",
+            "flyweight_arm": "60 mm",
+            "axial_arm": "60 mm",
+            "return_preload_deflection": "10 mm",
+            "clamp_preload_deflection": "0.5 mm",
         },
-    )  # fmt: skip
+    )
     rate1 = 2 * found.parts["return_spring"]["rate_R"]
     rate2 = 3 * found.parts["clamp_spring"]["rate_R"]
     fa, fb = rate1 * 0.020, rate2 * 0.0105

@@ -114,9 +114,15 @@ def by_hand(pair, mean, length, angle, shell, force, ramp, *, kind="reactive", w
 
 
 STEPPED = {
-    "friction_work", "slip_time", "peak_slip_power", "acceleration", "hourly_heat", "single_heat", "power_density",
+    "friction_work",
+    "slip_time",
+    "peak_slip_power",
+    "acceleration",
+    "hourly_heat",
+    "single_heat",
+    "power_density",
     "temperature_rise",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(
@@ -135,9 +141,16 @@ def test_numbers_against_an_independent_calculation(options, values, parts, how,
     found = design(options, {"startup_torque": "340 N*m"} if limited else None, values, parts)
     si = found.values
     expected = by_hand(
-        found.parts["friction_pair"], si["mean_diameter"], si["generator_length"], si["cone_half_angle"],
-        si["shell_thickness"], si["actuation_force"], si["ramp_time"], limited=limited, **how,
-    )  # fmt: skip
+        found.parts["friction_pair"],
+        si["mean_diameter"],
+        si["generator_length"],
+        si["cone_half_angle"],
+        si["shell_thickness"],
+        si["actuation_force"],
+        si["ramp_time"],
+        limited=limited,
+        **how,
+    )
     for name, value in expected.items():
         assert found.values[name] == pytest.approx(value, rel=3e-5 if name in STEPPED else 1e-8), name
 
@@ -243,12 +256,22 @@ def test_a_flat_cone_is_computed_and_told_to_be_outside_the_range_that_is_search
         ({"load_kind": "active"}, {}, {}, {}, "runs_backwards"),
         ({}, {}, {"ramp_time": "0.02 s"}, {}, "hard_start"),
         ({}, {}, {"ramp_time": "3 s"}, {}, "locks_in_ramp"),
-        ({}, {"driven_inertia": "8 kg*m2"}, {"shell_thickness": "3 mm"}, {"friction_pair": "leather_dry"},
-         "cooling_pause"),
-        ({}, {"driven_inertia": "20 kg*m2", "ambient_temperature": "60 degC"}, {"shell_thickness": "3 mm"},
-         {"friction_pair": "leather_dry"}, "lining_temperature"),
+        (
+            {},
+            {"driven_inertia": "8 kg*m2"},
+            {"shell_thickness": "3 mm"},
+            {"friction_pair": "leather_dry"},
+            "cooling_pause",
+        ),
+        (
+            {},
+            {"driven_inertia": "20 kg*m2", "ambient_temperature": "60 degC"},
+            {"shell_thickness": "3 mm"},
+            {"friction_pair": "leather_dry"},
+            "lining_temperature",
+        ),
     ],
-)  # fmt: skip
+)
 def test_remark(options, requirements, values, parts, code):
     found = design(options, requirements, values, parts)
     assert any(remark.startswith(f"{code}:") for remark in found.advice)

@@ -106,9 +106,16 @@ def by_hand(pair, d_out, d_in, t_p, force, ramp, discs, *, kind="reactive", wors
 
 
 STEPPED = {
-    "friction_work", "slip_time", "peak_slip_power", "acceleration", "hourly_heat", "single_heat", "power_density",
-    "temperature_rise", "mean_temperature_rise",
-}  # fmt: skip
+    "friction_work",
+    "slip_time",
+    "peak_slip_power",
+    "acceleration",
+    "hourly_heat",
+    "single_heat",
+    "power_density",
+    "temperature_rise",
+    "mean_temperature_rise",
+}
 
 
 @pytest.mark.parametrize(
@@ -127,10 +134,16 @@ def test_numbers_against_an_independent_calculation(options, values, how, limite
     found = design(options, {"startup_torque": "150 N*m"} if limited else None, values)
     si = found.values
     expected = by_hand(
-        found.parts["friction_pair"], si["ring_outer_diameter"], si["ring_inner_diameter"],
-        si["pressure_plate_thickness"], si["actuation_force"], si["ramp_time"], round(si["discs"]),
-        limited=limited, **how,
-    )  # fmt: skip
+        found.parts["friction_pair"],
+        si["ring_outer_diameter"],
+        si["ring_inner_diameter"],
+        si["pressure_plate_thickness"],
+        si["actuation_force"],
+        si["ramp_time"],
+        round(si["discs"]),
+        limited=limited,
+        **how,
+    )
     for name, value in expected.items():
         assert found.values[name] == pytest.approx(value, rel=3e-5 if name in STEPPED else 1e-9), name
 
@@ -283,8 +296,11 @@ def test_curves_of_a_design_meet_it():
     found = design(requirements=OPTIONAL)
     curves = problem.curves(spec, found)
     assert set(curves) == {
-        "diameter_over_lining", "startup_over_torque", "pressure_over_radius", "torque_over_force",
-    }  # fmt: skip
+        "diameter_over_lining",
+        "startup_over_torque",
+        "pressure_over_radius",
+        "torque_over_force",
+    }
     pressure = curves["pressure_over_radius"]
     radius, worn = pressure["radius [mm]"] / 1e3, pressure["worn-in lining [N/mm2]"] * 1e6
     carried = np.trapezoid(worn * 2 * np.pi * radius, radius)

@@ -208,9 +208,11 @@ def test_numbers_against_an_independent_calculation(kind, values):
     # Everything that the pack does is what it does in the family it is taken from, under the force of the magnet.
     sizes, parts, family = KINDS[kind]
     plain = synth.evaluate(
-        family, BASE, values=sizes | {"actuation_force": f"{v['actuation_force']!r} N"},
+        family,
+        BASE,
+        values=sizes | {"actuation_force": f"{v['actuation_force']!r} N"},
         parts={k: p for k, p in parts.items() if k != "winding_wire"},
-    )  # fmt: skip
+    )
     together = {"mass", "outer_diameter", "length", "volume"}
     same = set(plain.values) - together
     assert {"torque", "friction_work", "surface_pressure"} < same < set(v)
@@ -378,9 +380,11 @@ def test_the_start_up_in_time_agrees(kind):
         assert opinion.loc[name, "relative_difference"] == pytest.approx(0, abs=1e-6), name
     sizes, parts, family = KINDS[kind]
     plain = synth.simulate(
-        family, BASE, values=sizes | {"actuation_force": f"{found.values['actuation_force']!r} N"},
+        family,
+        BASE,
+        values=sizes | {"actuation_force": f"{found.values['actuation_force']!r} N"},
         parts={k: p for k, p in parts.items() if k != "winding_wire"},
-    )  # fmt: skip
+    )
     temperature, reference = frames["temperature"], plain["temperature"]
     for column in reference.columns:
         np.testing.assert_allclose(temperature[column], reference[column], rtol=1e-6, err_msg=column)

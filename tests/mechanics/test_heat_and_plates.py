@@ -85,11 +85,18 @@ def test_squeeze_time_follows_from_the_reynolds_equation():
         """Closing speed at which the film of an annulus, open at both edges, carries the force."""
         # p(r) = 3 eta v/h**3 [r1**2 - r**2 + (r2**2 - r1**2) ln(r/r1)/ln(r2/r1)], zero at both edges
         carried = quad(
-            lambda r: 3 * eta / h**3 * (r1**2 - r**2 + (r2**2 - r1**2) * math.log(r / r1) / math.log(r2 / r1))
-            * 2 * math.pi * r,
+            lambda r: (
+                3
+                * eta
+                / h**3
+                * (r1**2 - r**2 + (r2**2 - r1**2) * math.log(r / r1) / math.log(r2 / r1))
+                * 2
+                * math.pi
+                * r
+            ),
             r1,
             r2,
-        )[0]  # fmt: skip
+        )[0]
         return force / carried
 
     numeric = quad(lambda h: 1 / speed(h), h1, h0, epsrel=1e-10)[0]

@@ -47,9 +47,16 @@ def by_hand(v, powder, wire, coil, torque=30.0, omega=2 * math.pi * 1432.39 / 60
     """Section by section, in radii and areas, with the temperature by steps."""
     r, lp, g, lm, hc, t, b = (
         v[n]
-        for n in ("gap_radius", "pole_length", "powder_gap", "coil_length", "coil_height", "yoke_thickness",
-                  "flux_density")
-    )  # fmt: skip
+        for n in (
+            "gap_radius",
+            "pole_length",
+            "powder_gap",
+            "coil_length",
+            "coil_height",
+            "yoke_thickness",
+            "flux_density",
+        )
+    )
     still = coil == "stationary"
     mu0 = 4e-7 * math.pi
     face = 2 * math.pi * r * lp
@@ -177,14 +184,23 @@ def test_thermal_runaway_is_named():
 def test_a_wire_too_thick_for_the_window():
     import pandas as pd
 
-    busbar = pd.DataFrame({
-        "designation": ["bar"], "copper_diameter [mm]": [5.5], "copper_area [mm2]": [23.8],
-        "overall_diameter [mm]": [6.0], "insulation_temperature [degC]": [155.0], "insulation": ["enamel"],
-    })  # fmt: skip
+    busbar = pd.DataFrame(
+        {
+            "designation": ["bar"],
+            "copper_diameter [mm]": [5.5],
+            "copper_area [mm2]": [23.8],
+            "overall_diameter [mm]": [6.0],
+            "insulation_temperature [degC]": [155.0],
+            "insulation": ["enamel"],
+        }
+    )
     found = synth.evaluate(
-        FAMILY, BASE, values=POINT | {"coil_length": "5 mm", "coil_height": "5 mm"},
-        parts=PARTS | {"winding_wire": "bar"}, catalogs={"winding_wire": busbar},
-    )  # fmt: skip
+        FAMILY,
+        BASE,
+        values=POINT | {"coil_length": "5 mm", "coil_height": "5 mm"},
+        parts=PARTS | {"winding_wire": "bar"},
+        catalogs={"winding_wire": busbar},
+    )
     assert found.values["turns"] == pytest.approx(0.85 * 25 / 36)
     assert "turns" in found.violated
 
@@ -221,11 +237,19 @@ def test_powder_of_another_unit_is_refused():
     import pandas as pd
 
     for density in (4.1, 7870.0):
-        table = pd.DataFrame({
-            "designation": ["mine"], "powder": ["carbonyl iron"], "tau_sat [kPa]": [50.0],
-            "half_flux_density [T]": [0.7], "relative_permeability [-]": [4.2], "bulk_density [kg/m3]": [density],
-            "temp_max [degC]": [200.0], "gap_min [mm]": [1.0], "gap_max [mm]": [1.5],
-        })  # fmt: skip
+        table = pd.DataFrame(
+            {
+                "designation": ["mine"],
+                "powder": ["carbonyl iron"],
+                "tau_sat [kPa]": [50.0],
+                "half_flux_density [T]": [0.7],
+                "relative_permeability [-]": [4.2],
+                "bulk_density [kg/m3]": [density],
+                "temp_max [degC]": [200.0],
+                "gap_min [mm]": [1.0],
+                "gap_max [mm]": [1.5],
+            }
+        )
         with pytest.raises(synth.InputError, match="bulk_density"):
             synth.evaluate(FAMILY, BASE, values=POINT, parts=PARTS | {"powder": "mine"}, catalogs={"powders": table})
 
@@ -253,11 +277,19 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 def test_a_gap_that_the_powder_is_not_made_for():
     import pandas as pd
 
-    table = pd.DataFrame({
-        "designation": ["fine"], "powder": ["carbonyl iron"], "tau_sat [kPa]": [50.0], "half_flux_density [T]": [0.7],
-        "relative_permeability [-]": [4.2], "bulk_density [kg/m3]": [4100.0], "temp_max [degC]": [200.0],
-        "gap_min [mm]": [0.5], "gap_max [mm]": [1.0],
-    })  # fmt: skip
+    table = pd.DataFrame(
+        {
+            "designation": ["fine"],
+            "powder": ["carbonyl iron"],
+            "tau_sat [kPa]": [50.0],
+            "half_flux_density [T]": [0.7],
+            "relative_permeability [-]": [4.2],
+            "bulk_density [kg/m3]": [4100.0],
+            "temp_max [degC]": [200.0],
+            "gap_min [mm]": [0.5],
+            "gap_max [mm]": [1.0],
+        }
+    )
     found = synth.evaluate(FAMILY, BASE, values=POINT, parts=PARTS | {"powder": "fine"}, catalogs={"powders": table})
     assert any(remark.startswith("unusual_powder_gap:") for remark in found.advice)
     assert not any(remark.startswith("unusual_powder_gap:") for remark in design().advice)

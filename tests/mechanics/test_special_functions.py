@@ -225,11 +225,23 @@ def test_the_limit_on_the_border_is_the_value_there():
 def test_the_table_is_complete():
     names = {n.rsplit(".", 1)[1] for n in NAMES}
     assert names == {
-        "sum_geometric", "sum_lipka", "sum_exact", "peak_rise_per_work", "reactive_friction_work",
-        "reactive_slip_time", "reactive_peak_slip_power", "grip_factor", "iron_field", "resistance_rise",
-        "hot_copper_loss", "rim_section_width", "ramp_gain",
-    }  # fmt: skip
+        "sum_geometric",
+        "sum_lipka",
+        "sum_exact",
+        "peak_rise_per_work",
+        "reactive_friction_work",
+        "reactive_slip_time",
+        "reactive_peak_slip_power",
+        "grip_factor",
+        "iron_field",
+        "resistance_rise",
+        "hot_copper_loss",
+        "rim_section_width",
+        "ramp_gain",
+    }
     assert all(isinstance(TABLE[n], SpecialFunction) for n in NAMES)
     assert {n.rsplit(".", 1)[1] for n in NAMES if TABLE[n].curvature is None} == {
-        "sum_exact", "reactive_peak_slip_power", "grip_factor",
-    }  # fmt: skip
+        "sum_exact",
+        "reactive_peak_slip_power",
+        "grip_factor",
+    }

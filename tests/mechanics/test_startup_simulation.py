@@ -49,10 +49,15 @@ def test_the_lecture():
     frame = run.frame()
     at_c = frame[frame["time [s]"] == 2.0].iloc[0]
     for column, value in (
-        ("driver_work [J]", 28728.0), ("load_work [J]", 1264.20), ("kinetic_work [J]", 758.519),
-        ("driver_power [W]", 28728.0), ("load_power [W]", 4266.67), ("kinetic_power [W]", 3413.33),
-        ("driven_acceleration [rad/s2]", 16.0), ("driven_speed [1/min]", 7.11111 * 30 / math.pi),
-    ):  # fmt: skip
+        ("driver_work [J]", 28728.0),
+        ("load_work [J]", 1264.20),
+        ("kinetic_work [J]", 758.519),
+        ("driver_power [W]", 28728.0),
+        ("load_power [W]", 4266.67),
+        ("kinetic_power [W]", 3413.33),
+        ("driven_acceleration [rad/s2]", 16.0),
+        ("driven_speed [1/min]", 7.11111 * 30 / math.pi),
+    ):
         assert at_c[column] == pytest.approx(value, rel=1e-5), column
 
 
@@ -121,8 +126,11 @@ def plain_integration(case, ramp, driver_inertia=math.inf, driver=None, steps=20
     def rates(now, a, b):
         clutch = torque * (ramp(now / ramp_time) if now < ramp_time else 1.0)
         held = b <= 0 and clutch <= load
-        return (0.0 if driver is None else (driver(a) - clutch) / driver_inertia,
-                0.0 if held else (clutch - load) / inertia, clutch * (a - b))  # fmt: skip
+        return (
+            0.0 if driver is None else (driver(a) - clutch) / driver_inertia,
+            0.0 if held else (clutch - load) / inertia,
+            clutch * (a - b),
+        )
 
     while speed_2 < speed_1 and time < limit:
         one = rates(time, speed_1, speed_2)
@@ -161,8 +169,14 @@ def test_torque_that_falls_away_loses_lock_and_load_and_finds_both_again():
     ramp = ((0, 0), (0.1, 1), (0.4, 1), (0.45, 0.1), (0.8, 0.1), (0.9, 1), (1, 1))
     run = simulate_startup(1080, 600, 3, 26.6, 20, ramp=ramp, hold_time=20)
     assert names(run) == [
-        "load starts", "lock-up", "slips again", "load stops", "load starts", "lock-up", "ramp ends",
-    ]  # fmt: skip
+        "load starts",
+        "lock-up",
+        "slips again",
+        "load stops",
+        "load starts",
+        "lock-up",
+        "ramp ends",
+    ]
     assert run.outcome == "locked"
     assert abs(run.energy_error()) < 1e-9
     again = next(event.time for event in run.events if event.name == "slips again")
@@ -245,9 +259,15 @@ def test_a_weak_motor_stalls_and_both_are_reported():
 
 @QUICK
 @given(
-    st.floats(1.05, 3), st.floats(0.0, 0.9), st.floats(0.2, 20), st.floats(0.05, 20), st.floats(0.05, 5),
-    st.sampled_from(["reactive", "active"]), st.sampled_from(["linear", "smooth"]), st.floats(0.8, 3),
-)  # fmt: skip
+    st.floats(1.05, 3),
+    st.floats(0.0, 0.9),
+    st.floats(0.2, 20),
+    st.floats(0.05, 20),
+    st.floats(0.05, 5),
+    st.sampled_from(["reactive", "active"]),
+    st.sampled_from(["linear", "smooth"]),
+    st.floats(0.8, 3),
+)
 def test_no_energy_is_lost_whatever_happens(torque, load, first, second, ramp_time, kind, ramp, breakdown):
     motor = partial(motors.kloss_torque, synchronous_speed=10.2, breakdown_torque=breakdown, breakdown_slip=0.2)
     run = simulate_startup(

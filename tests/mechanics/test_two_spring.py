@@ -96,9 +96,11 @@ def directly(c, force):
 
 def random_springs(rng):
     c = {
-        "s1": rng.uniform(5e3, 1e5), "s2": rng.uniform(5e3, 2e5),
-        "delta1": rng.uniform(0.5e-3, 20e-3), "a": rng.uniform(1e-3, 6e-3),
-    }  # fmt: skip
+        "s1": rng.uniform(5e3, 1e5),
+        "s2": rng.uniform(5e3, 2e5),
+        "delta1": rng.uniform(0.5e-3, 20e-3),
+        "a": rng.uniform(1e-3, 6e-3),
+    }
     c["delta2"] = rng.uniform(0.1, 1.0) * c["s1"] * c["delta1"] / c["s2"]
     fa = c["s1"] * (c["delta1"] + c["a"])
     c["b"] = (c["a"] + fa / c["s2"] - c["delta2"]) * rng.uniform(1.05, 2.0)

@@ -147,14 +147,16 @@ def test_curves_beyond_liftoff_show_no_torque_below_zero():
 
 def test_worked_example_as_a_design():
     """The example of the reference: no tolerance to speak of, one friction coefficient, a wire of one's own."""
-    pair = pd.DataFrame({
-        "designation": ["example"],
-        "family_hint": ["wrap_spring"],
-        "mu_min [-]": [0.1],
-        "mu_max [-]": [0.1],
-        "p_allow [N/mm2]": [100.0],
-        "pv_allow [W/mm2]": [1.0],
-    })  # fmt: skip
+    pair = pd.DataFrame(
+        {
+            "designation": ["example"],
+            "family_hint": ["wrap_spring"],
+            "mu_min [-]": [0.1],
+            "mu_max [-]": [0.1],
+            "p_allow [N/mm2]": [100.0],
+            "pv_allow [W/mm2]": [1.0],
+        }
+    )
     for model, closing, drag, peak in (
         ("seed", 13.1463, 1.06489, 8.94069e6),
         ("refined", 9.49549, 0.916574, 6.11046e6),
@@ -234,9 +236,20 @@ def test_the_energising_torque_of_the_closed_form_is_just_enough():
 # -- limits ----------------------------------------------------------------------------------------
 
 ALWAYS = {
-    "interference_positive", "grip", "interference_range", "closing_torque", "liftoff", "wire_stress",
-    "contact_pressure", "fatigue", "overrun_pv", "overrun_temperature", "hub_bore", "hub_shear", "spring_index",
-}  # fmt: skip
+    "interference_positive",
+    "grip",
+    "interference_range",
+    "closing_torque",
+    "liftoff",
+    "wire_stress",
+    "contact_pressure",
+    "fatigue",
+    "overrun_pv",
+    "overrun_temperature",
+    "hub_bore",
+    "hub_shear",
+    "spring_index",
+}
 ASKED = {
     "drag_torque": ("drag_torque_limit", "8 N*m"),
     "belt_exponent": ("belt_exponent_limit", 20),
@@ -244,8 +257,14 @@ ASKED = {
     "length": ("length_limit", "90 mm"),
 }
 ALWAYS_ACTUATED = {
-    "closing_torque", "grip", "clearance_kept", "wire_stress", "contact_pressure", "spring_index", "hub_bore",
-}  # fmt: skip
+    "closing_torque",
+    "grip",
+    "clearance_kept",
+    "wire_stress",
+    "contact_pressure",
+    "spring_index",
+    "hub_bore",
+}
 ASKED_ACTUATED = {
     "actuator_torque": ("actuator_torque_limit", "5 N*m"),
     "wrap_angle": ("wrap_angle_limit", "3 rad"),

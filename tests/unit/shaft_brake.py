@@ -5,15 +5,17 @@ import pandas as pd
 
 import synth
 
-PAIRS = pd.DataFrame({
-    "designation": ["firm", "soft"],
-    "mu_dynamic [-]": [0.30, 0.40],
-    "mu_static [-]": [0.33, 0.44],
-    "mu_min [-]": [0.24, 0.20],
-    "mu_max [-]": [0.36, 0.60],
-    "pressure_allow [N/mm2]": [1.0, 1.2],
-    "source": ["made up", "made up"],
-})  # fmt: skip
+PAIRS = pd.DataFrame(
+    {
+        "designation": ["firm", "soft"],
+        "mu_dynamic [-]": [0.30, 0.40],
+        "mu_static [-]": [0.33, 0.44],
+        "mu_min [-]": [0.24, 0.20],
+        "mu_max [-]": [0.36, 0.60],
+        "pressure_allow [N/mm2]": [1.0, 1.2],
+        "source": ["made up", "made up"],
+    }
+)
 NEEDED = {"torque": "100 N*m", "speed": "1200 1/min"}
 CATALOGS = {"pairs": PAIRS}
 FACE = 0.004  # m2

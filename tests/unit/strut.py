@@ -6,12 +6,14 @@ import synth
 from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
 
-RODS = pd.DataFrame({
-    "designation": ["soft", "hard", "odd"],
-    "stress_allow [N/mm2]": [80.0, 160.0, None],
-    "density [kg/m3]": [7850.0, 7850.0, 7900.0],
-    "source": ["handbook", "handbook", "guess"],
-})  # fmt: skip
+RODS = pd.DataFrame(
+    {
+        "designation": ["soft", "hard", "odd"],
+        "stress_allow [N/mm2]": [80.0, 160.0, None],
+        "density [kg/m3]": [7850.0, 7850.0, 7900.0],
+        "source": ["handbook", "handbook", "guess"],
+    }
+)
 NEEDED = {"load": "20 kN"}
 
 

@@ -99,8 +99,9 @@ class Small:
         m, n = len(self.rows.goals), len(self.rows.log_variables)
         tasks = Tasks(
             *(np.broadcast_to(np.asarray(x, dtype=float), (count, m)) for x in (weights, slopes, caps)),
-            np.ones(m), **{"t_weight": 0.0, **more},
-        )  # fmt: skip
+            np.ones(m),
+            **{"t_weight": 0.0, **more},
+        )
         points = [np.broadcast_to(np.asarray(x, dtype=float), (count, n)) for x in (start, low, high)]
         gone = np.zeros((count, len(self.rows.cuts)), dtype=bool) if void is None else np.asarray(void)
         return self.solver.solve(tasks, data, *points, self.bounds, gone)
@@ -262,9 +263,17 @@ def test_guards_never_give_way_and_open_the_way_to_other_formulas(code):
     small = Small(1, 1, start_up, guards=(0,), code=code)
     # Below 3 the other formulas are not a number; two of the searches begin there.
     solution = small.solve(
-        [3.0], [[0.5], [2.999], [9.0]], 0.1, 10.0, weights=(0.0,), slopes=(1.0,), caps=(0.0,), t_weight=1.0,
-        elastic=1.0, count=3,
-    )  # fmt: skip
+        [3.0],
+        [[0.5], [2.999], [9.0]],
+        0.1,
+        10.0,
+        weights=(0.0,),
+        slopes=(1.0,),
+        caps=(0.0,),
+        t_weight=1.0,
+        elastic=1.0,
+        count=3,
+    )
     np.testing.assert_allclose(solution.variables, 3.5, rtol=1e-8)
     np.testing.assert_allclose(solution.t, 0.5 * np.log(2.0), atol=1e-8)
     assert solution.violation.max() <= 1e-9
@@ -474,9 +483,7 @@ class Clutch:
         for k in range(len(t)):
             task = Task(tasks.weights[k], tasks.slopes[k], tasks.caps[k], tasks.goal_scales, tasks.t_weight)
             data = [float(np.broadcast_to(x, len(t))[k]) for x in self.data]
-            answer = nlp.solve(
-                task, data, self.start[k], self.low[k], self.high[k], self.bounds, self.void[k]
-            )  # fmt: skip
+            answer = nlp.solve(task, data, self.start[k], self.low[k], self.high[k], self.bounds, self.void[k])
             if answer is not None:
                 variables[k], t[k] = answer.variables, answer.t
         return variables, t

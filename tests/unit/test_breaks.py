@@ -283,9 +283,7 @@ CHAIN = ropes((10, 4), (30, 2), (50, 1), (70, 0.5), (90, 0.25))
 
 
 def kept(folder: Path | None, progress: Callable[[Mapping[str, Any]], None] | None = None) -> Study:
-    return synth.whatif(
-        GIVEN, {}, {"load": "2:114:16 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress
-    )  # fmt: skip
+    return synth.whatif(GIVEN, {}, {"load": "2:114:16 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress)
 
 
 def test_breaks_that_are_kept_are_not_searched_again(tmp_path: Path) -> None:
@@ -334,7 +332,7 @@ def test_intervals_that_were_finished_are_kept(tmp_path: Path) -> None:
     def narrow(progress: Callable[[Mapping[str, Any]], None] | None, folder: Path | None) -> Study:
         return synth.whatif(
             GIVEN, {}, {"load": "2:114:4 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress
-        )  # fmt: skip
+        )
 
     short = narrow(stop, tmp_path)
     assert short.interrupted == "interrupted"

@@ -18,10 +18,14 @@ from synth.tables import Catalogs
 from synth.units import format_quantity
 from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 
-METALS = pd.DataFrame({
-    "designation": ["plain", "strong"], "yield_Re [N/mm2]": [200.0, 500.0], "density [kg/m3]": [7850.0, 7900.0],
-    "source": ["invented"] * 2,
-})  # fmt: skip
+METALS = pd.DataFrame(
+    {
+        "designation": ["plain", "strong"],
+        "yield_Re [N/mm2]": [200.0, 500.0],
+        "density [kg/m3]": [7850.0, 7900.0],
+        "source": ["invented"] * 2,
+    }
+)
 OWN = {"own_metals": METALS}
 SIZES = np.arange(10, 81) * 1e-3
 LOAD, SPAN = 2000.0, 0.5
@@ -42,8 +46,12 @@ class Solid(DesignProblem):
         d.requirement("shade", "-", 1.0, text="means something of its own here")
         size = d.variable("size", "mm", 10, 80, grid=1, text="Side of the bar")
         metal = d.part("metal", "own_metals")
-        d.derive("mass", "kg", self.factor * metal.density * size**2 * span * (1.1 if finish == "coated" else 1.0),
-                 text="Of the bar")  # fmt: skip
+        d.derive(
+            "mass",
+            "kg",
+            self.factor * metal.density * size**2 * span * (1.1 if finish == "coated" else 1.0),
+            text="Of the bar",
+        )
         d.derive("sag", "mm", load * span**3 / (48 * 2.1e11 * size**4 / 12))
         d.at_most("stress", load * span / 4 / (size**3 / 6), metal.yield_Re, "N/mm2")
         if room is not None:
@@ -115,9 +123,9 @@ def enumerated(bars=1.0, tubes=1.0):
         s, t = (x.ravel() for x in np.meshgrid(SIZES, np.arange(2, 9) * 0.5e-3))
         ok = (tubes * LOAD * SPAN / 4 / (4 / 3 * s**2 * t) <= re * 1e6) & (t >= s / 30 * (1 - 1e-9))
         s, t = s[ok], t[ok]
-        found.append(np.stack([
-            density * 4 * s * t * SPAN + 1.0, LOAD * SPAN**3 / (48 * 2.1e11 * 2 / 3 * s**3 * t)
-        ], axis=1))  # fmt: skip
+        found.append(
+            np.stack([density * 4 * s * t * SPAN + 1.0, LOAD * SPAN**3 / (48 * 2.1e11 * 2 / 3 * s**3 * t)], axis=1)
+        )
     return np.concatenate(found)
 
 
@@ -399,8 +407,15 @@ def test_files_tell_how_designs_stand_the_range(sure, tmp_path):
     folder = sure.save(tmp_path / "out")
     table = pd.read_csv(folder / "designs.csv")
     assert list(table.columns)[-8:] == [
-        "robust", "proof", "yield", "yield low", "yield high", "worst limit", "worst utilisation", "worst at",
-    ]  # fmt: skip
+        "robust",
+        "proof",
+        "yield",
+        "yield low",
+        "yield high",
+        "worst limit",
+        "worst utilisation",
+        "worst at",
+    ]
     assert set(table["robust"]) == {"yes"}
     limits = pd.read_csv(folder / "robust.csv")
     assert set(limits["rank"]) == set(table["rank"])

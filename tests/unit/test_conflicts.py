@@ -13,9 +13,12 @@ from synth.problem import load
 from synth.search import pose
 
 DUTY = {
-    "load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2",
-    "engagements_per_hour": "50 1/h", "jerk_limit": "18 rad/s3",
-}  # fmt: skip
+    "load_torque": "600 N*m",
+    "driver_speed": "26.6 rad/s",
+    "driven_inertia": "30 kg*m2",
+    "engagements_per_hour": "50 1/h",
+    "jerk_limit": "18 rad/s3",
+}
 FEW: dict[str, Any] = {"fix": {"ramp_time": "2 s"}, "parts": {"friction_pair": ["graphitic_wet", "paper_wet"]}}
 
 
@@ -40,9 +43,13 @@ def test_far_from_everything_feasible_the_nearest_design_is_still_a_clutch(torqu
 def test_a_combination_alone_is_tried_from_several_starts() -> None:
     # 0.02 per cent more time to slip would do: one start ends at plates without any width.
     spec = {
-        "load_torque": "88.053 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.7 kg*m2", "safety_factor": 2,
-        "engagements_per_hour": "20 1/h", "startup_torque": "120 N*m",
-    }  # fmt: skip
+        "load_torque": "88.053 N*m",
+        "driver_speed": "1500 1/min",
+        "driven_inertia": "0.7 kg*m2",
+        "safety_factor": 2,
+        "engagements_per_hour": "20 1/h",
+        "startup_torque": "120 N*m",
+    }
     robust = {"friction": "catalogue range", "load_torque": "+-5 %", "ambient_temperature": "0 .. 60 degC"}
     front = synth.synthesize(
         "disc_clutch", spec, fix={"discs": 1}, parts={"friction_pair": ["moulded_dry"]}, robust=robust

@@ -333,12 +333,14 @@ def test_a_point_survives_the_inverse_of_a_saturated_exponential(value):
 
 # -- limits that are void in some rows ---------------------------------------------------------------
 
-LEVELS = pd.DataFrame({
-    "designation": ["known", "void"],
-    "level [-]": [5.0, None],
-    "price [-]": [2.0, 1.0],
-    "source": ["test", "test"],
-})  # fmt: skip
+LEVELS = pd.DataFrame(
+    {
+        "designation": ["known", "void"],
+        "level [-]": [5.0, None],
+        "price [-]": [2.0, 1.0],
+        "source": ["test", "test"],
+    }
+)
 
 
 class Levels(synth.DesignProblem):

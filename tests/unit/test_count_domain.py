@@ -24,9 +24,15 @@ def counts(**more):
 @pytest.mark.parametrize(
     "asked",
     [
-        [1, 3, 4], (4, 1, 3), {3, 4, 1}, np.array([1, 3, 4]), ["1", "3", "4"], "[1, 3, 4]", [1.0, "[3,4]"],
+        [1, 3, 4],
+        (4, 1, 3),
+        {3, 4, 1},
+        np.array([1, 3, 4]),
+        ["1", "3", "4"],
+        "[1, 3, 4]",
+        [1.0, "[3,4]"],
     ],
-)  # fmt: skip
+)
 def test_entries_without_a_sign_are_the_values_allowed(asked):
     assert counts(limits={"plates": asked}) == [1, 3, 4]
     assert counts(fix={"n": asked}) == [1, 3, 4]
@@ -99,23 +105,37 @@ def test_a_front_with_another_count_does_not_hold(tmp_path):
 def test_a_given_design_may_miss_a_set():
     values = {"width": "50 mm", "length": "200 mm", "plates": 2, "end": "eye"}
     design = synth.evaluate(
-        Strut(), NEEDED, values=values, parts={"plate": "core 2", "material": "soft"}, catalogs=CATALOGS,
+        Strut(),
+        NEEDED,
+        values=values,
+        parts={"plate": "core 2", "material": "soft"},
+        catalogs=CATALOGS,
         limits={"plates": [1, 4]},
-    )  # fmt: skip
+    )
     assert "plates in [1, 4]" in design.violated
     assert design.limits["plates in [1, 4]"] == (2, 1)  # the nearest of the set
 
 
 def test_studies_and_explanations_keep_to_a_set():
     study = synth.whatif(
-        Strut(), NEEDED, {"load": "18 kN, 20 kN"}, objectives=["mass"], limits={"plates": [1, 4]},
-        catalogs=CATALOGS, parts=SMALL["parts"],
-    )  # fmt: skip
+        Strut(),
+        NEEDED,
+        {"load": "18 kN, 20 kN"},
+        objectives=["mass"],
+        limits={"plates": [1, 4]},
+        catalogs=CATALOGS,
+        parts=SMALL["parts"],
+    )
     assert {d.values["plates"] for f in study.fronts for d in f.designs} <= {1.0, 4.0}
     study = synth.whatif(
-        Strut(), NEEDED, {"plates <=": "2, 3, 4"}, objectives=["flexibility"], limits={"plates": [1, 3, 4]},
-        catalogs=CATALOGS, parts=SMALL["parts"],
-    )  # fmt: skip
+        Strut(),
+        NEEDED,
+        {"plates <=": "2, 3, 4"},
+        objectives=["flexibility"],
+        limits={"plates": [1, 3, 4]},
+        catalogs=CATALOGS,
+        parts=SMALL["parts"],
+    )
     assert [f.designs[0].values["plates"] for f in study.fronts] == [1, 3, 4]
     asked = {"limits": {"plates": [2, 3], "mass": "<= 1 g"}, "parts": SMALL["parts"], "catalogs": CATALOGS}
     explained = synth.explain(Strut(), NEEDED, **asked)
@@ -133,9 +153,14 @@ def test_a_batch_takes_sets_for_all_rows_in_cells_and_in_columns(restriction, tm
     rows.write_text("\n".join([header, *lines]) + "\n")
     parts = {"friction_pair": ["seed_multiplate_ref"], "inner_plate": ["core 4"], "outer_plate": ["core 2"]}
     done = synth.batch(
-        "multi_plate_clutch", rows, tmp_path / "out", parts=parts, points=1, objectives=["mass"],
+        "multi_plate_clutch",
+        rows,
+        tmp_path / "out",
+        parts=parts,
+        points=1,
+        objectives=["mass"],
         **{restriction: {"friction_surfaces": range(20, 25, 4)}},
-    )  # fmt: skip
+    )
     assert done.counts == {"optimal": len(lines)}
     counts = pd.read_csv(tmp_path / "out" / "designs.csv").set_index("row")["friction_surfaces [-]"]
     asked = pd.read_csv(tmp_path / "out" / "rows.csv").sort_values("line")["row"]

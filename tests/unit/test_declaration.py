@@ -12,15 +12,17 @@ from synth.declaration import Declaration, DeclarationError, grid_values
 from synth.instance import Instance, number
 from synth.tables import Catalogs
 
-RODS = pd.DataFrame({
-    "designation": ["thin", "thick", "odd"],
-    "diameter [mm]": [10.0, 20.0, 15.0],
-    "stress_allow [N/mm2]": [100.0, 80.0, None],
-    "strength [N/mm2]": [400.0, None, 500.0],
-    "strength_forged [N/mm2]": [None, 600.0, 700.0],
-    "note": ["a", "b", "c"],
-    "source": ["made up", "made up", "made up"],
-})  # fmt: skip
+RODS = pd.DataFrame(
+    {
+        "designation": ["thin", "thick", "odd"],
+        "diameter [mm]": [10.0, 20.0, 15.0],
+        "stress_allow [N/mm2]": [100.0, 80.0, None],
+        "strength [N/mm2]": [400.0, None, 500.0],
+        "strength_forged [N/mm2]": [None, 600.0, 700.0],
+        "note": ["a", "b", "c"],
+        "source": ["made up", "made up", "made up"],
+    }
+)
 CATALOGS = Catalogs({"rods": RODS})
 
 

@@ -53,9 +53,19 @@ def rows() -> dict[tuple[str, str], dict[str, Any]]:
 def test_every_kind_is_there(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
     kinds = {kind for kind, _ in rows}
     assert kinds == {
-        "option", "requirement", "variable", "count", "choice", "slot", "column", "derived", "limit", "objective",
-        "refusal", "advice",
-    }  # fmt: skip
+        "option",
+        "requirement",
+        "variable",
+        "count",
+        "choice",
+        "slot",
+        "column",
+        "derived",
+        "limit",
+        "objective",
+        "refusal",
+        "advice",
+    }
 
 
 def test_numbers_are_in_the_unit_of_their_row(rows: dict[tuple[str, str], dict[str, Any]]) -> None:

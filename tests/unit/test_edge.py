@@ -58,10 +58,15 @@ class Strip(synth.DesignProblem):
 
 def strips(cost):
     """Return a wide strip, and a narrow one that is met by the tolerance alone and costs a share of the other."""
-    return pd.DataFrame({
-        "designation": ["wide", "narrow"], "need [-]": [3.0, 3.0], "room [-]": [4.0, 3.0 * (1 - 5e-7)],
-        "cost [-]": [1.0, cost], "size [-]": [1.0, 1.0],
-    })  # fmt: skip
+    return pd.DataFrame(
+        {
+            "designation": ["wide", "narrow"],
+            "need [-]": [3.0, 3.0],
+            "room [-]": [4.0, 3.0 * (1 - 5e-7)],
+            "cost [-]": [1.0, cost],
+            "size [-]": [1.0, 1.0],
+        }
+    )
 
 
 @pytest.mark.parametrize("objectives", [["cost"], ["cost", "size"]])

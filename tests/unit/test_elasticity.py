@@ -26,9 +26,15 @@ def central(solve, objective, change):
 
 def strut(requirements, **more):
     front = synth.synthesize(
-        Strut(), requirements, catalogs={"rods": RODS}, grid=False, fix={"plates": 1, "end": "eye", "material": "hard"},
-        parts={"plate": ["core 2"]}, gap=1e-5, **more,
-    )  # fmt: skip
+        Strut(),
+        requirements,
+        catalogs={"rods": RODS},
+        grid=False,
+        fix={"plates": 1, "end": "eye", "material": "hard"},
+        parts={"plate": ["core 2"]},
+        gap=1e-5,
+        **more,
+    )
     return front.designs
 
 
@@ -58,9 +64,15 @@ def test_a_limit_of_a_makeable_size_alone_has_a_price():
     # Flexibility goes with 1/width; the width, makeable in millimetres, is held by the room alone.
     for grid in (True, False):
         (design,) = synth.synthesize(
-            Strut(), {"load": "20 kN", "room": "150 mm"}, ["flexibility"], catalogs={"rods": RODS}, grid=grid,
-            fix={"plates": 1, "end": "eye", "material": "hard"}, parts={"plate": ["core 2"]}, gap=1e-5,
-        ).designs  # fmt: skip
+            Strut(),
+            {"load": "20 kN", "room": "150 mm"},
+            ["flexibility"],
+            catalogs={"rods": RODS},
+            grid=grid,
+            fix={"plates": 1, "end": "eye", "material": "hard"},
+            parts={"plate": ["core 2"]},
+            gap=1e-5,
+        ).designs
         assert design.elasticity["flexibility"] == pytest.approx({"room": -1.0, "reach": 1.0})
 
 

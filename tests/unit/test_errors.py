@@ -97,7 +97,7 @@ DOORS: list[Callable[[str], Any]] = [
     lambda text: spec_from_mapping({"family": "shelf", "options": {text: 1}}, "a.yaml", Path()),
     lambda text: spec_from_mapping({"family": "shelf", "requirements": {text: [1]}}, "a.yaml", Path()),
     lambda text: spec_from_mapping({"family": "shelf", "time_limit": text}, "a.yaml", Path()),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("text", HUGE, ids=["word", "words", "unit"])

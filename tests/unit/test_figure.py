@@ -35,10 +35,13 @@ def sample(**attrs: Any) -> pd.DataFrame:
     time = np.linspace(0.0, 4.0, 50)
     frame = pd.DataFrame(
         {
-            "time [s]": time, "driver_speed [1/min]": 250 + 0 * time, "driven_speed [1/min]": 60 * time,
-            "friction_work [J]": 9000 * time, "acceleration [rad/s2]": 1 + time,
+            "time [s]": time,
+            "driver_speed [1/min]": 250 + 0 * time,
+            "driven_speed [1/min]": 60 * time,
+            "friction_work [J]": 9000 * time,
+            "acceleration [rad/s2]": 1 + time,
         }
-    )  # fmt: skip
+    )
     frame.attrs = {
         "title": "A sample",
         "panels": [
@@ -94,9 +97,20 @@ def assert_readable(frame: pd.DataFrame) -> None:
 def test_everything_that_was_asked_for_is_written() -> None:
     texts = written(figure_svg(sample()))
     for text in (
-        "A sample", "time [s]", "speed [1/min]", "friction work [kJ]", "acceleration [rad/s²]", "driver", "driven",
-        "ramp ends", "lock-up", "ramp", "locked", "limit of speed", "Nothing but an example.",
-    ):  # fmt: skip
+        "A sample",
+        "time [s]",
+        "speed [1/min]",
+        "friction work [kJ]",
+        "acceleration [rad/s²]",
+        "driver",
+        "driven",
+        "ramp ends",
+        "lock-up",
+        "ramp",
+        "locked",
+        "limit of speed",
+        "Nothing but an example.",
+    ):
         assert text in texts, text
 
 
@@ -141,10 +155,11 @@ def words(labels: list[str]) -> pd.DataFrame:
     places = np.arange(1.0, len(labels) + 1)
     frame = pd.DataFrame({"kind [-]": places, "mass [kg]": places**2})
     frame.attrs = {
-        "title": "Words", "source": "Nothing but an example.",
+        "title": "Words",
+        "source": "Nothing but an example.",
         "panels": [{"label": "mass [kg]", "columns": ["mass [kg]"], "apart": True}],
         "ticks": [{"x": x, "label": label} for x, label in zip(places, labels, strict=True)],
-    }  # fmt: skip
+    }
     return frame
 
 
@@ -274,9 +289,13 @@ def test_the_drawing_depends_on_the_frame_alone() -> None:
     )
     for seed in ("1", "2"):
         done = subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, cwd=ROOT, timeout=60, check=True,
+            [sys.executable, "-c", program],
+            capture_output=True,
+            cwd=ROOT,
+            timeout=60,
+            check=True,
             env={**os.environ, "PYTHONHASHSEED": seed},
-        )  # fmt: skip
+        )
         assert done.stdout.decode() == svg
     assert "<dc:date>" not in svg
     assert ET.fromstring(svg).tag.endswith("svg")
@@ -321,9 +340,14 @@ def test_a_study_says_what_it_does_not_draw() -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
     loads = ", ".join(f"{10 + k}" for k in range(9)) + ", 300 kN"
     study = synth.whatif(
-        problem, {"load": "20 kN"}, {"share": "1, 2", "load": loads}, {"cost": "min", "bulk": "min"}, 3, table,
+        problem,
+        {"load": "20 kN"},
+        {"share": "1, 2", "load": loads},
+        {"cost": "min", "bulk": "min"},
+        3,
+        table,
         breaks=False,
-    )  # fmt: skip
+    )
     frames = study.curves()
     assert "5 of 9 lines drawn" in frames["whatif"].attrs["source"]
     assert "no design: load = 300 kN" in frames["whatif"].attrs["source"]

@@ -13,24 +13,41 @@ from synth.feasibility import Status
 from synth.results import Certificate, Design, Frame, ParetoFront
 
 FRAME = Frame(
-    family="sample", title="Sample", options={}, requirements={}, requirement_values={}, not_asked=(),
+    family="sample",
+    title="Sample",
+    options={},
+    requirements={},
+    requirement_values={},
+    not_asked=(),
     objectives={"mass": "min", "actuation_force": "min"},
     units={"ring_outer_diameter": "mm", "friction_surfaces": "-", "mass": "kg", "actuation_force": "N"},
     kinds={
-        "ring_outer_diameter": "variable", "friction_surfaces": "count", "mass": "derived",
+        "ring_outer_diameter": "variable",
+        "friction_surfaces": "count",
+        "mass": "derived",
         "actuation_force": "derived",
     },
-    limit_units={"jerk": "rad/s3", "pinned": "mm"}, limit_senses={"jerk": "at_most", "pinned": "equal"},
-)  # fmt: skip
+    limit_units={"jerk": "rad/s3", "pinned": "mm"},
+    limit_senses={"jerk": "at_most", "pinned": "equal"},
+)
 
 
 def design(rank: int, mass: float, force: float, used: float = 0.5, note: str = "", frame: Frame = FRAME) -> Design:
     objectives = {"mass": mass, "actuation_force": force}
     return Design(
-        frame=frame, values={"ring_outer_diameter": 0.2581, "friction_surfaces": 10.0, **objectives},
-        parts={}, choices={}, objectives={name: objectives[name] for name in frame.objectives}, limits={}, residuals={},
-        utilisation={"jerk": used, "pinned": 1.0}, status=Status.OPTIMAL, rank=rank, score=0.1 * rank, note=note,
-    )  # fmt: skip
+        frame=frame,
+        values={"ring_outer_diameter": 0.2581, "friction_surfaces": 10.0, **objectives},
+        parts={},
+        choices={},
+        objectives={name: objectives[name] for name in frame.objectives},
+        limits={},
+        residuals={},
+        utilisation={"jerk": used, "pinned": 1.0},
+        status=Status.OPTIMAL,
+        rank=rank,
+        score=0.1 * rank,
+        note=note,
+    )
 
 
 def front(*designs: Design, frame: Frame = FRAME) -> ParetoFront:

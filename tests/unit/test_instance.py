@@ -278,12 +278,14 @@ def test_conditions_on_columns_that_a_users_table_lacks_are_not_applied():
 
 
 def test_a_users_row_without_family_hint_is_offered_to_all():
-    table = pd.DataFrame({
-        "designation": ["a", "b", "c", "d"],
-        "mu_dynamic [-]": [0.1, 0.2, 0.1, 0.1],
-        "lubrication": ["oil", "dry", "oil", "oil"],
-        "family_hint": ["", "", "disc_clutch", "disc_clutch;multi_plate_clutch"],
-    })  # fmt: skip
+    table = pd.DataFrame(
+        {
+            "designation": ["a", "b", "c", "d"],
+            "mu_dynamic [-]": [0.1, 0.2, 0.1, 0.1],
+            "lubrication": ["oil", "dry", "oil", "oil"],
+            "family_hint": ["", "", "disc_clutch", "disc_clutch;multi_plate_clutch"],
+        }
+    )
     assert pairs(table) == ("a", "d")
 
 

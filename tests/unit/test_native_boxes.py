@@ -120,14 +120,31 @@ class Case:
     def compiled(self, code, capped, passes, workers=1):
         unbounded = np.full(self.n, np.inf)
         question = native_boxes.Question(
-            self.tables, np.array(self.constants), np.array(self.bounds), self.root,
-            -unbounded, unbounded, np.ones(self.n), self.steep, self.spreads, [np.empty(0)] * self.n, (SNAP, PINNED),
-        )  # fmt: skip
+            self.tables,
+            np.array(self.constants),
+            np.array(self.bounds),
+            self.root,
+            -unbounded,
+            unbounded,
+            np.ones(self.n),
+            self.steep,
+            self.spreads,
+            [np.empty(0)] * self.n,
+            (SNAP, PINNED),
+        )
         prepared = native_boxes.Prepared(self.contractor, question)
         return loaded(code).contract(
-            prepared, self.cell, self.low, self.high, np.full(self.caps.shape, -np.inf), np.arange(self.boxes),
-            self.caps if capped else None, np.ones((1, len(self.steep))), passes, workers,
-        )  # fmt: skip
+            prepared,
+            self.cell,
+            self.low,
+            self.high,
+            np.full(self.caps.shape, -np.inf),
+            np.arange(self.boxes),
+            self.caps if capped else None,
+            np.ones((1, len(self.steep))),
+            passes,
+            workers,
+        )
 
     def agree(self, capped, passes, rtol, atol=0.0):
         """Check that both ways agree; return how many boxes are alive."""
@@ -174,9 +191,20 @@ SYMBOLIC = {
     ca.OP_NOT: lambda a, b: ca.logic_not(a < b) * b,
 }
 TWO = {
-    ca.OP_ADD, ca.OP_SUB, ca.OP_MUL, ca.OP_DIV, ca.OP_POW, ca.OP_FMIN, ca.OP_FMAX, ca.OP_HYPOT, ca.OP_ATAN2,
-    ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE,
-}  # fmt: skip
+    ca.OP_ADD,
+    ca.OP_SUB,
+    ca.OP_MUL,
+    ca.OP_DIV,
+    ca.OP_POW,
+    ca.OP_FMIN,
+    ca.OP_FMAX,
+    ca.OP_HYPOT,
+    ca.OP_ATAN2,
+    ca.OP_LT,
+    ca.OP_LE,
+    ca.OP_EQ,
+    ca.OP_NE,
+}
 
 
 def use_of(op, a, b):
@@ -304,12 +332,16 @@ def test_special_functions_agree(name):
     arguments = np.exp(rng.uniform(np.log(1e-4), np.log(1e3), (len(function.elasticity), count)))
     arguments[:, :64] = np.where(rng.random((len(arguments), 64)) < 0.3, 0.0, arguments[:, :64])
     places = ", ".join(f"*(const vd *)(in + {k} * count + i)" for k in range(len(arguments)))
-    text = "\n".join([
-        VECTORS, native_boxes.rules.COMMON, native_boxes.formula_source("value", function),
-        "void run(const double *in, double *out, long long count) {",
-        f"    for (long long i = 0; i < count; i += LANES) *(vd *)(out + i) = value({places});",
-        "}",
-    ])  # fmt: skip
+    text = "\n".join(
+        [
+            VECTORS,
+            native_boxes.rules.COMMON,
+            native_boxes.formula_source("value", function),
+            "void run(const double *in, double *out, long long count) {",
+            f"    for (long long i = 0; i < count; i += LANES) *(vd *)(out + i) = value({places});",
+            "}",
+        ]
+    )
     library = native.library("test", text, native_boxes.BOX_FLAGS)
     # Registers are read from places that are multiples of their length.
     memory = np.empty((len(arguments) + 1) * count + 8)

@@ -10,12 +10,14 @@ import synth
 from synth import near
 from synth.near import near_equals
 
-METALS = pd.DataFrame({
-    "designation": ["St 37", "C 45", "twin of C 45", "42CrMo4", "cast", "forged"],
-    "stress_allow [N/mm2]": [120.0, 170.0, 170.0, 300.0, 95.0, 140.0],
-    "density [kg/m3]": [7850.0, 7830.0, 7830.0, 7900.0, 7200.0, 7600.0],
-    "source": ["invented"] * 6,
-})  # fmt: skip
+METALS = pd.DataFrame(
+    {
+        "designation": ["St 37", "C 45", "twin of C 45", "42CrMo4", "cast", "forged"],
+        "stress_allow [N/mm2]": [120.0, 170.0, 170.0, 300.0, 95.0, 140.0],
+        "density [kg/m3]": [7850.0, 7830.0, 7830.0, 7900.0, 7200.0, 7600.0],
+        "source": ["invented"] * 6,
+    }
+)
 HEIGHTS, WIDTHS = np.arange(20, 61) * 1e-3, np.arange(8, 31, 2) * 1e-3
 RIBS, ENDS = np.array([1.0, 2.0, 3.0]), {"round": 1.0, "flat": 1.15}
 LOAD = 900.0
@@ -137,8 +139,11 @@ def test_one_objective_and_one_to_be_large(front):
 
 def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
     duty = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
-    parts = {"friction_pair": ["paper_wet", "cork_wet"], "inner_plate": ["core 1.5", "core 2"],
-             "outer_plate": ["core 2"]}  # fmt: skip
+    parts = {
+        "friction_pair": ["paper_wet", "cork_wet"],
+        "inner_plate": ["core 1.5", "core 2"],
+        "outer_plate": ["core 2"],
+    }
     limits = {"friction_surfaces": "16 .. 22", "ring_outer_diameter": "290 mm .. 360 mm"}
     front = synth.synthesize("multi_plate_clutch", duty, parts=parts, limits=limits, fix={"ramp_time": "2 s"}, points=5)
     chosen = front.designs[2]

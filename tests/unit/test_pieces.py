@@ -123,9 +123,7 @@ def convex(rng: np.random.Generator, n: int) -> Written:
 
 def either_limit(rng: np.random.Generator, n: int) -> Written:
     (a, b, c, d), cost = (_monomial(rng, n) for _ in range(4)), _posynomial(rng, n)
-    return (
-        lambda x: [("at_most", ca.fmin(a(x), b(x)), 0.5), ("at_least", ca.fmax(c(x), d(x)), 2.0)], cost, True
-    )  # fmt: skip
+    return (lambda x: [("at_most", ca.fmin(a(x), b(x)), 0.5), ("at_least", ca.fmax(c(x), d(x)), 2.0)], cost, True)
 
 
 def least_of_both(rng: np.random.Generator, n: int) -> Written:
@@ -136,8 +134,9 @@ def least_of_both(rng: np.random.Generator, n: int) -> Written:
 def absolute(rng: np.random.Generator, n: int) -> Written:
     (a, b, c), cost = (_line(rng, n) for _ in range(3)), _bowl(rng, n)
     limits: list[Callable[[Any], Row]] = [
-        lambda x: ("at_most", ca.fabs(a(x)), 0.3), lambda x: ("at_least", ca.fabs(b(x)), 0.5)
-    ]  # fmt: skip
+        lambda x: ("at_most", ca.fabs(a(x)), 0.3),
+        lambda x: ("at_least", ca.fabs(b(x)), 0.5),
+    ]
     return lambda x: [f(x) for f in limits], lambda x: cost(x) + ca.fabs(c(x)), False
 
 
@@ -152,9 +151,7 @@ def ramps(rng: np.random.Generator, n: int) -> Written:
 
 def bent(rng: np.random.Generator, n: int) -> Written:
     (a, b), cost, more = (_line(rng, n) for _ in range(2)), _bowl(rng, n), rng.uniform(-3, 3)
-    return (
-        lambda x: [("at_most", b(x), 0.5)], lambda x: cost(x) + ca.if_else(a(x) < 0, 0.0, more * a(x)), False
-    )  # fmt: skip
+    return (lambda x: [("at_most", b(x), 0.5)], lambda x: cost(x) + ca.if_else(a(x) < 0, 0.0, more * a(x)), False)
 
 
 def step(rng: np.random.Generator, n: int) -> Written:
@@ -187,15 +184,23 @@ def equality(rng: np.random.Generator, n: int) -> Written:
 
 def clipped(rng: np.random.Generator, n: int) -> Written:
     (a, b), cost = (_line(rng, n) for _ in range(2)), _bowl(rng, n)
-    return (
-        lambda x: [("at_most", b(x), 0.5)], lambda x: cost(x) + 3 * ca.fmin(ca.fmax(a(x), -0.5), 0.5), False
-    )  # fmt: skip
+    return (lambda x: [("at_most", b(x), 0.5)], lambda x: cost(x) + 3 * ca.fmin(ca.fmax(a(x), -0.5), 0.5), False)
 
 
 CONVEX = (convex, ramps)
 KINDS = (
-    convex, either_limit, least_of_both, absolute, ramps, bent, step, nested, behind_conditions, equality, clipped,
-)  # fmt: skip
+    convex,
+    either_limit,
+    least_of_both,
+    absolute,
+    ramps,
+    bent,
+    step,
+    nested,
+    behind_conditions,
+    equality,
+    clipped,
+)
 SEEDS, STARTS = 6, 6
 
 
@@ -266,8 +271,10 @@ def test_an_edge_that_holds_back_is_left_to_the_side_that_goes_further(code):
 def test_elastic_limits_give_way_and_the_conditions_of_pieces_do_not(code):
     # Half of the way between both limits on max(x, 1 - x), of which only x >= 1/2 is within reach.
     written = (
-        lambda x: [("at_most", ca.fmax(x[0], 1 - x[0]), 0.1), ("at_least", x[0], 0.9)], lambda x: x[0] + 9, False
-    )  # fmt: skip
+        lambda x: [("at_most", ca.fmax(x[0], 1 - x[0]), 0.1), ("at_least", x[0], 0.9)],
+        lambda x: x[0] + 9,
+        False,
+    )
     problem = Kinked(1, written, code)
     tasks = Tasks(np.zeros((2, 1)), np.zeros((2, 1)), np.full((2, 1), np.inf), np.ones(1), 1.0, 1.0)
     found = problem.solve(np.array([[-2.0], [2.5]]), tasks)
@@ -281,8 +288,9 @@ def test_elastic_limits_give_way_and_the_conditions_of_pieces_do_not(code):
 def test_a_branch_that_is_not_taken_does_not_count():
     written = (
         lambda x: [("at_most", ca.if_else(x[0] < 0, ca.fmax(x[1], x[0]), ca.fabs(x[1] - 1)), 2.0)],
-        lambda x: x[0] + x[1], False,
-    )  # fmt: skip
+        lambda x: x[0] + x[1],
+        False,
+    )
     pieces = Kinked(2, written).pieces
     kinds = [pieces.program.nodes[k].op for k in pieces.decisions]
     assert sorted(kinds) == sorted([ca.OP_LT, ca.OP_FMAX, ca.OP_FABS])
@@ -312,9 +320,15 @@ def _two_springs(monkeypatch: pytest.MonkeyPatch, gap: float, objectives: list[s
     with monkeypatch.context() as patch:
         patch.setattr(formulation.Formulation, "__init__", remembered)
         front = synth.synthesize(
-            spec["family"], spec["requirements"], objectives=objectives, grid=False, gap=gap, points=4,
-            parts={**spec["parts"], **parts}, fix={**spec["fix"], **fix},
-        )  # fmt: skip
+            spec["family"],
+            spec["requirements"],
+            objectives=objectives,
+            grid=False,
+            gap=gap,
+            points=4,
+            parts={**spec["parts"], **parts},
+            fix={**spec["fix"], **fix},
+        )
     return front, posed[0]
 
 

@@ -59,9 +59,13 @@ def lightest_bar(load, reach, flexibility):
         {"type": "ineq", "fun": lambda x: 1 - 1e9 * x[1] / (210e9 * area(x)) / flexibility},
     ]
     answer = minimize(
-        lambda x: 7850e-9 * area(x) * x[1] * 1.1, [140, 130], method="SLSQP", bounds=[(5, 150), (100, 300)],
-        constraints=limits, options={"ftol": 1e-14, "maxiter": 500},
-    )  # fmt: skip
+        lambda x: 7850e-9 * area(x) * x[1] * 1.1,
+        [140, 130],
+        method="SLSQP",
+        bounds=[(5, 150), (100, 300)],
+        constraints=limits,
+        options={"ftol": 1e-14, "maxiter": 500},
+    )
     assert answer.success
     return answer.fun
 
@@ -97,13 +101,15 @@ def test_makeable_sizes_are_taken_as_continuous():
 
 # -- rods of several materials: the part changes -------------------------------------------------------
 
-METALS = pd.DataFrame({
-    "designation": ["weak", "strong", "short", "heavy"],
-    "stress_allow [N/mm2]": [100.0, 200.0, 300.0, 150.0],
-    "head [kg]": [1.0, 2.0, 1.2, 2.5],
-    "load_allow [kN]": [900.0, 900.0, 60.0, 900.0],
-    "source": ["invented"] * 4,
-})  # fmt: skip
+METALS = pd.DataFrame(
+    {
+        "designation": ["weak", "strong", "short", "heavy"],
+        "stress_allow [N/mm2]": [100.0, 200.0, 300.0, 150.0],
+        "head [kg]": [1.0, 2.0, 1.2, 2.5],
+        "load_allow [kN]": [900.0, 900.0, 60.0, 900.0],
+        "source": ["invented"] * 4,
+    }
+)
 SPECIFIC = 7850 * 1.5  # kg/m2
 
 
@@ -140,9 +146,13 @@ def masses(load):
 
 def rod(load, metals=("weak", "strong"), **more):
     return synth.synthesize(
-        Rod, {"load": load}, catalogs={"metals": METALS}, parts={"metal": list(metals)}, gap=1e-5,
+        Rod,
+        {"load": load},
+        catalogs={"metals": METALS},
+        parts={"metal": list(metals)},
+        gap=1e-5,
         **{"grid": False, **more},
-    )  # fmt: skip
+    )
 
 
 def brute(load, factor, metals):
@@ -206,9 +216,10 @@ def test_a_part_that_is_refused_after_the_step_is_not_used():
 def test_parts_that_win_by_makeable_sizes_alone_are_told():
     # Just above the change, a makeable area of the weak rod may waste less than one of the strong rod.
     load = next(
-        x for x in np.arange(1.001, 1.3, 0.001) * EVEN
+        x
+        for x in np.arange(1.001, 1.3, 0.001) * EVEN
         if math.ceil(x / 1e8 / 2e-5) * 2e-5 * SPECIFIC + 1 < math.ceil(x / 2e8 / 2e-5) * 2e-5 * SPECIFIC + 2
-    )  # fmt: skip
+    )
     front = rod(load / 1e3, grid=True)
     assert str(front.designs[0].parts["metal"]) == "weak"
     price = synth.prices(front).of(1, "mass", "load")

@@ -16,12 +16,14 @@ from tests.conformance.cases import CASES, known_design
 from tests.unit.formulas import BINARY, UNARY
 
 RNG = np.random.default_rng(0)
-THINGS = pd.DataFrame({
-    "designation": [f"thing {k}" for k in range(9)],
-    "u [-]": RNG.uniform(0.5, 3, 9),
-    "v [-]": RNG.uniform(-1, 2, 9),
-    "w [-]": [*RNG.uniform(1, 4, 6), None, None, None],
-})  # fmt: skip
+THINGS = pd.DataFrame(
+    {
+        "designation": [f"thing {k}" for k in range(9)],
+        "u [-]": RNG.uniform(0.5, 3, 9),
+        "v [-]": RNG.uniform(-1, 2, 9),
+        "w [-]": [*RNG.uniform(1, 4, 6), None, None, None],
+    }
+)
 THINGS_CATALOG = Catalogs({"things": THINGS})
 
 

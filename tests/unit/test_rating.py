@@ -15,9 +15,13 @@ from tests.unit.shaft_brake import CATALOGS, NEEDED, PAIRS, ShaftBrake
 
 def design(pair="firm", radius="150 mm", force="2500 N", limits=None, requirements=NEEDED, **options):
     return synth.evaluate(
-        ShaftBrake(**options), requirements, values={"radius": radius, "force": force}, parts={"pair": pair},
-        catalogs=CATALOGS, limits=limits,
-    )  # fmt: skip
+        ShaftBrake(**options),
+        requirements,
+        values={"radius": radius, "force": force},
+        parts={"pair": pair},
+        catalogs=CATALOGS,
+        limits=limits,
+    )
 
 
 def rated(block, of=None, **options):
@@ -80,9 +84,12 @@ def test_proven_corners_are_the_worst_of_a_dense_grid(seed):
     rng = np.random.default_rng(seed)
     radius, force = f"{rng.uniform(60, 190):.6g} mm", f"{rng.uniform(500, 3000):.6g} N"
     of = design(
-        pair=["firm", "soft"][seed % 2], radius=radius, force=force,
-        limits={"braking_torque": "<= 150 N*m"}, requirements={**NEEDED, "torque_limit": "180 N*m"},
-    )  # fmt: skip
+        pair=["firm", "soft"][seed % 2],
+        radius=radius,
+        force=force,
+        limits={"braking_torque": "<= 150 N*m"},
+        requirements={**NEEDED, "torque_limit": "180 N*m"},
+    )
     block = {"friction": "catalogue range", "torque": "+-10 %", "speed": "1100 .. 1300 1/min", "wear": "new and worn"}
     told = rated(block, of)
     rater = Rater(

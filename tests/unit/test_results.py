@@ -73,17 +73,34 @@ def test_a_part_reads_like_its_row(front):
 
 def test_every_design_has_its_file(front, folder):
     assert {p.name for p in folder.iterdir()} == {
-        "designs.csv", "front.json", *(f"design_{k:02d}.yaml" for k in range(1, 6))
-    }  # fmt: skip
+        "designs.csv",
+        "front.json",
+        *(f"design_{k:02d}.yaml" for k in range(1, 6)),
+    }
 
 
 def test_the_table_has_units_in_its_headers_and_stable_columns(folder):
     rows = list(csv.reader((folder / "designs.csv").read_text(encoding="utf-8").splitlines()))
     assert rows[0] == [
-        "rank", "score", "status", "gap", "note", "alternatives", "mass [kg]", "flexibility [-]", "width [mm]",
-        "length [mm]", "plates [-]", "end", "plate", "material", "area [mm2]", "utilisation: stress",
-        "utilisation: reach", "utilisation: room",
-    ]  # fmt: skip
+        "rank",
+        "score",
+        "status",
+        "gap",
+        "note",
+        "alternatives",
+        "mass [kg]",
+        "flexibility [-]",
+        "width [mm]",
+        "length [mm]",
+        "plates [-]",
+        "end",
+        "plate",
+        "material",
+        "area [mm2]",
+        "utilisation: stress",
+        "utilisation: reach",
+        "utilisation: room",
+    ]
     assert len(rows) == 6
     assert {len(r) for r in rows} == {len(rows[0])}
 
@@ -175,8 +192,11 @@ def test_a_front_reads_back_the_same(front, folder):
         assert new.status is old.status
         assert (new.rank, new.score, new.note, new.gap) == (old.rank, old.score, old.note, old.gap)
         assert (new.alternatives, new.advice, new.not_checked, new.violated) == (
-            old.alternatives, old.advice, old.not_checked, old.violated
-        )  # fmt: skip
+            old.alternatives,
+            old.advice,
+            old.not_checked,
+            old.violated,
+        )
         assert {k: str(v) for k, v in new.parts.items()} == {k: str(v) for k, v in old.parts.items()}
         assert new.parts["plate"]["hash"] == old.parts["plate"]["hash"]
         assert new.objectives == old.objectives

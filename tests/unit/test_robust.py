@@ -119,8 +119,14 @@ def test_what_still_fails_in_the_last_search_is_taken_off(monkeypatch):
     assert front.designs == []
     assert front.statistics["robust"]["taken_off"] == 1
     assert (front.status.value, front.certificate.kind) == ("not_solved", "heuristic")
-    front = synthesized(WIDE, requirements=NEEDED, limits={"size": ">= 200 mm"}, points=3, fix={"force": "3 kN"},
-                        objectives={"size": "min", "worth": "min"})  # fmt: skip
+    front = synthesized(
+        WIDE,
+        requirements=NEEDED,
+        limits={"size": ">= 200 mm"},
+        points=3,
+        fix={"force": "3 kN"},
+        objectives={"size": "min", "worth": "min"},
+    )
     assert not front.complete
     assert [d.rank for d in front.designs] == list(range(1, len(front.designs) + 1))
 
@@ -206,9 +212,14 @@ def test_a_second_search_that_is_stopped_leaves_what_the_first_one_proved():
 
     limits = {"size": "<= 260 mm"}
     front = synthesized(
-        WIDE, requirements=NEEDED, limits=limits, points=2, progress=interrupt, fix={"force": "3 kN", "pair": "firm"},
+        WIDE,
+        requirements=NEEDED,
+        limits=limits,
+        points=2,
+        progress=interrupt,
+        fix={"force": "3 kN", "pair": "firm"},
         objectives={"size": "max"},
-    )  # fmt: skip
+    )
     assert front.interrupted == "interrupted"
     assert front.statistics["robust"]["taken_off"] == 1
     assert front.designs == []

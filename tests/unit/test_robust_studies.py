@@ -210,8 +210,11 @@ def test_a_unit_counts_for_the_ranges_before_it() -> None:
     assert values("robust.torque", ["+- 5 %", "± 10.0%"]) == ["+-5 %", "+-10 %"]
     assert values("robust.friction", "+-0.05, +-0.1") == ["+-0.05", "+-0.1"]
     assert values("robust.friction", "+-0.05:0.15:0.05, Catalogue Range") == [
-        "+-0.05", "+-0.1", "+-0.15", "Catalogue Range",
-    ]  # fmt: skip
+        "+-0.05",
+        "+-0.1",
+        "+-0.15",
+        "Catalogue Range",
+    ]
 
 
 def test_wear_is_varied_by_its_own_name() -> None:

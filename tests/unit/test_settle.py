@@ -42,9 +42,13 @@ def test_the_stiffest_beam_has_no_cover_that_only_weighs(points):
 
 def test_the_parts_that_an_objective_does_not_see_are_the_lightest():
     requirements = {
-        "load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2",
-        "jerk_limit": "600 rad/s3", "outer_diameter_limit": "400 mm", "engagements_per_hour": 30,
-    }  # fmt: skip
+        "load_torque": "200 N*m",
+        "driver_speed": "700 rpm",
+        "driven_inertia": "2 kg*m2",
+        "jerk_limit": "600 rad/s3",
+        "outer_diameter_limit": "400 mm",
+        "engagements_per_hour": 30,
+    }
     front = synth.synthesize("cone_clutch", requirements, points=30)
     least = min(front.designs, key=lambda d: d.values["actuation_force"])
     assert str(least.parts["cone_layout"]) == "outer_spring"  # the inner cone is heavier and needs the same force

@@ -15,14 +15,16 @@ from synth.instance import Instance, catalogs_for
 
 rng = np.random.default_rng(7)
 COUNT = 24
-PLATES = pd.DataFrame({
-    "designation": [f"plate {k}" for k in range(COUNT)],
-    "thickness [mm]": np.round(rng.choice([1.0, 1.5, 2.0, 2.5, 3.0, 4.0], COUNT), 3),
-    "steel": rng.choice(["C45", "C60", "X5"], COUNT),
-    "price [-]": np.round(rng.uniform(1, 9, COUNT), 2),
-    "tax [-]": np.round(rng.uniform(1, 9, COUNT), 2),
-    "mass [kg]": np.round(rng.uniform(0.1, 2, COUNT), 3),
-})  # fmt: skip
+PLATES = pd.DataFrame(
+    {
+        "designation": [f"plate {k}" for k in range(COUNT)],
+        "thickness [mm]": np.round(rng.choice([1.0, 1.5, 2.0, 2.5, 3.0, 4.0], COUNT), 3),
+        "steel": rng.choice(["C45", "C60", "X5"], COUNT),
+        "price [-]": np.round(rng.uniform(1, 9, COUNT), 2),
+        "tax [-]": np.round(rng.uniform(1, 9, COUNT), 2),
+        "mass [kg]": np.round(rng.uniform(0.1, 2, COUNT), 3),
+    }
+)
 PLATES.loc[3, "thickness [mm]"] = None
 CATALOGS = {"plates": PLATES}
 
@@ -189,7 +191,7 @@ def test_one_slot_may_compare_its_own_columns_and_several_rules_all_hold():
         ("thickness > two.thickness and thickness < two.thickness", "a condition that some rows of one and two meet"),
         ("thickness > 3 and thickness == two.thickness and two.thickness < 2", "some rows of one and two meet"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_compared_is_one_sentence(text, message):
     with pytest.raises(synth.InputError, match=message) as refusal:
         synthesized(text)

@@ -96,7 +96,7 @@ def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> No
         ("family: f\ncatalogs: 3\n", ["catalogs", "a folder, or a mapping"]),
         ("family: f\nrequirements: " + "[" * 3000, ["hoist.yaml"]),
     ],
-)  # fmt: skip
+)
 def test_slips_are_told_in_one_sentence(tmp_path: Path, text: str, words: list[str]) -> None:
     message = str(refusal(write(tmp_path, text)))
     for word in words:

@@ -285,7 +285,7 @@ def test_a_difference_that_limits_keep_positive_counts_as_positive():
             "not surely positive",
         ),
     ],
-)  # fmt: skip
+)
 def test_what_kind_of_limit_makes_a_difference_positive(limit, text):
     def build(d):
         outer, inner = ring(d)

@@ -72,9 +72,15 @@ def test_a_shipped_table(shipped: Path) -> None:
     assert np.isnan(table.number("mass")[1])
     assert table.text("note") == ("with, comma", "")
     assert table.row(1) == {
-        "designation": "b", "p_allow": 2e6, "mass": None, "teeth": None, "crowned": 1.0, "note": None,
-        "source": "book 2", "confidence": "verified",
-    }  # fmt: skip
+        "designation": "b",
+        "p_allow": 2e6,
+        "mass": None,
+        "teeth": None,
+        "crowned": 1.0,
+        "note": None,
+        "source": "book 2",
+        "confidence": "verified",
+    }
     assert not table.user_rows.any()
     assert table.has("mass")
     assert table.has("m")
@@ -350,11 +356,13 @@ SMALL = Schema((Column("designation", "text"), Column("size", "number", "mm"), C
 @QUICK
 @given(st.lists(st.tuples(NORMAL, st.none() | NORMAL), min_size=1, max_size=5))
 def test_a_frame_survives_the_round_trip(rows: list[tuple[float, float | None]]) -> None:
-    frame = pd.DataFrame({
-        "designation": [f"r{i}" for i in range(len(rows))],
-        "size [mm]": [size for size, _ in rows],
-        "speed [1/min]": pd.Series([speed for _, speed in rows], dtype=float),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "designation": [f"r{i}" for i in range(len(rows))],
+            "size [mm]": [size for size, _ in rows],
+            "speed [1/min]": pd.Series([speed for _, speed in rows], dtype=float),
+        }
+    )
     table = table_from_frame(frame, SMALL)
     again = table_from_frame(table.to_frame(), SMALL)
     np.testing.assert_allclose(again.number("size"), table.number("size"), rtol=5e-16)

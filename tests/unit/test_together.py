@@ -51,12 +51,14 @@ class Wells(DesignProblem):
         d.objective("cost")
 
 
-WELLS = pd.DataFrame({
-    "designation": ["left", "right", "level"],
-    "base [-]": [3.0, 3.1, 2.75],
-    "tilt [-]": [0.5, -0.4, 0.02],
-    "source": ["made up"] * 3,
-})  # fmt: skip
+WELLS = pd.DataFrame(
+    {
+        "designation": ["left", "right", "level"],
+        "base [-]": [3.0, 3.1, 2.75],
+        "tilt [-]": [0.5, -0.4, 0.02],
+        "source": ["made up"] * 3,
+    }
+)
 
 
 def asked(
@@ -143,9 +145,12 @@ def check_front(front: ParetoFront, question: Question, own: ParetoFront, priced
 
 
 def check_ropes(
-    problem: DesignProblem, requirements: Sequence[Mapping[str, Any]], catalogs: Catalogs = FOUR,
-    objective: str = "cost", grid: bool = True,
-) -> None:  # fmt: skip
+    problem: DesignProblem,
+    requirements: Sequence[Mapping[str, Any]],
+    catalogs: Catalogs = FOUR,
+    objective: str = "cost",
+    grid: bool = True,
+) -> None:
     questions = asked(problem, requirements, [objective], catalogs, grid=grid)
     best: list[Made | None] = [best_ropes(problem, q.instance.requirements, catalogs, grid) for q in questions]
 
@@ -463,9 +468,7 @@ def test_the_best_with_given_parts() -> None:
         (5, a_design(50, "rope a", 2)),
         (6, a_design(50, "rope c")),
     ]
-    true = [
-        5 + 4 * 5, 35 * 2 * 1.5 + 0.5 * 15, None, 5 * 2 + 4 * 22, 20 * 3 + 22, None, 2 * 10 + 220, None, 35 + 175
-    ]  # fmt: skip
+    true = [5 + 4 * 5, 35 * 2 * 1.5 + 0.5 * 15, None, 5 * 2 + 4 * 22, 20 * 3 + 22, None, 2 * 10 + 220, None, 35 + 175]
     search = TogetherSearch(questions)
     for again in range(2):
         for (design, proven), (_, idea), value in zip(search.best_with(wanted), wanted, true, strict=True):

@@ -230,9 +230,12 @@ def test_time_that_is_over_stops_the_search() -> None:
 
 def test_a_study_asks_for_three_designs_of_each_step_together() -> None:
     study = synth.whatif(
-        "multi_plate_clutch", {**CLUTCH, "load_torque": "600 N*m"}, {"load_torque": "450, 500, 560 N*m"}, parts=SOME,
+        "multi_plate_clutch",
+        {**CLUTCH, "load_torque": "600 N*m"},
+        {"load_torque": "450, 500, 560 N*m"},
+        parts=SOME,
         breaks=False,
-    )  # fmt: skip
+    )
     assert [len(front.designs) for front in study.fronts] == [3, 3, 3]
     assert [front.statistics["searched_together"] for front in study.fronts] == [3, 3, 3]
     assert [step.status for step in study.steps] == [Status.OPTIMAL] * 3

@@ -322,10 +322,36 @@ def test_quantities_that_are_wrong(value: object, unit: str, says: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "N//m", "J/(mm2 h", " N", "mm 2", "kg m^1", "N/", "*N", "N)", "()", "N/()", "1", "1*m", "m1", "m0", "m10",
-     "Nm²²", "N  m", "1e-6/K", "switchings", "5", "m_2", "J/((m))", "-/s", "degC/s", "x" * 200,
-     "km9 km9 km9 km9 km9 km9"],
-)  # fmt: skip
+    [
+        "",
+        "N//m",
+        "J/(mm2 h",
+        " N",
+        "mm 2",
+        "kg m^1",
+        "N/",
+        "*N",
+        "N)",
+        "()",
+        "N/()",
+        "1",
+        "1*m",
+        "m1",
+        "m0",
+        "m10",
+        "Nm²²",
+        "N  m",
+        "1e-6/K",
+        "switchings",
+        "5",
+        "m_2",
+        "J/((m))",
+        "-/s",
+        "degC/s",
+        "x" * 200,
+        "km9 km9 km9 km9 km9 km9",
+    ],
+)
 def test_texts_that_are_no_unit(text: str) -> None:
     with pytest.raises(InputError) as caught:
         parse_unit(text)

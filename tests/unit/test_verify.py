@@ -113,11 +113,13 @@ class Unlike(synth.DesignProblem):
 
 
 RODS_TABLE = {"rods": RODS}
-WHOLE = pd.DataFrame({
-    "designation": ["soft", "hard", "odd"],
-    "stress_allow [N/mm2]": [80.0, 160.0, 120.0],
-    "density [kg/m3]": [7850.0, 8850.0, 7900.0],
-})  # fmt: skip
+WHOLE = pd.DataFrame(
+    {
+        "designation": ["soft", "hard", "odd"],
+        "stress_allow [N/mm2]": [80.0, 160.0, 120.0],
+        "density [kg/m3]": [7850.0, 8850.0, 7900.0],
+    }
+)
 QUESTIONS = {
     "counts and parts": (Numbers(), {}, {"catalogs": {"rods": WHOLE}, "points": 40}),
     "counts and parts, not all": (Numbers(), {}, {"catalogs": {"rods": WHOLE}, "points": 4}),

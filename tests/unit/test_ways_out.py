@@ -43,27 +43,32 @@ class Bracket(synth.DesignProblem):
 
 QUESTIONS: dict[str, dict[str, Any]] = {
     "limits and a requirement": {
-        "requirements": {"F": "20 kN", "room": "20 mm"}, "limits": {"m": "<= 2 kg", "b": ["<= 40 mm", ">= 10 mm"]},
+        "requirements": {"F": "20 kN", "room": "20 mm"},
+        "limits": {"m": "<= 2 kg", "b": ["<= 40 mm", ">= 10 mm"]},
     },
     "several limits on one quantity": {
-        "requirements": {"load": "60 kN"}, "limits": {"mass": [">= 1 kg", "<= 1.5 kg"], "height": "10 mm .. 25 mm"},
+        "requirements": {"load": "60 kN"},
+        "limits": {"mass": [">= 1 kg", "<= 1.5 kg"], "height": "10 mm .. 25 mm"},
     },
     "pins": {"requirements": {"load": "20 kN"}, "fix": {"h": "20 mm", "width": "20 mm", "z": 2}},
     "counts": {"requirements": {"load": "60 kN"}, "limits": {"arms": "<= 2", "h": "<= 30 mm", "b": "<= 30 mm"}},
     "a set of counts": {"requirements": {"F": "60 kN"}, "limits": {"arms": [1, 2], "h": "<= 30 mm", "b": "<= 30 mm"}},
     "words and parts": {
-        "requirements": {"load": "20 kN"}, "limits": {"mass": "<= 3 kg"},
-        "fix": {"finish": "raw", "arms": 1}, "parts": {"steel": ["S185"]},
+        "requirements": {"load": "20 kN"},
+        "limits": {"mass": "<= 3 kg"},
+        "fix": {"finish": "raw", "arms": 1},
+        "parts": {"steel": ["S185"]},
     },
     "below zero": {"requirements": {"load": "1 kN"}, "limits": {"tilt": "<= -5 deg", "slant": ">= -4 deg"}},
     "refused": {"requirements": {"load": "1 kN", "room": "10 mm", "least": "30 mm"}},
     "refused on its edge": {"requirements": {"load": "1 kN", "room": "30 mm", "least": "30 mm"}},
     "refused for every row": {"requirements": {"load": "400 kN"}, "parts": {"steel": ["S185"]}},
     "scattering": {
-        "requirements": {"load": "20 kN"}, "limits": {"mass": "<= 0.5 kg", "height": "<= 30 mm"},
+        "requirements": {"load": "20 kN"},
+        "limits": {"mass": "<= 0.5 kg", "height": "<= 30 mm"},
         "robust": {"load": "+-5 %"},
     },
-}  # fmt: skip
+}
 BASE = {"parts": {"steel": ["S185", "42CrMo4"]}}
 
 

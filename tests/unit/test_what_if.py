@@ -26,9 +26,12 @@ Progress = Callable[[Mapping[str, Any]], None]
 
 def study(vary: Any, problem: Any = FREE, requirements: Any = None, objectives: Any = ("cost",), **more: Any) -> Study:
     found = synth.whatif(
-        problem, {"load": "10 kN", **(requirements or {})}, vary, list(objectives),
+        problem,
+        {"load": "10 kN", **(requirements or {})},
+        vary,
+        list(objectives),
         **{"catalogs": FOUR, "breaks": False, "points": 6, **more},
-    )  # fmt: skip
+    )
     assert [step.number for step in found.steps] == list(range(1, len(found.steps) + 1))
     return found
 
@@ -105,16 +108,28 @@ def test_steps_with_two_objectives_are_those_asked_alone() -> None:
 def test_a_front_of_continuous_designs_is_found_at_every_step() -> None:
     asked = {"load": "20 kN", "room": "90 mm"}
     found = synth.whatif(
-        Strut(), asked, {"load": "10, 40 kN"}, ["mass", "flexibility"], catalogs={"rods": RODS}, points=4, gap=0.01,
-        parts={"plate": ["core 1", "core 2"]}, breaks=False,
-    )  # fmt: skip
+        Strut(),
+        asked,
+        {"load": "10, 40 kN"},
+        ["mass", "flexibility"],
+        catalogs={"rods": RODS},
+        points=4,
+        gap=0.01,
+        parts={"plate": ["core 1", "core 2"]},
+        breaks=False,
+    )
     for step, load in zip(fronts_of(found), (10, 40), strict=True):
         assert step.certificate.kind == "global"
         assert step.verify().holds
         own = synth.synthesize(
-            Strut(), {**asked, "load": f"{load} kN"}, ["mass", "flexibility"], catalogs={"rods": RODS}, points=4,
-            gap=0.01, parts={"plate": ["core 1", "core 2"]},
-        )  # fmt: skip
+            Strut(),
+            {**asked, "load": f"{load} kN"},
+            ["mass", "flexibility"],
+            catalogs={"rods": RODS},
+            points=4,
+            gap=0.01,
+            parts={"plate": ["core 1", "core 2"]},
+        )
         for name in ("mass", "flexibility"):
             ends = [min(d.values[name] for d in front.designs) for front in (step, own)]
             assert ends[0] == pytest.approx(ends[1], rel=0.01)
@@ -139,9 +154,16 @@ def test_parts_options_and_both() -> None:
     price = study({"options.price": "indexed,fixed", "load": "5, 20, 60 kN"})
     for step, front in zip(price.steps, fronts_of(price), strict=True):
         word, load = step.values
-        true = best_ropes(FREE, {
-            "load": 1e3 * float(load), "jolt": 1.0, "share": 1.0, "index": 1.5 if word == "indexed" else 1.0,  # type: ignore[arg-type]
-        }, FOUR)  # fmt: skip
+        true = best_ropes(
+            FREE,
+            {
+                "load": 1e3 * float(load),
+                "jolt": 1.0,
+                "share": 1.0,
+                "index": 1.5 if word == "indexed" else 1.0,  # type: ignore[arg-type]
+            },
+            FOUR,
+        )
         assert true is not None
         assert front.designs[0].values["cost"] == pytest.approx(true.cost, rel=GAP)
         assert made_of(front.designs[0]) in true.made
@@ -188,7 +210,7 @@ def test_symbols_and_units_mean_what_names_and_numbers_mean() -> None:
         ({}, ["vary"]),
         ({"load": "1, 2 kN", "share": "1, 2", "income": "1, 2"}, ["one or two"]),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_at_any_step_is_said_before_the_first(tmp_path: Path, vary: Any, words: Sequence[str]) -> None:
     with pytest.raises(synth.InputError) as fault:
         study(vary, folder=tmp_path / "never")

@@ -20,13 +20,28 @@ PARTS = "steel = S185, 42CrMo4"
 
 def table() -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = [
-        {"id": f"R{k}", "force [kN]": force, "parts": PARTS, "length [mm]": 100 + k, "diameter_limit [mm]": room,
-         "limits": limits, "section": section}
-        for k, (force, room, limits, section) in enumerate([
-            (10, "", "", ""), (20, 30, "", ""), (45, 30, "", ""), (90, "", "mass <= 2 kg", ""), (150, 60, "", ""),
-            (300, "", "rods <= 2", ""), (40, 12, "", ""), (60, "", "", "square"),
-        ])
-    ]  # fmt: skip
+        {
+            "id": f"R{k}",
+            "force [kN]": force,
+            "parts": PARTS,
+            "length [mm]": 100 + k,
+            "diameter_limit [mm]": room,
+            "limits": limits,
+            "section": section,
+        }
+        for k, (force, room, limits, section) in enumerate(
+            [
+                (10, "", "", ""),
+                (20, 30, "", ""),
+                (45, 30, "", ""),
+                (90, "", "mass <= 2 kg", ""),
+                (150, 60, "", ""),
+                (300, "", "rods <= 2", ""),
+                (40, 12, "", ""),
+                (60, "", "", "square"),
+            ]
+        )
+    ]
     rows.append({**rows[2], "id": "again"})
     rows.append({"id": "weak", "force [kN]": 900, "parts": PARTS, "length [mm]": 100, "diameter_limit [mm]": 5})
     rows.append({"id": "bad", "force [kN]": "?", "parts": PARTS, "length [mm]": 100})
@@ -53,8 +68,11 @@ def pairs(batch: synth.BatchResult) -> tuple[np.ndarray, list[str]]:
             needs["diameter_limit"] = f"{row['diameter_limit [mm]']} mm"
         for j, design in enumerate(variants.to_dict("records")):
             # The length is the row's own: every row pins it.
-            values = {"diameter": f"{design['diameter [mm]']} mm", "rods": design["rods [-]"],
-                      "length": f"{row['length [mm]']} mm"}  # fmt: skip
+            values = {
+                "diameter": f"{design['diameter [mm]']} mm",
+                "rods": design["rods [-]"],
+                "length": f"{row['length [mm]']} mm",
+            }
             found = synth.evaluate(problem, needs, values=values, parts={"steel": design["steel"]})
             keeps = not found.violated
             keeps &= "rods" not in row["limits"] or design["rods [-]"] <= 2
