@@ -38,6 +38,7 @@ def problem_digest(problems: Iterable[type[Any]]) -> str:
 
 
 def _add_sources(total: Any, place: Path) -> None:
-    for path in [place] if place.is_file() else sorted(place.rglob("*.py")):
+    files = [place] if place.is_file() else sorted(path for path in place.rglob("*") if path.suffix in (".py", ".c"))
+    for path in files:
         name = path.name if place.is_file() else path.relative_to(place).as_posix()
         total.update(name.encode() + b"\0" + path.read_bytes() + b"\0")

@@ -1,4 +1,7 @@
-"""The one margin by which ends are moved outward, so that rounding costs no value that is on an end."""
+"""The one margin by which ends are moved outward, so that rounding costs no value that is on an end.
+
+Compiled code has the same in ``bounds/templates/margins.c``.
+"""
 
 from __future__ import annotations
 
@@ -47,19 +50,3 @@ def within(values: Any, low: Any, high: Any, relative: float, absolute: float = 
     [False, True, True]
     """
     return (values >= below(low, relative, absolute)) & (values <= above(high, relative, absolute))
-
-
-# The same in C, for single ends and for registers of them.
-MARGINS = """
-static inline double end_below(double end, double relative, double absolute) {
-    const double less = end * (1.0 - relative), more = end * (1.0 + relative);
-    return (less < more ? less : more) - absolute;
-}
-static inline double end_above(double end, double relative, double absolute) {
-    const double less = end * (1.0 - relative), more = end * (1.0 + relative);
-    return (less > more ? less : more) + absolute;
-}
-INLINE vd ends_above(vd ends, double relative, double absolute) {
-    return v_max(ends * (1.0 + relative), ends * (1.0 - relative)) + absolute;
-}
-"""

@@ -13,11 +13,12 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
+from synth.c_text import EXPRESSIONS, bodies, filled, template
 from synth.compilation import switched_on
 from synth.derivatives import RowFunctions
 from synth.interior_point import Ends, Layout, Problems
 from synth.native import Solver, library
-from synth.native_source import EXPRESSIONS, filled, settings
+from synth.native_source import settings, translation_unit
 from synth.program import COMPARISONS, OP_SELECT
 
 # Sizes that the code has room for; what is larger is solved without it.
@@ -38,109 +39,18 @@ class _Shape(ctypes.Structure):
     )
 
 
-FORMULAS = r"""
-typedef struct {
-    /* Slots hold constants, stored nodes, variables, weights and results, in this order. */
-    int n, rows, cuts, goals, nonzeros, curvatures, stored, slots, constants, steps, terms;
-    const int *equal, *guard, *row, *column, *curvature, *term, *code, *output;
-    const double *constant;
-} Shape;
-
-/* Two pointers fit where they are found without a call, also in a library that is loaded late. */
-#if defined(__ELF__)
-#define OF_THE_THREAD static __thread __attribute__((tls_model("initial-exec")))
-#else
-#define OF_THE_THREAD static __thread
-#endif
-OF_THE_THREAD const Shape *shape;
-OF_THE_THREAD vd *slots;
-
-#define N (shape->n)
-#define ROWS (shape->rows)
-#define CUTS (shape->cuts)
-#define GOALS (shape->goals)
-#define NONZEROS (shape->nonzeros)
-#define CURVATURES (shape->curvatures)
-#define STORED (shape->stored)
-#define EQUAL (shape->equal)
-#define GUARD (shape->guard)
-#define ROW (shape->row)
-#define COLUMN (shape->column)
-"""
-
-POINT = r"""
-    vd *const r = slots;
-    vd *const inputs = r + shape->constants + STORED;
-    EACH(a, N) inputs[a] = y[a];
-    EACH(k, ROWS) inputs[N + k] = weights[k];
-    const int *code = shape->code;
-    for (int k = shape->steps; k > 0; k--, code += WIDTH) {
-        const vd a = r[code[2]], b = r[code[3]];
-        vd result;
-        switch (code[0]) {
-/*CASES*/
-        default: result = all(NAN);
-        }
-        r[code[1]] = result;
-    }
-    const int *from = shape->output;
-    EACH(k, ROWS) form[k] = r[*from++];
-    EACH(k, NONZEROS) jacobian[k] = r[*from++];
-    EACH(k, CURVATURES) hessian[k] = r[*from++];
-"""
-
-TRANSPOSED = r"""
-    EACH(a, N) result[a] = all(0.0);
-    EACH(k, NONZEROS) result[COLUMN[k]] += jacobian[k] * vector[ROW[k]];
-"""
-
-TIMES = r"""
-    EACH(r, ROWS) result[r] = -slopes[r] * direction[N];
-    EACH(k, NONZEROS) result[ROW[k]] += jacobian[k] * direction[COLUMN[k]];
-"""
-
-GRAM = r"""
-    vd weighted[MOST_NONZEROS];
-    EACH(k, NONZEROS) weighted[k] = jacobian[k] * vector[ROW[k]];
-    EACH(a, N + 1) EACH(b, a + 1) matrix[a][b] = all(0.0);
-    const int *term = shape->term;
-    for (int k = shape->terms; k > 0; k--, term += 4) matrix[term[0]][term[1]] += weighted[term[2]] * jacobian[term[3]];
-    EACH(k, NONZEROS) matrix[N][COLUMN[k]] -= weighted[k] * slopes[ROW[k]];
-    EACH(r, ROWS) matrix[N][N] += vector[r] * slopes[r] * slopes[r];
-"""
-
-CURVATURE = r"""
-    EACH(k, CURVATURES) {
-        const int a = shape->curvature[2 * k], b = shape->curvature[2 * k + 1];
-        matrix[a][b] += keep(~strange & free[a] & free[b], hessian[k]);
-    }
-"""
-
-BEGIN = r"""
-    vd file[given->slots];
-    shape = given;
-    slots = file;
-    s.stored = file + given->constants;
-    EACH(k, given->slots) file[k] = all(0.0);
-    EACH(k, given->constants) file[k] = all(given->constant[k]);
-"""
-
-
 def source() -> str:
     """Return the translation unit."""
     sizes = [f"#define MOST_{name} {most}" for name, most in MOST.items()]
-    return filled({
+    formulas, parts = bodies(template("nlp", "interpreter"))
+    parts |= {
         "SIZES": "\n".join([*settings(), *sizes, f"#define WIDTH {WIDTH}"]),
         "STORED_IN_STATE": "vd *stored;",
-        "FORMULAS": FORMULAS,
-        "POINT": POINT.replace("/*CASES*/", "\n".join(_cases())),
-        "TRANSPOSED": TRANSPOSED,
-        "TIMES": TIMES,
-        "GRAM": GRAM,
-        "CURVATURE": CURVATURE,
-        "SOLVE": "void solve(const Problems *p, const Shape *given)",
-        "BEGIN": BEGIN,
-    })  # fmt: skip
+        "FORMULAS": formulas,
+        "POINT": filled(parts["POINT"], {"CASES": "\n".join(_cases())}),
+        "MORE_ARGUMENTS": ", const Shape *given",
+    }
+    return translation_unit(parts)
 
 
 def _cases() -> list[str]:

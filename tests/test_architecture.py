@@ -181,7 +181,7 @@ def test_the_engine_names_no_family() -> None:
         assert not named, f"{path.name} names {named}"
 
 
-def test_a_wheel_contains_all_tables_schemas_and_the_type_marker(tmp_path: Path) -> None:
+def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_path: Path) -> None:
     source, wheels = tmp_path / "source", tmp_path / "wheels"
     source.mkdir()  # a copy: building leaves folders beside what it builds
     for name in ("pyproject.toml", "README.md", "LICENSE"):
@@ -214,7 +214,9 @@ def test_a_wheel_contains_all_tables_schemas_and_the_type_marker(tmp_path: Path)
         metadata = next(archive.read(name).decode() for name in packed if name.endswith("/entry_points.txt"))
     modules = {f"{package}/{path.name}" for package in PACKAGES for path in sources(package)}
     tables = {f"catalogs/{path.name}" for path in (ROOT / "catalogs").iterdir() if path.suffix in (".csv", ".md")}
+    templates = {path.relative_to(ROOT).as_posix() for path in (ROOT / "synth").rglob("*.c")}
     assert len(tables) > 2
-    assert modules | tables | {"synth/py.typed"} <= packed
+    assert len(templates) > 2
+    assert modules | tables | templates | {"synth/py.typed"} <= packed
     assert not [name for name in packed if name.startswith(("tests/", "docs/", "examples/"))]
     assert "clutchsynth = synth.cli:main" in metadata

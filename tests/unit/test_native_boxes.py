@@ -12,12 +12,12 @@ import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
 from synth import native, native_boxes, propagation
+from synth.c_text import template
 from synth.contractor import Contractor, Layout
 from synth.formulation import PINNED, SNAP, Formulation
 from synth.instance import Instance, as_catalogs
 from synth.intervals import BACKWARD, FORWARD, Cut, Goal
 from synth.margins import above
-from synth.native_source import VECTORS
 from synth.program import OP_SELECT, Program
 from synth.special import TABLE, recorded
 
@@ -334,8 +334,8 @@ def test_special_functions_agree(name):
     places = ", ".join(f"*(const vd *)(in + {k} * count + i)" for k in range(len(arguments)))
     text = "\n".join(
         [
-            VECTORS,
-            native_boxes.rules.COMMON,
+            template("compiled", "vectors"),
+            native_boxes.rules.common(),
             native_boxes.formula_source("value", function),
             "void run(const double *in, double *out, long long count) {",
             f"    for (long long i = 0; i < count; i += LANES) *(vd *)(out + i) = value({places});",

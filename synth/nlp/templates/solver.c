@@ -1,11 +1,7 @@
-"""C source of the interior-point method, but for what depends on the row functions.
+/* The interior-point method, but for what depends on the row functions: the same steps as the NumPy form takes, over
+   registers instead of arrays. A lane is one element of a register, and a lane that is done takes the next problem.
+   Comments in capitals are places to be filled: for one set of row functions, or with what is in interpreter.c. */
 
-:mod:`synth.native_source` fills it in for one set of row functions, :mod:`synth.native_general` for all there are.
-"""
-
-from __future__ import annotations
-
-SOLVER = r"""
 /*SIZES*/
 #define AT_LEAST_ONE(n) ((n) > 0 ? (n) : 1)
 #define EACH(k, n) for (int k = 0; k < (n); k++)
@@ -474,7 +470,7 @@ static void unload(const State *s, const Problems *p, int l) {
     p->evaluations[number] = s->evaluations[l];
 }
 
-/*SOLVE*/ {
+void solve(const Problems *p/*MORE_ARGUMENTS*/) {
     State s;
     long long waiting = 0;
     int busy = 0;
@@ -489,4 +485,3 @@ static void unload(const State *s, const Problems *p, int l) {
             if (s.busy[l] && s.status[l]) { unload(&s, p, l); s.busy[l] = 0; busy--; }
     }
 }
-"""

@@ -1,0 +1,145 @@
+/* The contraction of many boxes, a register of them at a time: load, tighten, snap to the grid, score, pack.
+   Sizes, the record of a batch, and tighten and load_tables, which know the formulas, are generated before it. */
+
+typedef float vf __attribute__((vector_size(8 * LANES)));
+
+/* The first place whose value is not below x, and the first whose value is above x. */
+static long long not_below(const double *grid, long long count, double x) {
+    long long first = 0;
+    while (count > 0) {
+        const long long half = count / 2;
+        const int right = grid[first + half] < x;
+        first = right ? first + half + 1 : first;
+        count = right ? count - half - 1 : half;
+    }
+    return first;
+}
+static long long above(const double *grid, long long count, double x) {
+    long long first = 0;
+    while (count > 0) {
+        const long long half = count / 2;
+        const int right = grid[first + half] <= x;
+        first = right ? first + half + 1 : first;
+        count = right ? count - half - 1 : half;
+    }
+    return first;
+}
+
+static vi snap(const Batch *b, vd V[][2]) {
+    vi dead = all_i(0);
+    for (int i = 0; i < N; i++) {
+        vd low = v_max(V[i][0], all(b->lower[i])), high = v_min(V[i][1], all(b->upper[i]));
+        const long long size = b->grid_sizes[i];
+        if (size) {
+            const double *grid = b->grids[i];
+            for (int l = 0; l < LANES; l++) {
+                const long long first = not_below(grid, size, end_below(low[l], b->snap, b->pinned));
+                const long long last = above(grid, size, end_above(high[l], b->snap, b->pinned)) - 1;
+                if (first > last) dead[l] = -1;
+                low[l] = grid[first < size ? first : size - 1];
+                high[l] = grid[last > 0 ? last : 0];
+            }
+            high = v_max(high, low);
+        }
+        dead |= low > ends_above(high, b->snap, b->pinned);
+        V[i][0] = low;
+        V[i][1] = v_max(high, low);
+    }
+    return dead;
+}
+
+/* Sum of products of two rows whose length is a multiple of SCORE_WIDTH. */
+static float dot(const float *a, const float *b, long long width) {
+    vf sum = {0};
+    float parts[2 * LANES];
+    for (long long k = 0; k < width; k += 2 * LANES) {
+        vf x, y;
+        memcpy(&x, a + k, sizeof x);
+        memcpy(&y, b + k, sizeof y);
+        sum += x * y;
+    }
+    memcpy(parts, &sum, sizeof sum);
+    for (int half = LANES; half; half /= 2)
+        for (int k = 0; k < half; k++) parts[k] += parts[k + half];
+    return parts[0];
+}
+
+typedef struct {
+    vd RL[NODES], RH[NODES], B[ANY(LIMITS)], C[ANY(GOALS)], V[ANY(N)][2], T[ANY(TABLES)][2];
+    vd goals[ANY(GOALS)], scores[ANY(N)];
+    vi open[ANY(LIMITS)];
+} Registers;
+
+static void begin(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
+    for (int k = 0; k < NODES; k++) { r->RL[k] = all(b->root_low[k]); r->RH[k] = all(b->root_high[k]); }
+    for (int j = 0; j < LIMITS; j++) { r->B[j] = all(b->rights[j]); r->open[j] = all_i(0); }
+    memset(counted, 0, LANES * sizeof counted[0]);
+}
+
+/* How much each variable blurs what is left of boxes, and how much each limit and objective counts. */
+static void score(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
+    const double *own[LANES];
+    for (int i = 0; i < N; i++) r->scores[i] = all(0.0);
+    for (int l = 0; l < LANES; l++) {
+        long long pattern = 0;
+        for (int j = 0; j < b->bits; j++) pattern |= (long long)(r->C[j][l] - r->C[j][l] == 0.0) << j;
+        own[l] = b->weights + pattern * b->weights_step;
+    }
+    for (int j = 0; j < LIMITS + GOALS; j++) {
+        vd weight;
+        for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || r->open[j][l] ? own[l][j] : 0.0;
+        for (int i = 0; i < N; i++) r->scores[i] += weight * b->steep[j * N + i];
+        for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
+    }
+    for (int i = 0; i < N; i++) {
+        const vd low = r->V[i][0], high = r->V[i][1];
+        r->scores[i] *= b->spans[i] == 0.0 ? v_log(high / low) : (high - low) / b->spans[i];
+    }
+}
+
+long long contract(const Batch *b) {
+    Registers r;
+    float counted[LANES][b->score_width];
+    const long long columns = N + b->factors;
+    long long kept = 0;
+    begin(b, &r, counted);
+    for (long long first = 0; first < b->count; first += LANES) {
+        const long long left = b->count - first;
+        for (int l = 0; l < LANES; l++) {
+            const long long box = first + (l < left ? l : left - 1);
+            for (int i = 0; i < N; i++) { r.V[i][0][l] = b->low[box * N + i]; r.V[i][1][l] = b->high[box * N + i]; }
+            for (int j = 0; j < GOALS; j++) r.C[j][l] = b->caps[box * b->caps_step + j];
+            load_tables(b, b->cell + box * b->factors, r.T, l);
+        }
+        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.open);
+        dead |= snap(b, r.V);
+        for (int l = 0; l < LANES && l < left; l++) {
+            b->alive[first + l] = !dead[l];
+            for (int j = 0; j < LIMITS; j++) b->open[(first + l) * LIMITS + j] = r.open[j][l] != 0;
+        }
+        if (!any(~dead)) continue;
+        score(b, &r, counted);
+        for (int l = 0; l < LANES && l < left; l++) {
+            if (dead[l]) continue;
+            const long long box = first + l;
+            const int *cell = b->cell + box * b->factors;
+            for (int i = 0; i < N; i++) {
+                b->out_low[kept * N + i] = r.V[i][0][l];
+                b->out_high[kept * N + i] = r.V[i][1][l];
+                b->out_scores[kept * columns + i] = (float)r.scores[i][l];
+            }
+            for (long long j = 0; j < b->goals; j++) {
+                const double bound = b->bounds[box * b->goals + j];
+                const double least = j < GOALS ? r.goals[j][l] : NAN;
+                b->out_bounds[kept * b->goals + j] = bound >= least || least != least ? bound : least;
+            }
+            for (long long f = 0; f < b->factors; f++) {
+                const float *spread = b->spreads[f] + cell[f] * b->score_width;
+                b->out_cell[kept * b->factors + f] = cell[f];
+                b->out_scores[kept * columns + N + f] = dot(counted[l], spread, b->score_width);
+            }
+            b->out_tag[kept++] = b->tag[box];
+        }
+    }
+    return kept;
+}

@@ -1,0 +1,198 @@
+/* Whole subtrees of boxes: tighten, compare with what is known, split, and again. Stands after boxes.c. */
+
+#include <stdlib.h>
+
+typedef struct {
+    long long levels, capacity, columns, known, steps, contracted;
+    const long long *column;
+    const double *plain, *of_cluster, *known_at[2][2], *steps_at, *steps_largest;
+    const int *const *left, *const *right;
+    const double *ranges;
+    int *out_cell;
+    double *out_low, *out_high, *out_bounds;
+    int *out_tag;
+    unsigned char *too_small;
+} Tree;
+
+/* What a design of a box must keep to be of use; whether the box may hold any. */
+static int caps_of(const Tree *t, const double *lower, const int *cell, double *caps) {
+    for (int j = 0; j < GOALS; j++) {
+        caps[j] = t->plain[j];
+        if (t->of_cluster) caps[j] = fmin(caps[j], t->of_cluster[cell[0] * GOALS + j]);
+    }
+    if (t->columns == 2) {
+        const double own[2] = {lower[t->column[0]], lower[t->column[1]]};
+        for (int k = 0; k < 2; k++) {
+            const long long place = above(t->known_at[k][0], t->known, own[1 - k]);
+            if (place) caps[t->column[k]] = fmin(caps[t->column[k]], t->known_at[k][1][place - 1]);
+        }
+        if (t->steps >= 0) {
+            const long long from = above(t->steps_at, t->steps, own[0]);
+            long long first = 0, count = t->steps;
+            while (count > 0) {
+                const long long half = count / 2;
+                const int right = t->steps_largest[first + half] > own[1];
+                first = right ? first + half + 1 : first;
+                count = right ? count - half - 1 : half;
+            }
+            if (from >= first) return 0;
+            caps[t->column[0]] = fmin(caps[t->column[0]], t->steps_at[first - 1]);
+            caps[t->column[1]] = fmin(caps[t->column[1]], t->steps_largest[from]);
+        }
+    }
+    for (int j = 0; j < GOALS; j++) if (lower[j] >= caps[j]) return 0;
+    return 1;
+}
+
+/* Where a variable of a box is cut: the end of the first half and the start of the second. */
+static void middle_of(const Batch *b, int i, double low, double high, double *end, double *start) {
+    const long long size = b->grid_sizes[i];
+    if (size) {
+        const double *grid = b->grids[i];
+        const long long first = not_below(grid, size, end_below(low, b->snap, b->pinned));
+        const long long last = above(grid, size, end_above(high, b->snap, b->pinned)) - 1;
+        const long long cut = (first + last) / 2;
+        *end = grid[cut];
+        *start = grid[cut + 1 < size ? cut + 1 : size - 1];
+    } else {
+        *end = *start = low > 0.0 ? sqrt(low * high) : 0.5 * (low + high);
+    }
+}
+
+typedef struct { double low[ANY(N)], high[ANY(N)], bounds[ANY(GOALS)]; int tag, level; } Box;
+
+INLINE void put(const Batch *b, Tree *t, long long place, const Box *box, const int *cell, int too_small) {
+    memcpy(t->out_cell + place * b->factors, cell, b->factors * sizeof *cell);
+    memcpy(t->out_low + place * N, box->low, N * sizeof(double));
+    memcpy(t->out_high + place * N, box->high, N * sizeof(double));
+    memcpy(t->out_bounds + place * GOALS, box->bounds, GOALS * sizeof(double));
+    t->out_tag[place] = box->tag;
+    t->too_small[place] = (unsigned char)too_small;
+}
+
+/* What is splittable of a box is split where the scores say; 0 where nothing is. */
+static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell, const float *scores,
+                  Box *second, int *second_cell, Box *first, int *first_cell) {
+    double width[ANY(N)], best = -1.0;
+    int choice = -1, flat = 1;
+    for (int i = 0; i < N; i++) {
+        const double low = box->low[i], high = box->high[i], size = fmax(fabs(low), fabs(high));
+        const double floor = b->grid_sizes[i] ? b->snap * size : 1e-7 * fmax(size, 1e-9 * t->ranges[i]);
+        const double own = b->spans[i] == 0.0 ? log(high / low) : (high - low) / b->spans[i];
+        width[i] = high - low > floor ? fmax(own, 1e-12) : 0.0;
+        if (width[i] > 0.0) {
+            flat &= !(scores[i] > 1e-9);
+            if (scores[i] > best) { best = scores[i]; choice = i; }
+        }
+    }
+    for (int f = 0; f < b->factors; f++) {
+        if (t->left[f][cell[f]] < 0) continue;
+        flat &= !(scores[N + f] > 1e-9);
+        if (scores[N + f] > best) { best = scores[N + f]; choice = N + f; }
+    }
+    if (flat) {
+        best = -1.0;
+        choice = -1;
+        for (int i = 0; i < N; i++) if (width[i] > best && width[i] > 0.0) { best = width[i]; choice = i; }
+        for (int f = 0; f < b->factors; f++)
+            if (t->left[f][cell[f]] >= 0 && 1e3 > best) { best = 1e3; choice = N + f; }
+    }
+    if (choice < 0) return 0;
+    *first = *second = *box;
+    memcpy(first_cell, cell, b->factors * sizeof *cell);
+    memcpy(second_cell, cell, b->factors * sizeof *cell);
+    if (choice < N) {
+        middle_of(b, choice, box->low[choice], box->high[choice], &first->high[choice], &second->low[choice]);
+    } else {
+        first_cell[choice - N] = t->left[choice - N][cell[choice - N]];
+        second_cell[choice - N] = t->right[choice - N][cell[choice - N]];
+    }
+    return 1;
+}
+
+/* Returns how many boxes come back, -1 where there is no memory. */
+long long grow(const Batch *b, Tree *t) {
+    Registers r;
+    const int factors = (int)b->factors;
+    const long long most = b->count + (t->levels + 2) * 2 * LANES;
+    Box *stack = malloc(most * sizeof *stack);
+    int *cells = malloc(most * ANY(factors) * sizeof *cells);
+    float counted[LANES][b->score_width], scores[N + ANY(factors)];
+    long long waiting = b->count, kept = 0;
+    if (!stack || !cells) { free(stack); free(cells); return -1; }
+    for (long long k = 0; k < b->count; k++) {
+        Box *box = stack + k;
+        memcpy(box->low, b->low + k * N, N * sizeof(double));
+        memcpy(box->high, b->high + k * N, N * sizeof(double));
+        memcpy(box->bounds, b->bounds + k * GOALS, GOALS * sizeof(double));
+        memcpy(cells + k * factors, b->cell + k * factors, factors * sizeof *cells);
+        box->tag = b->tag[k];
+        box->level = 0;
+    }
+    begin(b, &r, counted);
+    while (waiting && kept + waiting + 2 * LANES < t->capacity && waiting + 2 * LANES <= most) {
+        Box taken[LANES];
+        int own_cells[LANES][ANY(factors)];
+        int number = 0;
+        while (number < LANES && waiting) {
+            double caps[ANY(GOALS)];
+            const Box *box = stack + --waiting;
+            const int *cell = cells + waiting * factors;
+            if (!caps_of(t, box->bounds, cell, caps)) continue;
+            taken[number] = *box;
+            memcpy(own_cells[number], cell, factors * sizeof *cell);
+            for (int i = 0; i < N; i++) { r.V[i][0][number] = box->low[i]; r.V[i][1][number] = box->high[i]; }
+            for (int j = 0; j < GOALS; j++) r.C[j][number] = caps[j];
+            load_tables(b, cell, r.T, number++);
+        }
+        if (!number) break;
+        for (int l = number; l < LANES; l++) {
+            for (int i = 0; i < N; i++) { r.V[i][0][l] = r.V[i][0][0]; r.V[i][1][l] = r.V[i][1][0]; }
+            for (int j = 0; j < GOALS; j++) r.C[j][l] = r.C[j][0];
+            for (int i = 0; i < TABLES; i++) { r.T[i][0][l] = r.T[i][0][0]; r.T[i][1][l] = r.T[i][1][0]; }
+        }
+        t->contracted += number;
+        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.open);
+        dead |= snap(b, r.V);
+        if (!any(~dead)) continue;
+        score(b, &r, counted);
+        for (int l = 0; l < number; l++) {
+            if (dead[l]) continue;
+            double caps[ANY(GOALS)];
+            Box *box = taken + l;
+            for (int i = 0; i < N; i++) {
+                box->low[i] = r.V[i][0][l];
+                box->high[i] = r.V[i][1][l];
+                scores[i] = (float)r.scores[i][l];
+            }
+            for (int j = 0; j < GOALS; j++) {
+                const double least = r.goals[j][l];
+                box->bounds[j] = box->bounds[j] >= least || least != least ? box->bounds[j] : least;
+            }
+            if (!caps_of(t, box->bounds, own_cells[l], caps)) continue;
+            for (int f = 0; f < factors; f++)
+                scores[N + f] = dot(counted[l], b->spreads[f] + own_cells[l][f] * b->score_width, b->score_width);
+            box->level++;
+            Box first, second;
+            int first_cell[ANY(factors)], second_cell[ANY(factors)];
+            if (!halved(b, t, box, own_cells[l], scores, &second, second_cell, &first, first_cell)) {
+                put(b, t, kept++, box, own_cells[l], 1);
+            } else if (box->level >= t->levels) {
+                put(b, t, kept++, &first, first_cell, 0);
+                put(b, t, kept++, &second, second_cell, 0);
+            } else {
+                stack[waiting] = second;
+                memcpy(cells + waiting++ * factors, second_cell, factors * sizeof *cells);
+                stack[waiting] = first;
+                memcpy(cells + waiting++ * factors, first_cell, factors * sizeof *cells);
+            }
+        }
+    }
+    while (waiting) {
+        waiting--;
+        put(b, t, kept++, stack + waiting, cells + waiting * factors, 0);
+    }
+    free(stack);
+    free(cells);
+    return kept;
+}
