@@ -11,7 +11,7 @@ import numpy as np
 from synth.count_domain import stated
 from synth.declaration import Variable
 from synth.errors import InputError, RefusedError, at
-from synth.feasibility import Status, holds, residual, utilisation
+from synth.feasibility import Status, utilisation
 from synth.instance import Instance, as_mapping, catalogs_for
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem, load
@@ -30,8 +30,6 @@ WIDER = 100.0  # how much further than it is searched a variable may lie that de
 def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
     """Return what all designs of one question share."""
     model, d = instance.model, instance.model.declaration
-    limit_units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in instance.extra}
-    limit_senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in instance.extra}
     return Frame(
         family=instance.problem.name,
         title=instance.problem.title or instance.problem.name,
@@ -48,8 +46,8 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
         objectives=dict(objectives),
         units=dict(model.units),
         kinds={name: kind for name, _, kind in d.quantities()},
-        limit_units=limit_units,
-        limit_senses=limit_senses,
+        limit_units={x.name: x.unit for x in instance.constraints},
+        limit_senses={x.name: x.sense for x in instance.constraints},
         restated=_restated(instance),
     )
 
@@ -146,26 +144,19 @@ def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequ
     model, own = instance.model, np.asarray(rows, dtype=np.int64)
     count = len(own)
     sides = {n: (value[own], bound[own]) for n, (value, bound) in result.limits.items()}
-    senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in instance.extra}
-    residuals = {x.name: result.residuals[x.name][own] for x in model.limits}
-    void = {x.name: result.void[x.name][own] for x in model.limits}
-    broken = [(x.name, ~result.holds[x.name][own]) for x in model.limits]
+    senses = {x.name: x.sense for x in instance.constraints}
+    residuals = {n: r[own] for n, r in result.residuals.items()}
+    broken = [(x.name, ~result.holds[x.name][own]) for x in instance.constraints]
     with np.errstate(all="ignore"):
-        for extra in instance.extra:
-            name, value = extra.name, result.values[extra.quantity][own]
-            sides[name] = value, np.full(count, extra.limit)
-            residuals[name] = residual(value, extra.limit, extra.sense, 1e-9)
-            broken.append((name, ~np.isnan(residuals[name]) & ~holds(residuals[name], guard=False)))
         used = {
             name: _where_known(utilisation(value, bound, senses[name]), residuals[name])
             for name, (value, bound) in sides.items()
         }
-    lacking = {
-        name: ", ".join(model.data_inputs[k].label for k in model.void_inputs[name])
-        for name, gone in void.items()
-        if gone.any()
-    }
-    unchecked = [(f"not checked: {name}, no {columns}", void[name]) for name, columns in lacking.items()]
+    void = [(x, gone) for x in instance.constraints if (gone := result.void[x.name][own]).any()]
+    lacking = [", ".join(model.data_inputs[k].label for k in x.void_without) for x, _ in void]
+    unchecked = [
+        (f"not checked: {x.name}, no {columns}", gone) for (x, gone), columns in zip(void, lacking, strict=True)
+    ]
     advice = [
         (_message(a.code, a.message, a.source), result.advice[k][own]) for k, a in enumerate(model.declaration.advices)
     ]
@@ -314,7 +305,7 @@ def _evaluate(
     variables = _complete_variables(model, known, derived, data)
     frame = make_frame(instance, chosen_objectives(model, objectives))
     part_rows = {slot: part_row(table, index) for slot, (table, index) in rows.items()}
-    result = instance.model.evaluate(np.asarray(variables, dtype=float)[None, :], data)
+    result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
     refuse_not_computable(model, result, found, variables, data)
     return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found)

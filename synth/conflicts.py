@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from synth.batch_nlp import Tasks
-from synth.feasibility import holds, residual
 from synth.formulation import Formulation
 from synth.units import format_quantity
 
@@ -71,12 +70,9 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
     """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
     result = form.evaluate(variables, combinations)
     rows = []
-    for limit in form.model.limits:
+    for limit in form.constraints:
         missed = np.nan_to_num(result.residuals[limit.name], nan=NEVER) + (NEVER if limit.guard else 0.0)
         rows.append(np.where(result.holds[limit.name], 0.0, missed))
-    for extra in form.instance.extra:
-        missed = residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9)
-        rows.append(np.nan_to_num(np.maximum(missed, 0.0), nan=NEVER))
     worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
     return worst
 
@@ -84,14 +80,10 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
 def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping[str, Any]:
     result = form.evaluate(variables[None, :], np.array([combination]))
     conflicts = []
-    for limit in form.model.limits:
+    for limit in form.constraints:
         value, bound = (float(x[0]) for x in result.limits[limit.name])
         if not bool(result.holds[limit.name][0]):
             conflicts.append(_conflict(limit.name, limit.sense, value, bound, limit.unit))
-    for extra in form.instance.extra:
-        value = float(result.values[extra.quantity][0])
-        if not holds(residual(value, extra.limit, extra.sense, 1e-9), guard=False):
-            conflicts.append(_conflict(extra.name, extra.sense, value, extra.limit, extra.unit))
     parts, counts, choices = form.instance.describe(combination)
     model = form.model
     nearest = {v.name: format_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
 
 from synth.errors import InputError, UnknownOptionError
+from synth.feasibility import SMALLEST
 from synth.margins import within
 from synth.tables import CODE_OF
 from synth.units import parse_unit, to_si
@@ -207,6 +209,15 @@ class Derived:
     ceiling: float = np.inf
 
 
+class Origin(StrEnum):
+    """Who states a limit."""
+
+    FAMILY = "family"
+    USER = "user"
+    PIN = "pin"  # the user, who fixes a derived quantity
+    RANGE = "range"  # of the family or the user, at a corner of what scatters
+
+
 @dataclass(frozen=True)
 class Limit:
     """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
@@ -220,6 +231,7 @@ class Limit:
     limit: Any
     guard: bool
     scale: float
+    origin: Origin = Origin.FAMILY
 
 
 @dataclass(frozen=True)
@@ -533,7 +545,7 @@ class Declaration:
         if guard and sense == "equal":
             raise DeclarationError(f"{self.problem}: an equality ({name}) cannot be a guard")
         parsed = parse_unit(unit)
-        size = 1e-9 if scale is None else float(to_si(scale, parsed))
+        size = SMALLEST if scale is None else float(to_si(scale, parsed))
         self.limits[name] = Limit(name, sense, unit, text, source, ca.SX(value), ca.SX(limit), guard, size)
 
     def objective(self, name: str, sense: str = "min", default: bool = True, resolution: float | None = None) -> None:

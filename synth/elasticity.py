@@ -68,7 +68,7 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     results: list[dict[str, dict[str, float]]] = [{} for _ in candidates]
     if not candidates:
         return results
-    names = [x.name for x in form.model.limits] + [x.name for x in form.instance.extra]
+    names = [x.name for x in form.constraints]
     combinations = np.array([c.combination for c in candidates])
     start = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
@@ -114,7 +114,7 @@ def optima(
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
     answer = form.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
     data = form.instance.data(combinations)
-    sizes = _sizes(form, form.model.evaluate(start, data)) if sizes is None else sizes
+    sizes = _sizes(form, form.instance.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
     logs = np.array(form.rows().log_cuts, dtype=bool)
     signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
@@ -271,20 +271,15 @@ def _gradient(form: Formulation) -> Any:
 
 def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
     """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
-    return _sizes(form, form.model.evaluate(variables, data)), _bounds(form, variables, data)
-
-
-def _limits(form: Formulation, result: Evaluation) -> list[tuple[Any, Any, str, float]]:
-    """Return both sides of every limit, its sense and the smallest size that counts."""
-    found = [(*result.limits[x.name], x.sense, x.scale) for x in form.model.limits]
-    return [*found, *((result.values[x.quantity], np.array(x.limit), x.sense, 1e-9) for x in form.instance.extra)]
+    return _sizes(form, form.instance.evaluate(variables, data)), _bounds(form, variables, data)
 
 
 def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return the size of every limit as its row measures it (designs, limits)."""
     sizes = np.empty((len(result.feasible), len(form.cuts)))
-    for j, (value, limit, _, scale) in enumerate(_limits(form, result)):
-        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), scale)
+    for j, x in enumerate(form.constraints):
+        value, limit = result.limits[x.name]
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), x.scale)
         sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
     return sizes
 
@@ -305,13 +300,13 @@ def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return which limits that no variable can move are active (designs, limits)."""
     fixed = form.unmoved(gridded=True)
     tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
-    for j, (value, limit, sense, scale) in enumerate(_limits(form, result)):
-        if fixed[j]:
-            tight[:, j] = np.abs(residual(value, limit, sense, scale)) < TIGHT
+    for j in np.flatnonzero(fixed):
+        x = form.constraints[j]
+        tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < TIGHT
     return tight
 
 
 def _speaking_of(form: Formulation, position: int) -> np.ndarray:
     """Return which limits depend on a data input."""
     marked = form.model.program.dependence([form.n + position])
-    return np.array([any(marked[k] for k in (cut.value, cut.limit) if k is not None) for cut in form.cuts], dtype=bool)
+    return np.array([any(marked[k] for k in x.nodes) for x in form.constraints], dtype=bool)

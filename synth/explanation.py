@@ -13,12 +13,14 @@ import casadi as ca
 import numpy as np
 
 from synth.analysis import evaluate, make_design, make_frame, part_row
+from synth.constraint import SIGNS, Constraint
 from synth.deadline import Stopped, until
+from synth.declaration import Origin
 from synth.description import declared_ranges
 from synth.errors import InputError, RefusedError
 from synth.files import frame_csv
 from synth.fired_guards import FiredGuard, columns_of, fired_guards, requirements_of
-from synth.instance import SIGNS, ExtraLimit, Instance, as_mapping, catalogs_for
+from synth.instance import Instance, as_mapping, catalogs_for
 from synth.output_folder import EXPLANATION, save_result
 from synth.posed import nominal, posed
 from synth.problem import DesignProblem, load
@@ -34,6 +36,8 @@ from synth.units import format_quantity, from_si, outward, parse_unit
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from synth.model import Model
 
 GAP = 8e-3  # of the amount by which something must give way
 EFFORT = 100_000  # boxes for each way out
@@ -330,10 +334,10 @@ class _Pin:
     high: float
     unit: str
 
-    def ends(self) -> list[tuple[ExtraLimit, float]]:
+    def ends(self, model: Model) -> list[tuple[Constraint, float]]:
         """Return the limits that take its place where it gives way, each with the way that it gives way."""
         return [
-            (ExtraLimit(f"{self.key}: {self.name} {SIGNS[sense]}", self.name, sense, bound, self.unit), sign)
+            (model.constraint_on(self.name, sense, bound, f"{self.key}: {self.name} {SIGNS[sense]}"), sign)
             for sense, bound, sign in (("at_most", self.high, 1.0), ("at_least", self.low, -1.0))
         ]
 
@@ -377,25 +381,21 @@ class _Question:
         model, d = self.instance.model, self.instance.model.declaration
         self.names = d.names()
         variables = {v.name for v in model.variables}
-        self.own = list(self.instance.extra)
-        self.bounded = dict[str, Any]()
-        among = list(model.quantity_sx)
-        for name, conditions in model.by_name(self.instance.asked_limits, "limits", among, "a quantity").items():
-            if name in d.counts:
-                self.bounded[name] = conditions
-            elif name in variables:
-                self.own += self.instance.conditions(name, conditions)
+        # What is asked of counts bounds them here as well; limits on variables may give way.
+        self.own = [*self.instance.own, *(x for x in self.instance.bounding if x.quantity in variables)]
+        self.bounded = {name: asked for name, asked in self.instance.limited.items() if name in d.counts}
         kept = model.by_name(self.spec["fix"], "fix", list(self.names.values()), "a name")
         self.fix = {name: value for name, value in kept.items() if name not in d.derived}
         self.parts = model.by_name(self.spec["parts"], "parts", list(d.slots), "a slot")
         self.pins = self._pins(kept)
-        self.limits = [x.name for x in model.limits] + [x.name for x in self.own]
-        self.senses = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in self.own}
-        self.units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in self.own}
-        self.guards = [x.name for x in model.limits if x.guard]
+        self.constraints = (*model.constraints, *self.own)
+        self.limits = [x.name for x in self.constraints]
+        self.senses = {x.name: x.sense for x in self.constraints}
+        self.units = {x.name: x.unit for x in self.constraints}
+        self.guards = [x.name for x in model.constraints if x.guard]
         # A guard, an equality and a limit of zero do not give way.
         firm = {x.name for x in model.limits if x.guard or x.sense == "equal" or x.limit.is_zero()}
-        firm |= {x.name for x in self.own if x.sense == "equal" or x.limit == 0}
+        firm |= {x.name for x in self.own if x.sense == "equal" or x.bound == 0}
         self.giving = [name for name in self.limits if name not in firm]
         slots = d.slots.values()
         self.columns = {f"{part.slot}.{key}": part for part in slots for key in part.columns}
@@ -416,7 +416,7 @@ class _Question:
                 value = float(self.instance.lower[k])
                 found[variable.name] = _Pin(variable.name, "fix", value, value, variable.unit)
         # A set of values is kept as it is: between them lies nothing that would be nearer.
-        sets = {name for name, _ in self.instance._count_sets}
+        sets = {name for name, _ in self.instance.count_sets}
         for name, left in self.instance.selection.counts.items():
             if name not in sets and len(left) < len(model.declaration.counts[name].values):
                 found[name] = _Pin(name, "fix" if name in fix else "limits", float(left[0]), float(left[-1]), "-")
@@ -449,8 +449,8 @@ class _Question:
         left = self.deadline - time.monotonic()
         if left <= 0:
             raise Stopped("time limit")
-        ends = [end for pin in pins for end in pin.ends()]
-        give = {**give, **{(LIMIT, x.name): sign for x, sign in ends if x.limit}}
+        ends = [end for pin in pins for end in pin.ends(self.instance.model)]
+        give = {**give, **{(LIMIT, x.name): sign for x, sign in ends if x.bound}}
         limits = [*(self.limits if kept is None else kept), *(x.name for x, _ in ends)]
         relaxed = Relaxed(self.instance, [*self.own, *(x for x, _ in ends)], give, limits, rooms, free)
         loose = {*free, *(pin.name for pin in pins)}
@@ -504,8 +504,8 @@ class _Question:
         """Return the requirements or part columns (``slot.column``) on which some of the limits depend."""
         model = self.instance.model
         kinds = {REQUIREMENT: "requirement", COLUMN: "part"}
-        own = {x.name: model.quantity_node[x.quantity] for x in self.own}
-        nodes = [k for x in limits for k in ([own[x]] if x in own else model.limit_nodes[x])]
+        sides = {x.name: x.nodes for x in self.constraints}
+        nodes = [k for x in limits for k in sides[x]]
         names = []
         for k, entry in enumerate(model.data_inputs):
             if entry.kind != kinds[kind] or (kind == REQUIREMENT and not self.instance.requirements[entry.name] > 0):
@@ -635,7 +635,7 @@ class _Question:
             words = f"{name} {needed} instead of {format_quantity(given, unit)} ({change})"
         elif kind == LIMIT:
             unit, own = self.units[name], next((x for x in self.own if x.name == name), None)
-            given = own.limit if own is not None else self._as_asked(found.design).limits[name][1]
+            given = own.bound if own is not None else self._as_asked(found.design).limits[name][1]
             factor = 1 / factor if given < 0 else factor
             if own is None:
                 needed = _rounded(given * factor, unit, "at_least" if up else "at_most")
@@ -778,10 +778,10 @@ class _Question:
             texts = tuple(outward(needed, r.unit, up=sign > 0))
             changes.append(_Change(REQUIREMENT, name, name, texts, format_quantity(given, r.unit)))
         for x in (x for x in self.own if x.name in own):
-            factor = math.exp(self.sign(x.name) * found.amount * (1 if x.limit > 0 else -1))
-            texts = tuple(outward(x.limit * factor, x.unit, up=x.sense == "at_most"))
+            factor = math.exp(self.sign(x.name) * found.amount * (1 if x.bound > 0 else -1))
+            texts = tuple(outward(x.bound * factor, x.unit, up=x.sense == "at_most"))
             shown = f"limit {x.quantity} {SIGNS[x.sense]}"
-            changes.append(_Change(LIMIT, x.name, shown, texts, format_quantity(x.limit, x.unit)))
+            changes.append(_Change(LIMIT, x.name, shown, texts, format_quantity(x.bound, x.unit)))
         for pin in self.pins.values():
             value = found.design.values[pin.name]
             if not pin.low <= value <= pin.high:
@@ -830,8 +830,8 @@ class _Question:
         entries: dict[str, Any] = {}
         for quantity in sorted(quantities):
             word = self._word("limits", quantity)
-            whole = self.instance.conditions(quantity, self.spec["limits"][word])
-            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or format_quantity(x.limit, x.unit, None)}" for x in whole]
+            whole = [x for x in self.own if x.quantity == quantity and x.origin is Origin.USER]
+            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or format_quantity(x.bound, x.unit, None)}" for x in whole]
             entries[word] = stated[0] if len(stated) == 1 else stated
         return {"limits": entries} if entries else {}
 
@@ -885,7 +885,7 @@ class _Question:
         instance = self.instance
         number = combination_of(instance, found)
         variables = np.array([[found.values[v.name] for v in instance.model.variables]])
-        result = instance.model.evaluate(variables, instance.data(np.array([number])))
+        result = instance.evaluate(variables, instance.data(np.array([number])))
         rows = {slot: part_row(table, row) for slot, (table, row) in instance.describe(number)[0].items()}
         return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, found.choices)
 

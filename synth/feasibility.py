@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 TOLERANCE = 1e-6
+SMALLEST = 1e-9  # SI; smallest size that counts, of limits of which none is told
 
 
 class Status(StrEnum):

@@ -121,7 +121,7 @@ class _Refused:
 
     def _places(self, instance: Instance) -> Iterator[dict[str, float]]:
         """Yield the values of all symbols: once, or for every row, count or choice that is offered."""
-        known = instance._symbol_values()
+        known = instance.symbol_values()
         if self.slot is not None:
             columns = instance.model.declaration.slots[self.name].columns
             for k in range(len(self.slot.rows)):

@@ -212,9 +212,9 @@ class Formulation:
         self.goals = [
             Goal(model.quantity_node[name], 1 if sense == "min" else -1) for name, sense in objectives.items()
         ]
-        cuts = [Cut(x.sense, *model.limit_nodes[x.name], x.scale, guard=x.guard) for x in model.limits]
-        cuts += [Cut(x.sense, model.quantity_node[x.quantity], None, 1e-9, x.limit) for x in instance.extra]
-        self.cuts = cuts
+        self.constraints = instance.constraints
+        # All that the search knows of limits is made of these rows, one of each constraint.
+        self.cuts = cuts = [Cut.of(x) for x in self.constraints]
         self.bounds = [cut.bound for cut in cuts]
         # A single objective needs bounds of the next one as well, which settles ties.
         self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
@@ -279,8 +279,7 @@ class Formulation:
         """
         free = self.lower < self.upper if gridded else (self.lower < self.upper) & ~self.gridded
         moving = self.model.program.dependence(np.flatnonzero(free).tolist())
-        sides = [[k for k in (c.value, c.limit) if k is not None] for c in self.cuts]
-        return np.array([not any(moving[k] for k in nodes) for nodes in sides], dtype=bool)
+        return np.array([not any(moving[k] for k in x.nodes) for x in self.constraints], dtype=bool)
 
     # -- boxes ---------------------------------------------------------------------------------
 
@@ -533,7 +532,7 @@ class Formulation:
 
     def evaluate(self, variables: np.ndarray, combinations: np.ndarray) -> Evaluation:
         """Evaluate a batch of designs."""
-        return self.model.evaluate(variables, self.instance.data(np.asarray(combinations)))
+        return self.instance.evaluate(variables, self.instance.data(np.asarray(combinations)))
 
     def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
         """Return those of the points that are feasible, and keep them in the archive."""
@@ -623,7 +622,7 @@ class Formulation:
                 room = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
                 kept = np.True_ if cut.sense == "at_least" else value <= limit + room
                 kept = kept if cut.sense == "at_most" else kept & (value >= limit - room)
-                for k in self.model.void_inputs[self.model.limits[j].name] if j < len(self.model.limits) else ():
+                for k in self.constraints[j].void_without:
                     kept = kept | np.isnan(np.asarray(data[k], dtype=float))
                 keep &= kept
         return keep
@@ -822,9 +821,9 @@ class Formulation:
     def void(self, data: Sequence[Any], count: int) -> np.ndarray:
         """Return which limits do not count for which designs (designs, limits): a column has no value."""
         void = np.zeros((count, len(self.cuts)), dtype=bool)
-        for j, limit in enumerate(self.model.limits):
-            for k in self.model.void_inputs[limit.name]:
-                void[:, j] |= np.isnan(np.asarray(data[k], dtype=float))
+        for j, limit in enumerate(self.constraints):
+            if limit.void_without:
+                void[:, j] = limit.void(data, (count,))
         return void
 
     def solve(

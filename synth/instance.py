@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import difflib
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -16,21 +15,18 @@ import casadi as ca
 import numpy as np
 
 from synth.conditions import may_be_condition, parse_condition
+from synth.constraint import SIGNS, Constraint
 from synth.count_domain import compares, entries, is_list, shown_set, values_of_set
-from synth.declaration import Part, Refusal
+from synth.declaration import Origin, Part, Refusal
 from synth.errors import InputError, RefusedError, at
-from synth.input_limits import INPUT_LIMITS
-from synth.margins import above, within
-from synth.model import Model, part_column_value
+from synth.margins import within
+from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem
 from synth.slot_comparison import SlotComparison, comparisons_of
 from synth.special import expanded
 from synth.tables import Catalogs, Table
 from synth.units import format_quantity, from_si, parse_quantity, parse_unit
-
-SENSES = {"<=": "at_most", ">=": "at_least", "==": "equal", "=": "equal", "<": "at_most", ">": "at_least"}
-SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
-CONDITION = re.compile(r"^\s*(<=|>=|==|=|<|>)\s*(.+)$", re.DOTALL)
+from synth.user_limits import check_number_of_limits, contradict, read_limits
 
 MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
 
@@ -71,17 +67,6 @@ def as_catalogs(spec: Any) -> Catalogs:
             _shipped["shipped"] = Catalogs()
         return _shipped["shipped"]
     return Catalogs(spec)
-
-
-@dataclass(frozen=True)
-class ExtraLimit:
-    """A limit on a named quantity that the user added to this question."""
-
-    name: str
-    quantity: str
-    sense: str
-    limit: float
-    unit: str
 
 
 @dataclass(frozen=True)
@@ -129,13 +114,6 @@ def as_mapping(value: Any, field: str, example: str) -> Mapping[str, Any]:
     return value
 
 
-def check_number_of_limits(limits: Mapping[str, Any]) -> None:
-    """Refuse more limits than a question may have, before any of them is read."""
-    count = sum(len(texts) if is_list(texts) and not isinstance(texts, str) else 1 for texts in limits.values())
-    if count > INPUT_LIMITS.limits:
-        raise InputError("limits", f"{count} limits", f"at most {INPUT_LIMITS.limits}", ("limits",))
-
-
 def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs) -> dict[str, Any]:
     """Return the requirements by public name; values of None count as not given.
 
@@ -174,6 +152,18 @@ class Instance:
         nothing.
     refuse : bool
         False where the family's refusals are to be explained: they are neither raised nor leave out rows.
+
+    Attributes
+    ----------
+    own : list of Constraint
+        What the user limits that designs are told and judged by, beside the limits of the family.
+    bounding : list of Constraint
+        Limits of the user on variables and counts. In a search they are ranges and values left out, so that every
+        design that is looked at keeps them.
+    limited : dict
+        What is asked of quantities under ``limits``, as typed, by public name.
+    count_sets : list
+        The counts of which a set of values is allowed, with the values.
     """
 
     def __init__(
@@ -203,16 +193,16 @@ class Instance:
         self.lower = np.array([v.lower for v in self.model.variables])
         self.upper = np.array([v.upper for v in self.model.variables])
         self.pinned = np.zeros(len(self.model.variables), dtype=bool)
-        self.extra: list[ExtraLimit] = []
+        self.own: list[Constraint] = []
+        self.bounding: list[Constraint] = []
         self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
         self._fixed_discrete: dict[str, Any] = {}
-        self._count_bounds: list[tuple[str, str, float]] = []
-        self._count_sets: list[tuple[str, np.ndarray]] = []
+        self.count_sets: list[tuple[str, np.ndarray]] = []
         check_number_of_limits(self.asked_limits)
         quantities = list(self.model.quantity_sx)
-        for word, conditions in self.model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
-            if restrict or word in d.derived:
-                self._add_limit(word, conditions)
+        self.limited = self.model.by_name(self.asked_limits, "limits", quantities, "a quantity")
+        for name, conditions in self.limited.items():
+            self._add_limit(name, conditions, restrict)
         pinned = as_mapping(fix, "fix", "{'mass': '20 kg'}")
         among = [*quantities, *d.choices, *d.slots]
         kinds = "a variable, count, choice, slot or derived quantity"
@@ -300,7 +290,7 @@ class Instance:
 
     def _refuse_requirements(self) -> None:
         model = self.model
-        known = self._symbol_values()
+        known = self.symbol_values()
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
             if not kinds and self._number(refusal.when, known) > 0.5:
                 raise self._refused(refusal)
@@ -314,7 +304,8 @@ class Instance:
         function, names = made
         return float(function.call([values[name] for name in names])[0])
 
-    def _symbol_values(self) -> dict[str, float]:
+    def symbol_values(self) -> dict[str, float]:
+        """Return the values of the symbols of requirements and fixed rows, in SI."""
         symbols = self.model.requirement_symbols
         return {**{symbols[n]: v for n, v in self.requirements.items()}, **self.row_values}
 
@@ -357,40 +348,47 @@ class Instance:
 
     # -- limits and fix ------------------------------------------------------------------------
 
-    def _add_limit(self, name: str, conditions: Any) -> None:
-        model = self.model
-        unit = model.units[name]
-        for sense, bound, place in read_limits(name, unit, conditions):
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Return all that designs are told and judged by: limits of the family, then those of the user."""
+        return (*self.model.constraints, *self.own)
+
+    def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
+        """Evaluate a batch of designs: quantities, and all ``constraints``.
+
+        Parameters
+        ----------
+        variables : array (batch, variables)
+            SI values in the declared order.
+        data : list of numbers or arrays (batch,)
+            One entry per data input of the model.
+        """
+        return self.model.evaluate(variables, data).also(self.own)
+
+    def _add_limit(self, name: str, conditions: Any, restrict: bool) -> None:
+        for sense, bound, place in read_limits(name, self.model.units[name], conditions):
             with at("limits", name, *place):
-                self._apply_limit(name, unit, sense, bound)
+                limit = self.model.constraint_on(name, sense, bound)
+                if name in self.model.declaration.derived:
+                    self._add(limit)
+                else:
+                    self.bounding.append(limit)
+                    if restrict:
+                        self._bound(limit)
         if self._asks_set(name, conditions):
             with at("limits", name):
                 self._allow(name, conditions, "limits")
-
-    def conditions(self, name: str, texts: Any) -> list[ExtraLimit]:
-        """Return what the user wrote about a quantity as limits."""
-        unit = self.model.units[name]
-        return [
-            ExtraLimit(f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}", name, sense, bound, unit)
-            for sense, bound, _ in read_limits(name, unit, texts)
-        ]
 
     def state_limits_on_unknowns(self, values: Mapping[str, float]) -> None:
         """Let limits on variables and counts, which bound a search, be limits that a given design may miss.
 
         Of a set of allowed values the one nearest to that of the design is the limit.
         """
-        model, quantities = self.model, list(self.model.quantity_sx)
-        for name, texts in model.by_name(self.asked_limits, "limits", quantities, "a quantity").items():
-            if name in model.declaration.derived:
-                continue
-            self.extra += self.conditions(name, texts)
-            if self._asks_set(name, texts):
-                steps = values_of_set(model.declaration.counts[name], texts, "limits")
+        for name in self.limited:
+            self.own += [x for x in self.bounding if x.quantity == name]
+            for steps in (own for count, own in self.count_sets if count == name):
                 nearest = float(steps[np.argmin(np.abs(steps - values[name]))])
-                self.extra.append(
-                    ExtraLimit(f"{name} in {shown_set(steps)}", name, "equal", nearest, model.units[name])
-                )
+                self.own.append(self.model.constraint_on(name, "equal", nearest, f"{name} in {shown_set(steps)}"))
 
     def _asks_set(self, name: str, conditions: Any) -> bool:
         """Tell whether what is asked of a quantity holds a set of allowed values, which only a count can have."""
@@ -404,37 +402,35 @@ class Instance:
         return True
 
     def _allow(self, name: str, values: Any, field: str) -> None:
-        self._count_sets.append((name, values_of_set(self.model.declaration.counts[name], values, field)))
+        self.count_sets.append((name, values_of_set(self.model.declaration.counts[name], values, field)))
 
-    def _apply_limit(self, name: str, unit: str, sense: str, bound: float) -> None:
-        model = self.model
-        variable = next((k for k, v in enumerate(model.variables) if v.name == name), None)
-        if variable is not None:
-            if sense in ("at_most", "equal"):
-                self.upper[variable] = min(self.upper[variable], bound)
-            if sense in ("at_least", "equal"):
-                self.lower[variable] = max(self.lower[variable], bound)
-            if self.lower[variable] > self.upper[variable]:
-                v = model.variables[variable]
-                allowed = f"{format_quantity(v.lower, unit)} to {format_quantity(v.upper, unit)}"
-                raise InputError(
-                    f"limits: {name}", format_quantity(bound, unit), f"limits that leave something of {allowed}"
-                )
-        elif name in model.declaration.counts:
-            self._count_bounds.append((name, sense, bound))
-        else:
-            label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
-            ceiling = model.declaration.derived[name].ceiling
-            if sense != "at_least" and bound > ceiling:
-                raise InputError(
-                    f"limits: {name}", format_quantity(bound, unit), f"at most {format_quantity(ceiling, unit)}"
-                )
-            for other in self.extra:
-                if other.quantity == name and _contradict(other.sense, other.limit, sense, bound):
-                    raise InputError(
-                        f"limits: {name}", f"{other.name} and {label}", "limits that do not exclude each other"
-                    )
-            self.extra.append(ExtraLimit(label, name, sense, bound, unit))
+    def _bound(self, limit: Constraint) -> None:
+        """Let a limit on a variable be an end of its range; counts are left out when they are selected."""
+        variable = next((k for k, v in enumerate(self.model.variables) if v.name == limit.quantity), None)
+        if variable is None:
+            return
+        if limit.sense in ("at_most", "equal"):
+            self.upper[variable] = min(self.upper[variable], limit.bound)
+        if limit.sense in ("at_least", "equal"):
+            self.lower[variable] = max(self.lower[variable], limit.bound)
+        if self.lower[variable] > self.upper[variable]:
+            v = self.model.variables[variable]
+            allowed = f"{format_quantity(v.lower, v.unit)} to {format_quantity(v.upper, v.unit)}"
+            right = f"limits that leave something of {allowed}"
+            raise InputError(f"limits: {v.name}", format_quantity(limit.bound, v.unit), right)
+
+    def _add(self, limit: Constraint) -> None:
+        """Let a limit on a derived quantity be one that designs are judged by."""
+        name, unit = limit.quantity, limit.unit
+        ceiling = self.model.declaration.derived[name].ceiling
+        if limit.sense != "at_least" and limit.bound > ceiling:
+            right = f"at most {format_quantity(ceiling, unit)}"
+            raise InputError(f"limits: {name}", format_quantity(limit.bound, unit), right)
+        for other in self.own:
+            if other.quantity == name and contradict(other.sense, other.bound, limit.sense, limit.bound):
+                right = "limits that do not exclude each other"
+                raise InputError(f"limits: {name}", f"{other.name} and {limit.name}", right)
+        self.own.append(limit)
 
     def _pin(self, name: str, value: Any) -> None:
         model, d = self.model, self.model.declaration
@@ -457,7 +453,7 @@ class Instance:
         if name in d.counts:
             self._fixed_discrete[name] = number_si
         elif name in d.derived:
-            self._apply_limit(name, unit, "equal", number_si)
+            self._add(model.constraint_on(name, "equal", number_si, origin=Origin.PIN))
 
     def _check_range_of_variable(self, k: int, typed: Any, value: float) -> None:
         v = self.model.variables[k]
@@ -567,19 +563,18 @@ class Instance:
         d = self.model.declaration
         for count in d.counts.values():
             values = count.values
-            for name, sense, bound in self._count_bounds:
-                if name == count.name:
-                    values = values[_compare(values, sense, bound)]
-            for name, steps in self._count_sets:
+            bounding = [x for x in self.bounding if x.quantity == count.name]
+            for limit in bounding:
+                values = values[_compare(values, limit.sense, limit.bound)]
+            for name, steps in self.count_sets:
                 if name == count.name:
                     values = values[np.isin(values, steps)]
             if count.name in self._fixed_discrete:
                 values = values[np.abs(values - self._fixed_discrete[count.name]) < 1e-9]
             if not len(values):
                 low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
-                signs = {"at_most": "<=", "at_least": ">=", "equal": "=="}
-                asked = [f"{signs[s]} {b:g}" for n, s, b in self._count_bounds if n == count.name]
-                asked += [f"in {shown_set(steps)}" for n, steps in self._count_sets if n == count.name]
+                asked = [f"{SIGNS[x.sense]} {x.bound:g}" for x in bounding]
+                asked += [f"in {shown_set(steps)}" for n, steps in self.count_sets if n == count.name]
                 if count.name in self._fixed_discrete:
                     asked.append(f"== {self._fixed_discrete[count.name]:g}")
                 expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
@@ -599,7 +594,7 @@ class Instance:
     def _refuse_rows(self) -> None:
         """Leave out rows, counts and choices that a refusal over one of them forbids."""
         model = self.model
-        known = self._symbol_values()
+        known = self.symbol_values()
         self.joint_refusals: list[Any] = []
         for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
             if len(kinds) > 1:
@@ -786,34 +781,6 @@ class Instance:
         return result
 
 
-def read_limits(name: str, unit: str, texts: Any) -> list[tuple[str, float, tuple[int, ...]]]:
-    """Return the comparisons that the user wrote about a quantity: sense, SI value, and the position in a list."""
-    several = is_list(texts)
-    found = list[tuple[str, float, tuple[int, ...]]]()
-    for k, text in enumerate(entries(texts)):
-        if several and not compares(text):
-            continue  # a value of a set
-        place = (k,) if several and not isinstance(texts, str) else ()
-        with at("limits", name, *place):
-            found += [(sense, bound, place) for sense, bound in _read_limit(name, unit, text)]
-    return found
-
-
-def _read_limit(name: str, unit: str, text: Any) -> list[tuple[str, float]]:
-    """Return what a text says of a quantity: sense and SI value of each limit."""
-    label = f"limits: {name}"
-    if isinstance(text, str) and ".." in text:
-        first, last = text.split("..", 1)
-        low, high = parse_quantity(first, unit, label), parse_quantity(last, unit, label)
-        if low > high:
-            raise InputError(label, text, "the smaller value first, for example '200 mm .. 260 mm'")
-        return [("at_least", low), ("at_most", high)]
-    match = CONDITION.match(text) if isinstance(text, str) else None
-    if match is None:
-        raise InputError(label, text, f"a comparison, for example '<= 260 {unit}' or '200 {unit} .. 260 {unit}'")
-    return [(SENSES[match.group(1)], parse_quantity(match.group(2), unit, label))]
-
-
 def number(expression: Any, values: Mapping[str, float]) -> float:
     """Evaluate an expression whose symbols all have values."""
     function, names = numeric(expression)
@@ -824,13 +791,6 @@ def numeric(expression: Any) -> tuple[Any, list[str]]:
     """Return the function that evaluates an expression, and the names of its arguments."""
     symbols = ca.symvar(ca.SX(expression))
     return ca.Function("number", symbols, [ca.SX(expression)]), [str(s) for s in symbols]
-
-
-def _contradict(first: str, one: float, second: str, other: float) -> bool:
-    """Tell whether two limits on one quantity leave nothing between them."""
-    lows = [b for s, b in ((first, one), (second, other)) if s in ("at_least", "equal")]
-    highs = [b for s, b in ((first, one), (second, other)) if s in ("at_most", "equal")]
-    return bool(lows and highs and max(lows) > above(min(highs), 1e-9))
 
 
 def _compare(values: np.ndarray, sense: str, bound: float) -> np.ndarray:

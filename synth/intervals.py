@@ -19,6 +19,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.constraint import Constraint
 from synth.program import OP_SELECT
 
 SLACK = 2e-6
@@ -371,6 +372,13 @@ class Cut:
     scale: float
     bound: float = 0.0
     guard: bool = False
+
+    @staticmethod
+    def of(constraint: Constraint) -> Cut:
+        """Return the row of a constraint."""
+        x = constraint
+        node, bound = (x.bound, 0.0) if isinstance(x.bound, int) else (None, x.bound)
+        return Cut(x.sense, x.value, node, x.scale, bound, x.guard)
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from synth.declaration import Declaration, DeclarationError, Limit, Part, PartColumn, Refusal
+from synth.constraint import SIGNS, Constraint
+from synth.declaration import Declaration, DeclarationError, Limit, Origin, Part, PartColumn, Refusal
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
 from synth.program import Program
 from synth.special import SpecialCall, expanded
+from synth.units import format_quantity
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,39 @@ class Evaluation:
     void: dict[str, np.ndarray]
     advice: dict[int, np.ndarray]
     feasible: np.ndarray
+
+    def also(self, constraints: Sequence[Constraint]) -> Evaluation:
+        """Return what it says with further limits on quantities, which count as those of the family do.
+
+        Where the guards do not hold without which a quantity does not exist, they alone tell why.
+        """
+        if not constraints:
+            return self
+        limits, residuals, held, void = dict(self.limits), dict(self.residuals), dict(self.holds), dict(self.void)
+        feasible = self.feasible.copy()
+        for x in constraints:
+            value = self.values[x.quantity]
+            limits[x.name] = value, np.full(value.shape, float(x.bound))
+            with np.errstate(all="ignore"):
+                residuals[x.name] = residual(value, float(x.bound), x.sense, x.scale)
+            kept = holds(residuals[x.name], x.guard)
+            for guard in x.behind:
+                kept = kept | ~self.holds[guard]
+            held[x.name], void[x.name] = kept, np.zeros(kept.shape, dtype=bool)
+            feasible &= kept
+        return replace(self, limits=limits, residuals=residuals, holds=held, void=void, feasible=feasible)
+
+    def take(self, rows: slice) -> Evaluation:
+        """Return what it says of some of the designs."""
+        return Evaluation(
+            {name: x[rows] for name, x in self.values.items()},
+            {name: (value[rows], bound[rows]) for name, (value, bound) in self.limits.items()},
+            {name: x[rows] for name, x in self.residuals.items()},
+            {name: x[rows] for name, x in self.holds.items()},
+            {name: x[rows] for name, x in self.void.items()},
+            {k: x[rows] for k, x in self.advice.items()},
+            self.feasible[rows],
+        )
 
 
 class Model:
@@ -89,7 +124,8 @@ class Model:
         self.void_inputs = self._void_inputs()
         self.refusal_kinds = [self._refusal_inputs(r.code, r.when) for r in declaration.refusals]
         self._function_cache: dict[Any, Any] = {}
-        self._null_values, self._null_limits = self._behind_guards()
+        self._null_values, behind = self._behind_guards()
+        self.constraints = tuple(self._constraint(x, tuple(behind[x.name])) for x in self.limits)
 
     # -- the trace -----------------------------------------------------------------------------
 
@@ -119,14 +155,19 @@ class Model:
                 raise DeclarationError(f"{self.title}: {label} uses {strange}, which the declaration does not make")
 
     def _void_inputs(self) -> dict[str, list[int]]:
-        """Return, per limit, the optional data inputs that make it void where they have no value."""
+        """Return, per limit, the optional data inputs that make it void where they have no value.
+
+        What a user limits must have a value: such a limit is missed where there is none.
+        """
         first = len(self.variables)
         optional = [first + k for k, i in enumerate(self.data_inputs) if not i.required]
         result: dict[str, list[int]] = {limit.name: [] for limit in self.limits}
         for k in optional:
             marked = self.program.dependence([k])
             for limit in self.limits:
-                if any(marked[n] for n in self.limit_nodes[limit.name]):
+                if limit.origin not in (Origin.USER, Origin.PIN) and any(
+                    marked[n] for n in self.limit_nodes[limit.name]
+                ):
                     result[limit.name].append(k - first)
         return result
 
@@ -157,6 +198,36 @@ class Model:
     def guards_of(self, name: str) -> tuple[str, ...]:
         """Return the guards without which a quantity does not exist."""
         return tuple(self._null_values[name])
+
+    def _constraint(self, limit: Limit, behind: tuple[str, ...]) -> Constraint:
+        value, bound = self.limit_nodes[limit.name]
+        return Constraint(
+            name=limit.name, sense=limit.sense, value=value, bound=bound, unit=limit.unit, scale=limit.scale,
+            guard=limit.guard, origin=limit.origin, void_without=tuple(self.void_inputs[limit.name]), behind=behind,
+        )  # fmt: skip
+
+    def constraint_on(
+        self, quantity: str, sense: str, bound: float, name: str = "", origin: Origin = Origin.USER
+    ) -> Constraint:
+        """Return the limit of a user on a named quantity.
+
+        Parameters
+        ----------
+        quantity : str
+            Its public name.
+        sense : {"at_most", "at_least", "equal"}
+        bound : float
+            SI.
+        name : str
+            As reports call it; by default what a user would type.
+        origin : Origin
+        """
+        unit = self.units[quantity]
+        return Constraint(
+            name=name or f"{quantity} {SIGNS[sense]} {format_quantity(bound, unit, None)}", sense=sense,
+            value=self.quantity_node[quantity], bound=float(bound), unit=unit, origin=origin, quantity=quantity,
+            behind=self.guards_of(quantity),
+        )  # fmt: skip
 
     # -- names ---------------------------------------------------------------------------------
 
@@ -208,7 +279,7 @@ class Model:
     # -- numbers -------------------------------------------------------------------------------
 
     def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
-        """Evaluate a batch of designs.
+        """Evaluate a batch of designs: quantities and the limits of the family (``Instance.evaluate`` has all).
 
         Parameters
         ----------
@@ -228,28 +299,22 @@ class Model:
             values = {name: next(numbers) for name in self.quantity_node}
             limits = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
             advice = {k: next(numbers) > 0.5 for k in range(len(self.advice_nodes))}
-            residuals = {x.name: residual(*limits[x.name], x.sense, x.scale) for x in self.limits}
-            held = {x.name: holds(residuals[x.name], x.guard) for x in self.limits}
-            void = {x.name: self._void(x.name, data, count) for x in self.limits}
+            residuals = {x.name: residual(*limits[x.name], x.sense, x.scale) for x in self.constraints}
+            held = {x.name: holds(residuals[x.name], x.guard) for x in self.constraints}
+            void = {x.name: x.void(data, (count,)) for x in self.constraints}
             for name, guards in self._null_values.items():
                 for guard in guards:
                     values[name] = np.where(held[guard], values[name], np.nan)
             feasible = np.ones(count, dtype=bool)
-            for limit in self.limits:
+            for limit in self.constraints:
                 name = limit.name
-                for guard in self._null_limits[name]:
+                for guard in limit.behind:
                     residuals[name] = np.where(held[guard], residuals[name], np.nan)
                     held[name] = held[name] | ~held[guard]  # the guard alone tells why
                 residuals[name] = np.where(void[name], np.nan, residuals[name])
                 held[name] = held[name] | void[name]
                 feasible &= held[name]
         return Evaluation(values, limits, residuals, held, void, advice, feasible)
-
-    def _void(self, limit: str, data: Sequence[Any], count: int) -> np.ndarray:
-        gone = np.zeros(count, dtype=bool)
-        for k in self.void_inputs[limit]:
-            gone |= np.isnan(np.asarray(data[k], dtype=float))
-        return gone
 
     def refused(self, refusal: Refusal) -> Any:
         """Return the function that evaluates a refusal for batches of inputs."""

@@ -126,7 +126,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> 
         "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
         "ranges": [instance.lower.tolist(), instance.upper.tolist(), bool(instance.grid)],
-        "limits": [repr(x) for x in instance.extra],
+        "limits": [repr(x) for x in instance.own],
         "compared": [str(x) for x in instance.compared],
         "objectives": dict(objectives),
         "seed": seed,

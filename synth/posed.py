@@ -18,17 +18,17 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 
-from synth.declaration import Choice, Declaration, Limit, Part
+from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.description import declared_ranges
-from synth.instance import SIGNS, check_number_of_limits, read_limits
 from synth.problem import DesignProblem
 from synth.scatter import LEAST, MOST, RATE, SLIDING, Asked, Member, Scattered, read_remaining, scattered
 from synth.structure import Shape, classify
-from synth.units import format_quantity
+from synth.user_limits import check_number_of_limits, read_limits
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from synth.constraint import Constraint
     from synth.model import Model
     from synth.results import Design
 
@@ -96,7 +96,7 @@ class RobustProblem(DesignProblem):
             shown = ", ".join(x.shown(p) for x, p in zip(things, position, strict=True) if p is not None)
             name = f"{limit.name} ({shown})"
             if name not in d.limits:
-                d.limits[name] = limit.at(shifted[place], name)
+                d.limits[name] = _posed(limit, shifted[place], name)
         _refuse(d, things, shifted.values())
 
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> Mapping[str, pd.DataFrame] | None:
@@ -112,22 +112,10 @@ class RobustProblem(DesignProblem):
         return self.base.state(spec, design, point)
 
 
-@dataclass(frozen=True)
-class _Limit:
-    """A limit to be posed: one of the family by its name, or one of the user on a quantity."""
-
-    name: str
-    sense: str
-    quantity: str = ""
-    bound: float = 0.0
-    unit: str = ""
-
-    def at(self, d: Declaration, name: str) -> Limit:
-        """Return it as a declaration at a corner has it."""
-        if not self.quantity:
-            return replace(d.limits[self.name], name=name)
-        value = d.derived[self.quantity].sx
-        return Limit(name, self.sense, self.unit, "", "", value, ca.SX(self.bound), False, 1e-9)
+def _posed(limit: Constraint, d: Declaration, name: str) -> Limit:
+    """Return a limit as a declaration at a corner has it."""
+    there = limit.declared(d.derived[limit.quantity].sx) if limit.quantity else d.limits[limit.name]
+    return replace(there, name=name, origin=Origin.RANGE)
 
 
 class _Corners:
@@ -146,32 +134,32 @@ class _Corners:
         self.marked = [self.model.program.dependence(k) for k in self.inputs]
         self.own = self._of_the_user(problem.own_limits)
 
-    def _of_the_user(self, limits: Mapping[str, Any]) -> list[_Limit]:
+    def _of_the_user(self, limits: Mapping[str, Any]) -> list[Constraint]:
         check_number_of_limits(limits)
-        found = []
+        found: list[Constraint] = []
         for word, texts in limits.items():
             name = self.d.names().get(str(word), "")
             if name not in self.d.derived:
                 continue  # bounds of variables and counts; what is unknown is refused elsewhere
             unit = self.d.derived[name].unit
-            for sense, bound, _ in read_limits(name, unit, texts):
-                label = f"{name} {SIGNS[sense]} {format_quantity(bound, unit, None)}"
-                found.append(_Limit(label, sense, name, bound, unit))
+            found += [
+                self.model.constraint_on(name, sense, bound) for sense, bound, _ in read_limits(name, unit, texts)
+            ]
         return found
 
-    def wanted(self) -> list[tuple[_Limit, Position]]:
+    def wanted(self) -> list[tuple[Constraint, Position]]:
         """Return the limits with the positions at which they are posed."""
         found = []
-        own = [(_Limit(x.name, x.sense), self.shapes.limits[x.name], x.sense) for x in self.model.limits]
         # The shape of a limit is turned already so that small is good; that of a quantity is not.
-        own += [(x, self.shapes.quantities[x.quantity], x.sense) for x in self.own]
-        for limit, shape, sense in own:
-            if sense == "equal":
+        for limit in (*self.model.constraints, *self.own):
+            if limit.sense == "equal":
                 continue
-            nodes = [self.model.quantity_node[limit.quantity]] if limit.quantity else self.model.limit_nodes[limit.name]
-            turned = -1 if limit.quantity and sense == "at_least" else 1
+            on_quantity = bool(limit.quantity)
+            shape = self.shapes.quantities[limit.quantity] if on_quantity else self.shapes.limits[limit.name]
+            turned = -1 if on_quantity and limit.sense == "at_least" else 1
             ends = [
-                self._ends(j, shape, any(self.marked[j][k] for k in nodes), turned) for j in range(len(self.things))
+                self._ends(j, shape, any(self.marked[j][k] for k in limit.nodes), turned)
+                for j in range(len(self.things))
             ]
             if all(e == (None,) for e in ends):
                 continue

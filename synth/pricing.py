@@ -362,7 +362,7 @@ class _Case:
                 "" if self.again.instance.requirements[move.name] else f"{move.name} is 0: there is no per cent of it"
             )
         if move.kind == "range":
-            limit = self.again.ranges[move.position][1].limit
+            limit = self.again.ranges[move.position][1].bound
             return "" if limit else f"the limit {move.name} is 0: there is no per cent of it"
         void = bool(self.again.form.void(self.again.instance.data(np.array([self.own])), 1)[0, move.position])
         if void or math.isfinite(float(self.best.limits[0, move.position])):

@@ -1,6 +1,7 @@
 """A tree of boxes that proves that some regions of the objectives hold no feasible design.
 
-The tree belongs to ``verify`` and shares no code with the search. A node is a box of everything that is open: a
+The tree belongs to ``verify`` and shares no code with the search; limits are read from the declaration once more, as
+``synth.verify`` tells. A node is a box of everything that is open: a
 range of each variable, of each count and choice, a cluster of rows per slot, and a cluster of regions. The rows of
 a slot are arranged once as a tree over the columns that the question uses, so that one node can speak of thousands
 of combinations. Boxes whose enclosures (``synth.enclosure``) break a limit or miss every region are dead; the
@@ -38,6 +39,7 @@ SNAP = 1e-9  # relative distance within which a makeable value or a row counts a
 THIN = 1e-9  # relative width below which a variable is not split any more
 ROW_TOLERANCE = 1.01 * TOLERANCE
 GUARD_TOLERANCE = 1e-12  # for rounding alone: a guard has no tolerance
+NO_SCALE = 1e-9  # of limits that the user added
 FAR = 1e3
 TINY = 1e-100
 TRIES = 4  # designs in the middle of boxes that are looked at in each round
@@ -233,7 +235,7 @@ class ProofTree:
         model = instance.model
         sides: list[Any] = [model.quantity_sx[name] for name in objectives]
         sides += [side for limit in model.limits for side in (limit.value, limit.limit)]
-        sides += [model.quantity_sx[extra.quantity] for extra in instance.extra]
+        sides += [model.quantity_sx[x.quantity] for x in instance.own]
         sides += [refusal.when for refusal in instance.joint_refusals]
         self.program = Program(model.inputs, sides, model.calls)
         self._used = set(self.program.needed(self.program.outputs))
@@ -318,8 +320,8 @@ class ProofTree:
             if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
                 void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
                 self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))
-        for extra in self.instance.extra:
-            self._limits.append(LimitSides(next(outputs), float(extra.limit), extra.sense, 1e-9))
+        for x in self.instance.own:
+            self._limits.append(LimitSides(next(outputs), float(x.bound), x.sense, NO_SCALE))
         self._refusals = list(outputs)
 
     def _in_order(self) -> list[int]:

@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from synth.enclosure import ZERO, Enclosed, Encloser, Pair, Slopes
-from synth.feasibility import TOLERANCE, holds, residual, utilisation
+from synth.feasibility import TOLERANCE, holds, utilisation
 from synth.instance import Instance
 from synth.model import part_column_value
 from synth.problem import DesignProblem
@@ -32,19 +32,6 @@ PROVEN, BOUNDED, SAMPLED = "proven", "bounded", "sampled"
 PARTS = 48  # boxes that a range is cut into where a limit is not monotone
 STEEP = 1e-12  # a derivative this small may have the wrong sign by rounding
 BATCH = 2**15  # points evaluated at once
-
-
-@dataclass(frozen=True)
-class Watched:
-    """A limit that is to hold over the range: its sides as nodes of the program, or a number on the right."""
-
-    name: str
-    sense: str
-    value: int
-    limit: int | float
-    scale: float
-    guard: bool
-    unit: str
 
 
 class Rater:
@@ -84,17 +71,7 @@ class Rater:
         known = self._known()
         moving = [(j, m, known[m.key]) for j, x in enumerate(self.things) for m in x.members if m.key in known]
         self.moving: list[tuple[int, Member, int]] = moving  # thing, member, number of the input
-        self.limits = [
-            Watched(x.name, x.sense, *self.model.limit_nodes[x.name], x.scale, x.guard, x.unit)
-            for x in self.model.limits
-            if x.sense != "equal"
-        ]
-        self.limits += [
-            Watched(x.name, x.sense, self.model.quantity_node[x.quantity], x.limit, 1e-9, False, x.unit)
-            for x in self.instance.extra
-            if x.sense != "equal"
-        ]
-        self._quantity = {x.name: x.quantity for x in self.instance.extra}
+        self.limits = [x for x in self.instance.constraints if x.sense != "equal"]
         count = len(self.things)
         self.corners = np.array(list(product((0.0, 1.0), repeat=count)))
         self.samples = _sobol(count, asked.samples, asked.seed)
@@ -102,9 +79,7 @@ class Rater:
         self._depends = program.dependence([k for _, _, k in self.moving])
         # What a limit depends on, per thing.
         marked = [program.dependence([k for i, _, k in self.moving if i == j]) for j in range(count)]
-        self.matters = {
-            x.name: [bool(m[x.value] or (isinstance(x.limit, int) and m[x.limit])) for m in marked] for x in self.limits
-        }
+        self.matters = {x.name: [any(bool(m[k]) for k in x.nodes) for m in marked] for x in self.limits}
 
     def _known(self) -> dict[tuple[str, str, str], int]:
         """Return the numbers of the inputs of the program that may move."""
@@ -211,15 +186,8 @@ class Rater:
 
     def sides(self, design: Design, positions: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return both sides of every limit at positions of the range."""
-        result = self.model.evaluate(*self._inputs(design, positions))
-        count = len(positions)
-        found = []
-        for x in self.limits:
-            if x.name in self._quantity:
-                found.append((result.values[self._quantity[x.name]], np.full(count, float(x.limit))))
-            else:
-                found.append(result.limits[x.name])
-        return found
+        result = self.instance.evaluate(*self._inputs(design, positions))
+        return [result.limits[x.name] for x in self.limits]
 
     def residuals(self, design: Design, positions: np.ndarray) -> np.ndarray:
         """Return residuals (limits, positions): infinite where not met at all, minus infinite where void."""
@@ -228,16 +196,11 @@ class Rater:
         )
 
     def _residuals(self, design: Design, positions: np.ndarray) -> np.ndarray:
-        result = self.model.evaluate(*self._inputs(design, positions))
+        result = self.instance.evaluate(*self._inputs(design, positions))
         rows = []
         for x in self.limits:
-            if x.name in self._quantity:
-                with np.errstate(all="ignore"):
-                    r = residual(result.values[self._quantity[x.name]], float(x.limit), x.sense, x.scale)
-                rows.append(np.where(np.isnan(r), np.inf, r))
-            else:
-                r, held = result.residuals[x.name], result.holds[x.name]
-                rows.append(np.where(np.isnan(r), np.where(held, -np.inf, np.inf), r))
+            r, held = result.residuals[x.name], result.holds[x.name]
+            rows.append(np.where(np.isnan(r), np.where(held, -np.inf, np.inf), r))
         return np.array(rows).reshape(len(self.limits), len(positions))
 
     def at(self, design: Design, position: np.ndarray, limit: str) -> dict[str, float]:
@@ -338,16 +301,15 @@ class Rater:
         """Return both sides of limits over a part of the range, with their slopes."""
         program = self.model.program
         inputs, reach = self._leaves(design, box)
-        wanted = [n for j in limits for n in (self.limits[j].value, self.limits[j].limit) if isinstance(n, int)]
+        wanted = [n for j in limits for n in self.limits[j].nodes]
         encloser = Encloser(Tape(), program)
         found = encloser.run(program.nodes, program.needed(wanted), inputs)
         result = {}
         for j in limits:
             x = self.limits[j]
-            sides = [found[n] if isinstance(n, int) else Enclosed.constant(float(n)) for n in (x.value, x.limit)]
-            nodes = [n for n in (x.value, x.limit) if isinstance(n, int)]
+            sides = [found[n] if isinstance(n, int) else Enclosed.constant(float(n)) for n in (x.value, x.bound)]
             small, large = sides if x.sense == "at_most" else sides[::-1]
-            result[j] = _Sides(encloser, small, large, self._smooth(nodes, found), reach)
+            result[j] = _Sides(encloser, small, large, self._smooth(x.nodes, found), reach)
         return result
 
     def _smooth(self, nodes: Sequence[int], found: Mapping[int, Enclosed]) -> bool:

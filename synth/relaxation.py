@@ -14,9 +14,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.constraint import Constraint
 from synth.declaration import Limit, Objective, Variable
+from synth.feasibility import SMALLEST
 from synth.fired_guards import wanted
-from synth.instance import ExtraLimit, Instance
+from synth.instance import Instance
 from synth.model import Model
 from synth.problem import DesignProblem
 from synth.slot_comparison import SlotComparison
@@ -35,7 +37,7 @@ class Relaxed(DesignProblem):
     ----------
     instance : Instance
         The question.
-    own : sequence of ExtraLimit
+    own : sequence of Constraint
         The user's own limits on quantities, which become limits like those of the family.
     give : mapping
         (kind, name) of a requirement, limit or part column (``slot.column``) -> 1 or -1, upwards or downwards.
@@ -50,7 +52,7 @@ class Relaxed(DesignProblem):
     def __init__(
         self,
         instance: Instance,
-        own: Sequence[ExtraLimit],
+        own: Sequence[Constraint],
         give: Mapping[tuple[str, str], float],
         kept: Collection[str],
         rooms: Mapping[str, float] | None = None,
@@ -74,7 +76,7 @@ class Relaxed(DesignProblem):
             AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
         )
         before, after = self._moved_inputs(amount.sx)
-        negative = {x.name for x in self._own if x.limit < 0}
+        negative = {x.name for x in self._own if x.bound < 0}
 
         def moved(expression: Any) -> Any:
             return ca.substitute([ca.SX(expression)], before, after)[0] if before else expression
@@ -92,10 +94,7 @@ class Relaxed(DesignProblem):
         target.derived = {name: replace(q, sx=moved(q.sx)) for name, q in source.derived.items()}
         quantities = {**original.quantity_sx, **{name: q.sx for name, q in target.derived.items()}}
         limits = [replace(x, value=moved(x.value), limit=moved(x.limit)) for x in source.limits.values()]
-        limits += [
-            Limit(x.name, x.sense, x.unit, "", "", quantities[x.quantity], ca.SX(x.limit), False, 1e-9)
-            for x in self._own
-        ]
+        limits += [x.declared(quantities[x.quantity]) for x in self._own]
         target.limits = {x.name: loosened(x) for x in limits if x.guard or x.name in self._kept}
         # What is refused for a requirement that moves is refused where it has moved to: that is a limit.
         target.refusals = []
@@ -109,7 +108,7 @@ class Relaxed(DesignProblem):
             for k, pair in enumerate(sides):
                 name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
                 value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
-                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", value, bound, False, 1e-9)
+                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", value, bound, False, SMALLEST)
         # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
         rules = zip(self._instance.compared, source.refusals[own:], strict=True)
         target.refusals += [refusal for rule, refusal in rules if rule.slot not in self._free]

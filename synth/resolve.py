@@ -10,11 +10,12 @@ import numpy as np
 
 from synth.analysis import with_ties
 from synth.batch_nlp import MISSED, Solutions
+from synth.constraint import Constraint
 from synth.elasticity import held, requirement_positions, sides
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.formulation import Formulation
-from synth.instance import ExtraLimit, Instance
+from synth.instance import Instance
 from synth.question import combination_of
 from synth.results import ParetoFront
 
@@ -54,7 +55,7 @@ class Resolver:
         self.logs = np.array(self.form.rows().log_cuts, dtype=bool)
         self.fixed = self.form.unmoved(gridded=True)
         self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.cuts])
-        self.limit_names = [x.name for x in instance.model.limits] + [x.name for x in instance.extra]
+        self.limit_names = [x.name for x in instance.constraints]
         self.ranges = self._ranges()
         self.positions = requirement_positions(self.form)
         self.known = np.unique([combination_of(instance, d) for d in front.designs])
@@ -67,22 +68,17 @@ class Resolver:
         self.limit_of = np.array([m.position if m.kind == "limit" else -1 for m in self.moves])
         self.range_of = np.array([m.position if m.kind == "range" else -1 for m in self.moves])
 
-    def _ranges(self) -> list[tuple[int, ExtraLimit]]:
+    def _ranges(self) -> list[tuple[int, Constraint]]:
         """Return the limits that the user put on sizes, each with the number of the variable."""
-        model, found = self.instance.model, list[tuple[int, ExtraLimit]]()
-        among = {v.name: k for k, v in enumerate(model.variables)}
-        asked = model.by_name(self.instance.asked_limits, "limits", list(model.quantity_sx), "a quantity")
-        for name, texts in asked.items():
-            if name in among:
-                found += [(among[name], x) for x in self.instance.conditions(name, texts)]
-        return found
+        among = {v.name: k for k, v in enumerate(self.instance.model.variables)}
+        return [(among[x.quantity], x) for x in self.instance.bounding if x.quantity in among]
 
     def holds_range(self, number: int) -> tuple[bool, bool]:
         """Tell whether a limit on a size is the lower, and the upper, end of its range."""
         k, x = self.ranges[number]
         return (
-            x.sense != "at_most" and bool(x.limit >= self.form.lower[k]),
-            x.sense != "at_least" and bool(x.limit <= self.form.upper[k]),
+            x.sense != "at_most" and bool(x.bound >= self.form.lower[k]),
+            x.sense != "at_least" and bool(x.bound <= self.form.upper[k]),
         )
 
     def _ends(self, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -92,12 +88,12 @@ class Resolver:
         for number, (k, x) in enumerate(self.ranges):
             rows = np.flatnonzero((moves >= 0) & (self.range_of[moves] == number))
             others = [y for n, (j, y) in enumerate(self.ranges) if j == k and n != number]
-            moved = x.limit * self.factors[moves[rows]]
+            moved = x.bound * self.factors[moves[rows]]
             if x.sense != "at_most":
-                least = max([variables[k].lower, *(y.limit for y in others if y.sense != "at_most")])
+                least = max([variables[k].lower, *(y.bound for y in others if y.sense != "at_most")])
                 low[rows, k] = np.maximum(moved, least)
             if x.sense != "at_least":
-                most = min([variables[k].upper, *(y.limit for y in others if y.sense != "at_least")])
+                most = min([variables[k].upper, *(y.bound for y in others if y.sense != "at_least")])
                 high[rows, k] = np.minimum(moved, most)
         return low, high
 
@@ -197,15 +193,13 @@ class Resolver:
         if not self.fixed.any():
             return broken
         form = self.form
-        result = form.model.evaluate(points, data)
-        void = form.void(data, len(moves))
-        found = [(*result.limits[x.name], x.sense, x.scale, x.guard) for x in form.model.limits]
-        found += [(result.values[x.quantity], np.array(x.limit), x.sense, 1e-9, False) for x in form.instance.extra]
+        result = form.instance.evaluate(points, data)
         for j in np.flatnonzero(self.fixed):
-            value, limit, sense, scale, guard = found[j]
+            x = form.constraints[j]
+            value, limit = result.limits[x.name]
             factor = np.where((moves >= 0) & (self.limit_of[moves] == j), self.factors[moves], 1.0)
             with np.errstate(all="ignore"):
-                kept = holds(residual(value, limit * factor, sense, scale), guard) | void[:, j]
+                kept = holds(residual(value, limit * factor, x.sense, x.scale), x.guard) | result.void[x.name]
             broken[~kept & (broken < 0)] = j
         return broken
 

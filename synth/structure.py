@@ -152,8 +152,8 @@ def _structure(analysis: _Analysis) -> Structure:
     nodes = tuple(analysis.shape(term, [k]) for k, term in enumerate(analysis.terms))
     quantities = {name: _worded(nodes[k], named) for name, k in model.quantity_node.items()}
     limits, objectives = dict[str, Shape](), dict[str, Shape]()
-    for limit in model.limits:
-        sides = model.limit_nodes[limit.name]
+    for limit in model.constraints:
+        sides = limit.nodes
         shape = analysis.shape(analysis.quotient(*(sides if limit.sense != "at_least" else reversed(sides))), sides)
         # A side that can be zero has no logarithm there.
         shape = replace(shape, nonzero=all(nodes[k].nonzero for k in sides))
@@ -743,7 +743,7 @@ def _feasible(
     zero and which node is larger than another one.
     """
     program = model.program
-    limits = [(x, *model.limit_nodes[x.name]) for x in model.limits if not model.void_inputs[x.name]]
+    limits = [x for x in model.constraints if not x.void_without]
     above_zero: set[int] = set()
     larger: set[tuple[int, int]] = set()
     natural: list[Ends] = []
@@ -751,7 +751,8 @@ def _feasible(
         natural.append(_natural(program, node, natural, low, high))
     a, b = [x for x, _ in natural], [y for _, y in natural]
     for _ in range(SWEEPS):
-        for limit, value, bound in limits:
+        for limit in limits:
+            value, bound = limit.nodes
             if limit.sense in ("at_most", "equal"):
                 _order(value, bound, limit.scale, limit.guard, a, b, above_zero, larger)
             if limit.sense in ("at_least", "equal"):

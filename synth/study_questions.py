@@ -12,13 +12,14 @@ from synth import scatter
 from synth.analysis import chosen_objectives
 from synth.count_domain import entries
 from synth.errors import InputError
-from synth.instance import SENSES, catalogs_for
+from synth.instance import catalogs_for
 from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.rating import Rater
 from synth.results import Design
 from synth.search import Question, pose
 from synth.tables import Catalogs
+from synth.user_limits import SENSES
 from synth.vary import Value, Varied, read_vary
 
 

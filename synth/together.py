@@ -115,7 +115,7 @@ def alike(question: Question) -> tuple[Any, ...]:
         instance.lower.tobytes(),
         instance.upper.tobytes(),
         instance.pinned.tobytes(),
-        tuple(instance.extra),
+        tuple(instance.own),
         tuple((s.slot, tuple(s.table.hashes[int(r)] for r in s.rows)) for s in selection.slots),
         tuple((n, v.tobytes()) for n, v in (*selection.counts.items(), *selection.choices.items())),
         tuple(question.chosen.items()),

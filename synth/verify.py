@@ -3,6 +3,10 @@
 Nothing here is shared with the search. The designs are evaluated by CasADi on the written-out formulas, not by the
 generated evaluator of the model; the claim is proven again by a tree of its own (``synth.prooftree``). Elasticities,
 statistics and explanations are only covered by the checksum of the file.
+
+On purpose limits are read a second time, here and in ``synth.prooftree``: sides, scales and guards come from the
+declaration itself, not from the constraints that everything else reads. Of what a user limits both take the quantity,
+sense and bound of the question, and nothing else.
 """
 
 from __future__ import annotations
@@ -22,7 +26,7 @@ from synth.files import read_bytes
 from synth.front_record import changed
 from synth.instance import Instance
 from synth.problem import DesignProblem
-from synth.prooftree import Outcome, Point, ProofTree
+from synth.prooftree import NO_SCALE, Outcome, Point, ProofTree
 from synth.question import asked_again, problem_of
 from synth.special import expanded
 from synth.units import format_quantity
@@ -34,7 +38,6 @@ if TYPE_CHECKING:
 
 SAME = 1e-9  # relative; numbers that agree so far are the same
 NOISE = 1e-15  # absolute; below it nothing is compared
-NO_SCALE = 1e-9  # of limits that the user added
 WIDEST_GAP = 0.5
 NARROWINGS = 3
 # What a record that has been written over by hand leads to.
@@ -214,9 +217,9 @@ class Check:
         for name, value in self.instance.requirements.items():
             if not _same(frame.requirement_values.get(name, math.nan), value):
                 self.find(f"requirement_values_si: {name} is not what the requirements say")
-        extra = self.instance.extra
-        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in extra}
-        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in extra}
+        own = self.instance.own
+        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in own}
+        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in own}
         kinds = {name: kind for name, _, kind in model.declaration.quantities()}
         told = {
             "limit_senses": (frame.limit_senses, limits),
@@ -224,8 +227,8 @@ class Check:
             "units": (frame.units, model.units),
             "kinds": (frame.kinds, kinds),
         }
-        for name, (own, right) in told.items():
-            if dict(own) != right:
+        for name, (saved, right) in told.items():
+            if dict(saved) != right:
                 self.find(f"{name}: they are not those of the problem")
         if list(frame.not_asked) != list(self.instance.not_asked):
             self.find("not_asked: other requirements were left out")
@@ -337,8 +340,8 @@ class Check:
         for x in self.model.limits:
             void = any(math.isnan(point.data[k]) for k in self.model.void_inputs[x.name])
             yield _Reading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
-        for extra in self.instance.extra:
-            yield _Reading(extra.name, values[extra.quantity], extra.limit, extra.sense, NO_SCALE)
+        for own in self.instance.own:
+            yield _Reading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
 
     def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
         """Yield the refusals over several slots, and whether each forbids a design."""

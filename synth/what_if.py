@@ -302,7 +302,7 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
         "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
         "ranges": [instance.lower.tolist(), instance.upper.tolist()],
         "grids": [hashlib.sha256(g.tobytes()).hexdigest() for g in instance.grids()],
-        "limits": [repr(x) for x in instance.extra],
+        "limits": [repr(x) for x in instance.own],
         "compared": [str(x) for x in instance.compared],
         "objectives": dict(question.chosen),
         "settings": {k: repr(v) for k, v in settings.items()},

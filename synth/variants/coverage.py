@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.feasibility import holds, residual
 from synth.instance import Instance, numeric
 from synth.model import Evaluation, Model, part_column_value
 from synth.problem import DesignProblem
@@ -207,9 +206,7 @@ def _serves(
                 own = columns.values[:, k]
                 allowed &= (own >= low - SAME * abs(low)) & (own <= high + SAME * abs(high))
         pairs = slice(q * count, (q + 1) * count)
-        for extra in instance.extra:
-            missed = residual(evaluation.values[extra.quantity][pairs], extra.limit, extra.sense, 1e-9)
-            allowed &= np.asarray(holds(missed, guard=False))
+        allowed &= evaluation.take(pairs).also(instance.own).feasible
         compared = columns.of(instance.model)
         allowed &= compared.complete & ~_refused(instance.model, instance, compared, used)
         serves[pairs] &= allowed
@@ -238,13 +235,9 @@ def _refusal(model: Model, when: Any) -> tuple[Any, list[str]]:
 
 def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:
     """Say what the nearest variant misses: that whose worst residual is least."""
-    pairs = slice(q * columns.count, (q + 1) * columns.count)
-    names = [limit.name for limit in model.limits]
-    missed = np.array([np.nan_to_num(evaluation.residuals[name][pairs], nan=0.0) for name in names])
-    for extra in instance.extra:
-        names.append(extra.name)
-        own = residual(evaluation.values[extra.quantity][pairs], extra.limit, extra.sense, 1e-9)
-        missed = np.vstack([missed, np.nan_to_num(own, nan=0.0)])
+    own = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.own)
+    names = [limit.name for limit in (*model.constraints, *instance.own)]
+    missed = np.array([np.nan_to_num(own.residuals[name], nan=0.0) for name in names])
     worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
     nearest = int(np.argmin(worst))
     broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > 1e-6]

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import synth
-from synth.feasibility import holds, residual
 from synth.instance import Instance, as_catalogs
 
 GAP = 1e-3
@@ -120,10 +119,8 @@ def enumerate_all(case):
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     found = []
     for combination in range(instance.combinations):
-        result = instance.model.evaluate(points, instance.data(np.array([combination])))
+        result = instance.evaluate(points, instance.data(np.array([combination])))
         feasible = result.feasible
-        for extra in instance.extra:
-            feasible = feasible & holds(residual(result.values[extra.quantity], extra.limit, extra.sense, 1e-9), False)
         found.append(np.stack([np.broadcast_to(result.values[n], len(points))[feasible] for n in QUANTITIES], axis=1))
     return dict(zip(QUANTITIES, np.concatenate(found).T, strict=True)), len(points) * instance.combinations
 

@@ -30,7 +30,7 @@ def movable(instance):
     ends = zip(instance.lower, instance.upper, instance.grids(), strict=True)
     free = [v.sx for v, (low, high, grid) in zip(model.variables, ends, strict=True) if low < high and not len(grid)]
     sides = {x.name: [x.value, x.limit] for x in model.limits}
-    sides |= {x.name: [model.quantity_sx[x.quantity]] for x in instance.extra}
+    sides |= {x.name: [model.quantity_sx[x.quantity]] for x in instance.own}
     return {
         name
         for name, own in sides.items()

@@ -100,7 +100,7 @@ def test_limits_of_a_count_leave_values_out():
 
 def test_limits_of_a_derived_quantity_are_limits_of_the_question():
     question = instance(limits={"mass": ["<= 2 kg", ">= 100 g"], "A": "= 300 mm2"})
-    assert [(x.quantity, x.sense, x.limit, x.name) for x in question.extra] == [
+    assert [(x.quantity, x.sense, x.bound, x.name) for x in question.own] == [
         ("mass", "at_most", 2.0, "mass <= 2 kg"),
         ("mass", "at_least", 0.1, "mass >= 0.1 kg"),
         ("area", "equal", pytest.approx(3e-4), "area == 300 mm2"),
@@ -148,7 +148,7 @@ def test_fix_pins_every_kind_of_unknown():
     assert question.selection.counts["plates"].tolist() == [2]
     assert question.selection.choices["end"].tolist() == [1]
     assert designations(question, "plate") == ("core 2",)
-    assert [(x.quantity, x.sense, x.limit) for x in question.extra] == [("mass", "equal", 1.0)]
+    assert [(x.quantity, x.sense, x.bound) for x in question.own] == [("mass", "equal", 1.0)]
     assert question.combinations == 3
 
 

@@ -263,7 +263,7 @@ def test_a_limit_leaves_those_that_point_another_way(limits: Any, vary: str, kep
     study = steps({vary: "40, 50"}, limits=limits)
     sense = "at_most" if "<" in vary else "at_least"
     for (value,), question in zip(study.values, study.questions, strict=True):
-        extra = [(x.sense, x.limit) for x in question.instance.extra]
+        extra = [(x.sense, x.bound) for x in question.instance.own]
         assert isinstance(value, float)
         assert sorted(extra) == sorted([*kept, (sense, value)])
 
