@@ -15,15 +15,10 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 ENGINE = ("synth", "synth/jobs", "synth/jobs/migrations", "synth/jobs/migrations/versions", "synth/variants")
-PACKAGES = (
-    *ENGINE,
-    "problems",
-    "problems/blocks",
-    "problems/centrifugal_blocks",
-    "problems/mechanics",
-    "catalogs",
-    "reports",
+PROBLEMS = tuple(
+    sorted({path.parent.relative_to(ROOT).as_posix() for path in (ROOT / "problems").rglob("*.py")} - {"problems"})
 )
+PACKAGES = (*ENGINE, "problems", *PROBLEMS, "catalogs", "reports")
 OURS = {package.split("/")[0] for package in PACKAGES}
 
 
@@ -67,29 +62,20 @@ def strangers(names: set[str], allowed: set[str]) -> list[str]:
 def test_imports_are_found_wherever_they_stand() -> None:
     text = (
         "import numpy as np\nfrom typing import TYPE_CHECKING\n"
-        "if TYPE_CHECKING:\n    from reports.table import x\nelse:\n    import problems.blocks\n"
+        "if TYPE_CHECKING:\n    from reports.table import x\nelse:\n    import problems.friction\n"
         "def f():\n    from synth import DesignProblem\n"
     )
-    always = {"numpy", "typing.TYPE_CHECKING", "problems.blocks", "synth.DesignProblem"}
+    always = {"numpy", "typing.TYPE_CHECKING", "problems.friction", "synth.DesignProblem"}
     assert imported(text, at_run_time=True) == always
     assert imported(text) == always | {"reports.table.x"}
-    assert strangers(imported(text), {"synth", "numpy"}) == ["problems.blocks", "reports.table.x"]
+    assert strangers(imported(text), {"synth", "numpy"}) == ["problems.friction", "reports.table.x"]
     assert strangers({"synthetic.x", "synth.units.x"}, {"synth.units"}) == ["synthetic.x"]
 
 
 # package: what it may import besides the standard library
+FAMILY = {"problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special"}
 MAY_IMPORT = {
-    "problems": {
-        "problems",
-        "numpy",
-        "pandas",
-        "synth.DesignProblem",
-        "synth.declaration",
-        "synth.errors",
-        "synth.special",
-    },
-    "problems/blocks": {"problems", "numpy", "synth.declaration", "synth.errors"},
-    "problems/centrifugal_blocks": {"problems", "synth.declaration"},
+    **dict.fromkeys(("problems", *PROBLEMS), FAMILY),
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
     "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},

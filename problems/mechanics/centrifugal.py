@@ -791,7 +791,7 @@ def ball_pressure(normal_force: Quantity, ball_diameter: Quantity, contact_modul
     ball_diameter : scalar, array or symbol
         d_b = 2 R [m].
     contact_modulus : scalar, array or symbol
-        E* [Pa], of :func:`problems.mechanics.roller_coupling.contact_modulus`.
+        E* [Pa], of :func:`problems.mechanics.contact.contact_modulus`.
 
     Returns
     -------

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from problems.multi_plate_clutch import MultiPlateClutch
+from problems.multi_plate.model import MultiPlateClutch
 from synth.declaration import Declaration
 from synth.instance import Instance
 from synth.tables import Catalogs

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from problems.mechanics import centrifugal, ring
-from problems.mechanics.roller_coupling import contact_modulus
+from problems.mechanics.contact import contact_modulus
 
 FLY = {"mass": "kg", "radius": "m"}
 LINING = {"inner_radius": "m", "outer_radius": "m"}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import synth
-from problems.centrifugal_lever_curves import rod_lever
+from problems.centrifugal.lever_curves import rod_lever
 
 BASE = {
     "required_torque": "90 N*m",

@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 import synth
-from problems import centrifugal_curves as curves
-from problems.centrifugal_state import balance, of_path
+from problems.centrifugal import curves
+from problems.centrifugal.state import balance, of_path
 from synth.cli import app
 from tests.conformance.cases import CASES, answer
 

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from problems.mechanics import cone, ring
+from problems.cone import formulas as cone
+from problems.mechanics import ring
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=60)
 angles = st.floats(math.radians(4), math.radians(30))

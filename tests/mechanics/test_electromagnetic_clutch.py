@@ -10,7 +10,8 @@ from of_a_family import remarks, requirements_in_si
 from scipy.optimize import brentq
 
 import synth
-from problems.mechanics import magnetics, pot_magnet
+from problems.electromagnetic import formulas as pot_magnet
+from problems.mechanics import magnetics
 
 SHAPE = pot_magnet.PotMagnet(0.02, 0.015, 0.03, 0.022, 0.012, 0.4e-3)
 FIELDS = list(SHAPE.__dataclass_fields__)

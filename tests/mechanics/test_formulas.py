@@ -6,7 +6,8 @@ from functools import partial
 import pytest
 from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of, positional
 
-from problems.mechanics import cone, disc, guide_friction, heat, motors, plates, ring, startup
+from problems.cone import formulas as cone
+from problems.mechanics import disc, guide_friction, heat, motors, plates, ring, startup
 
 RANGES = {
     "ring_ratio": (0.05, 0.3),

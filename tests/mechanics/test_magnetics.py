@@ -11,7 +11,8 @@ from formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays
 from scipy.integrate import quad
 
 import catalogs
-from problems.mechanics import magnetics, powder
+from problems.magnetic_powder import formulas as powder
+from problems.mechanics import magnetics
 from synth.errors import InputError
 
 HEAT = {"cold_loss": "W", "runaway_loss": "W", "ambient_ratio": "-", "other_heat": "W"}

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import integrate, optimize, special
 
-from problems.mechanics import roller_coupling as rc
+from problems.mechanics import contact as hertz
+from problems.roller_coupling import formulas as rc
 
 KP = 9.80665
 SPEED = 2880 * math.pi / 30
@@ -79,16 +80,16 @@ CASES = [
         "m",
     ),
     (
-        rc.contact_modulus,
+        hertz.contact_modulus,
         {"first_modulus": "Pa", "first_poisson": "-", "second_modulus": "Pa", "second_poisson": "-"},
         "Pa",
     ),
-    (rc.line_contact_pressure, LINE, "Pa"),
-    (rc.line_contact_half_width, LINE, "m"),
-    (rc.point_contact_half_length, POINT, "m"),
-    (rc.point_contact_pressure, POINT, "Pa"),
+    (hertz.line_contact_pressure, LINE, "Pa"),
+    (hertz.line_contact_half_width, LINE, "m"),
+    (hertz.point_contact_half_length, POINT, "m"),
+    (hertz.point_contact_pressure, POINT, "Pa"),
     (
-        rc.barrel_contact_pressure,
+        hertz.barrel_contact_pressure,
         {
             "normal_force": "N",
             "loaded_rollers": "-",
@@ -135,8 +136,9 @@ def test_no_formula_is_left_out():
     covered |= {"floating_mass_travel", "floating_mass_forces"}
     public = {
         name
-        for name, member in inspect.getmembers(rc, inspect.isfunction)
-        if member.__module__ == rc.__name__ and not name.startswith("_")
+        for module in (rc, hertz)
+        for name, member in inspect.getmembers(module, inspect.isfunction)
+        if member.__module__ == module.__name__ and not name.startswith("_")
     }
     assert public <= covered, public - covered
 
@@ -211,14 +213,14 @@ def test_hertz_limit_is_1961_mpa_and_not_the_modulus():
     assert modulus == pytest.approx(21193, abs=1)
     assert modulus * KP / 1e3 == pytest.approx(207.83, abs=0.01)
     assert 20_000 == pytest.approx(modulus, rel=0.06)  # so 20 000 kp/mm2 cannot be a pressure
-    contact = rc.contact_modulus(207.83e9, 0.3, 207.83e9, 0.3)
-    pressure = rc.line_contact_pressure(KP * 100, contact, 0.01, 0.01)
+    contact = hertz.contact_modulus(207.83e9, 0.3, 207.83e9, 0.3)
+    pressure = hertz.line_contact_pressure(KP * 100, contact, 0.01, 0.01)
     assert pressure / KP / 1e6 == pytest.approx(86.1 * math.sqrt(100 / (20 * 10)), rel=1e-4)
 
 
 def test_plastic_float_has_a_sixth_of_the_pressure():
-    steel = rc.contact_modulus(206e9, 0.3, 206e9, 0.3)
-    nylon = rc.contact_modulus(206e9, 0.3, 2.8e9, 0.39)
+    steel = hertz.contact_modulus(206e9, 0.3, 206e9, 0.3)
+    nylon = hertz.contact_modulus(206e9, 0.3, 2.8e9, 0.39)
     assert math.sqrt(nylon / steel) == pytest.approx(0.1696, abs=2e-4)
 
 
@@ -256,8 +258,8 @@ def test_optimum_arm_radius_solves_its_quartic(torque, mass, speed, push):
 
 def test_line_contact_carries_its_load():
     force, modulus, length, radius = 2500.0, 113e9, 0.012, 0.026
-    p = rc.line_contact_pressure(force, modulus, length, radius)
-    a = rc.line_contact_half_width(force, modulus, length, radius)
+    p = hertz.line_contact_pressure(force, modulus, length, radius)
+    a = hertz.line_contact_half_width(force, modulus, length, radius)
     carried, _ = integrate.quad(lambda x: p * math.sqrt(1 - (x / a) ** 2) * length, -a, a)
     assert carried == pytest.approx(force, rel=1e-6)
     # the strip has the curvature of the roller, 1/R = 2 p/(a E*)
@@ -282,8 +284,8 @@ def exact_point_contact(force, modulus, rx, ry):
 @pytest.mark.parametrize(("rx", "share"), [(0.008, 0.015), (0.017, 0.005), (0.026, 0.005), (0.045, 0.005)])
 def test_point_contact_against_the_elliptic_integrals(rx, share):
     length, pressure = exact_point_contact(3000.0, 113e9, rx, 0.5)
-    assert float(rc.point_contact_pressure(3000.0, 113e9, rx, 0.5)) == pytest.approx(pressure, rel=share)
-    assert float(rc.point_contact_half_length(3000.0, 113e9, rx, 0.5)) == pytest.approx(length, rel=0.03)
+    assert float(hertz.point_contact_pressure(3000.0, 113e9, rx, 0.5)) == pytest.approx(pressure, rel=share)
+    assert float(hertz.point_contact_half_length(3000.0, 113e9, rx, 0.5)) == pytest.approx(length, rel=0.03)
 
 
 @pytest.mark.parametrize("chi", [60, 75, 90])

@@ -7,15 +7,15 @@ import casadi as ca
 import numpy as np
 import pytest
 
-import problems.centrifugal_ball_ramp
-import problems.cone_clutch
-import problems.magnetic_powder_clutch
-import problems.multi_plate_clutch  # noqa: F401 - fills the table
+import problems.centrifugal.ball_ramp
+import problems.cone.model
+import problems.magnetic_powder.model
+import problems.multi_plate.model  # noqa: F401 - fills the table
 from problems.mechanics import startup
 from synth.special import TABLE, SpecialFunction
 
 POINTS = 6000
-NAMES = sorted(n for n in TABLE if n.startswith("problems.mechanics."))
+NAMES = sorted(n for n in TABLE if n.startswith("problems."))
 REACTIVE = [n for n in NAMES if ".reactive_" in n]
 # Ratios of guide friction end at 1, where plates jam; all else is sampled over many decades.
 RANGES = {

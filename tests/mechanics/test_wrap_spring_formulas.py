@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from problems.mechanics import wrap_spring as ws
+from problems.wrap_spring import formulas as ws
 
 A, B, E, RHO = 0.003, 0.004, 206e9, 7850.0
 HUB, INTERFERENCE, COILS, MU = 0.040, 0.25e-3, 4, 0.10

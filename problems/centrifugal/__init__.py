@@ -1,0 +1,67 @@
+"""Blocks of declarations that the centrifugal clutches share: duty, lining, springs, speeds, clamp force and size."""
+
+from __future__ import annotations
+
+from problems.centrifugal.duty import COMMON, Duty, declare_duty
+from problems.centrifugal.engagement import (
+    Contact,
+    advise_stop_load,
+    declare_band,
+    declare_clamp,
+    declare_contact,
+    declare_full_clamp,
+    declare_stop_force,
+)
+from problems.centrifugal.flyweights import (
+    Flyweights,
+    Weights,
+    advise_gravity,
+    declare_rest_radius,
+    declare_weights,
+    limit_weight_room,
+)
+from problems.centrifugal.lining import Lining, advise_release_gap, declare_lining, declare_wear
+from problems.centrifugal.size import declare_objectives, declare_size
+from problems.centrifugal.sources import DERIVED, DRIVE, S4, SOURCES, TYPICAL
+from problems.centrifugal.springs import (
+    SpringSet,
+    advise_springs,
+    declare_springs,
+    limit_share_of_force,
+    limit_spring_force,
+)
+
+__all__ = [
+    "COMMON",
+    "DERIVED",
+    "DRIVE",
+    "S4",
+    "SOURCES",
+    "TYPICAL",
+    "Contact",
+    "Duty",
+    "Flyweights",
+    "Lining",
+    "SpringSet",
+    "Weights",
+    "advise_gravity",
+    "advise_release_gap",
+    "advise_springs",
+    "advise_stop_load",
+    "declare_band",
+    "declare_clamp",
+    "declare_contact",
+    "declare_duty",
+    "declare_full_clamp",
+    "declare_lining",
+    "declare_objectives",
+    "declare_rest_radius",
+    "declare_size",
+    "declare_springs",
+    "declare_stop_force",
+    "declare_wear",
+    "declare_weights",
+    "limit_share_of_force",
+    "limit_spring_force",
+    "limit_weight_room",
+]

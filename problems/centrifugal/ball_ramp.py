@@ -1,0 +1,133 @@
+"""Centrifugal clutch with balls in ramps that push the pressure plate directly (device A)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from problems import centrifugal as blocks
+from problems.centrifugal import DERIVED, S4, curves
+from problems.centrifugal import balls as ball_blocks
+from problems.centrifugal import state as states
+from problems.mechanics import ball_ramp, centrifugal
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class CentrifugalBallRamp(DesignProblem):
+    """Centrifugal clutch: balls in conical ramps push the pressure plate against return springs.
+
+    The clamp force grows with the speed for ever, so that the clutch cannot be released at speed.
+    """
+
+    name = "centrifugal_ball_ramp"
+    title = "Centrifugal clutch, ball ramp"
+    sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "ball_friction", "hertz_pressure_limit")
+    operating_point = states.OPERATING_POINT
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = blocks.declare_duty(d)
+        wants = ball_blocks.declare_force_limits(d, duty)
+        rest = blocks.declare_rest_radius(d)
+        gap = d.variable(
+            "plate_gap", "mm", 1.5, 6, symbol="h",
+            text="Travel of the pressure plate to contact", source=f"{S4}, h",
+        )  # fmt: skip
+        deflection = d.variable(
+            "spring_preload_deflection", "mm", 1, 20, grid=0.1, symbol="delta",
+            text="Deflection of the return springs at rest", source=f"{S4}, F_R0/s",
+        )  # fmt: skip
+        balls = ball_blocks.declare_balls(d, duty, rest)
+        springs = blocks.declare_springs(d, "return_spring", "sp", "N_s", "they push the pressure plate back")
+        lining = blocks.declare_lining(d, self.name, duty)
+
+        end = centrifugal.orbit_radius(rest, balls.ratio, gap)
+        at_contact = springs.force(deflection + gap)
+        speed = centrifugal.speed_for_force(at_contact, balls.mass, end, balls.push)
+        # The same force at the same radius: written with the contact speed, the two speeds bound each other.
+        release = speed * balls.release_ratio
+        blocks.declare_contact(d, duty, speed, release, needs="ramp_returns")
+        needed = lining.force(duty.torque_to_carry)
+        blocks.declare_band(
+            d, ball_ramp.clamp_speed_ratio(at_contact, needed),
+            "Speed at which required_torque with its reserve is reached, over the contact speed",
+        )  # fmt: skip
+        # The two clamp forces share their terms, so that a bound of one bounds the other.
+        gain = centrifugal.axial_gain(balls.mass, end, balls.push)
+        at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
+        clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
+        full = d.derive(
+            "full_speed_torque", "N*m", lining.torque(at_full_speed), symbol="M_full",
+            text="Torque at full_torque_speed, worn-in lining", source=f"{S4}, analysis 1, eq. (12), corrected",
+        )  # fmt: skip
+        d.at_least(
+            "torque_at_full_speed", full, duty.torque_to_carry, "N*m",
+            text="At full_torque_speed the clutch carries required_torque with its reserve",
+            source=f"{S4}, analysis 1, eq. (12), corrected",
+        )  # fmt: skip
+        blocks.declare_clamp(
+            d, lining, clamp, "Clamp force at top_speed, the largest", f"{S4}, analysis 1, eq. (12), corrected"
+        )
+        ball_blocks.limit_contact_and_clamp(d, wants, speed, clamp, " at top_speed")
+        blocks.declare_stop_force(
+            d, clamp, "Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
+            f"{S4}, analysis 1",
+        )  # fmt: skip
+        d.at_most(
+            "no_snap", deflection * balls.ratio, rest, "mm",
+            text="The plate moves gradually: a larger speed for every further travel, no jump", source=DERIVED,
+        )  # fmt: skip
+        blocks.limit_spring_force(
+            d, "spring_force", springs, deflection + gap, "The return springs stand their deflection at contact"
+        )
+        ball_blocks.declare_ball_pressure(d, duty, balls, end)
+        ball_blocks.limit_circle_room(d, wants, rest, balls, [springs])
+        blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(balls.mass, end, balls.radius), [springs])
+        start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
+        blocks.advise_gravity(d, rest, start)
+        blocks.advise_release_gap(d, gap, lining)
+        blocks.advise_springs(d, duty, springs, rest, deflection, gap, "the return springs")
+        blocks.declare_objectives(d)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return what friction at the balls costs and what torque asks for; of a design forces and travel over speed.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``idle_margin_over_ramp``, ``clamp_force_over_lining``, and of a design ``engaging_over_speed`` and
+            ``releasing_over_speed``.
+        """
+        frames = {
+            "idle_margin_over_ramp": curves.idle_margin_over_ramp(self, spec),
+            "clamp_force_over_lining": curves.clamp_force_over_lining(self, spec),
+        }
+        if design is not None:
+            frames |= curves.over_speed(self, spec, curves.ball_ramp_path(spec, design))
+        return frames
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        return states.of_path(spec, curves.ball_ramp_path(spec, design), point["speed"])

@@ -1,0 +1,212 @@
+"""Centrifugal clutch with levers and headed rods: flyweights swing levers that clamp through springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems import centrifugal as blocks
+from problems.centrifugal import DERIVED, S4
+from problems.centrifugal import curves as centrifugal_curves
+from problems.centrifugal import lever_curves as centrifugal_lever_curves
+from problems.centrifugal import levers as lever_blocks
+from problems.centrifugal import state as states
+from problems.centrifugal.levers import RECONSTRUCTED
+from problems.mechanics import centrifugal_levers as formulas
+from synth import DesignProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import pandas as pd
+
+    from synth.declaration import Declaration
+
+# Ranges of the arms [mm]; refusals reason with them.
+SPRING_ARM, ROD_ARM = (10.0, 200.0), (3.0, 150.0)
+PLACES = f"{S4}, what if rod and spring change places; {DERIVED}"
+# Guards: the rod inside the spring, and springs under load at the stop.
+GUARDS = ("rod_inside_spring", "clamp_springs_loaded")
+
+
+@dataclass(frozen=True)
+class Rods:
+    """Arms of rod and spring, and what is asked of them, all in SI."""
+
+    spring_arm: Any
+    rod_arm: Any
+    ratio_max: Any
+    retraction_min: Any
+
+    @property
+    def ratio(self) -> Any:
+        """Arm of the rod over arm of the spring [-]."""
+        return self.rod_arm / self.spring_arm
+
+    @property
+    def lead(self) -> Any:
+        """Arm at which spring and taut rod together resist the flyweights [m]."""
+        return self.spring_arm - self.rod_arm
+
+
+class CentrifugalLever(DesignProblem):
+    """Centrifugal clutch with levers, clamp springs and headed rods.
+
+    A flyweight swings its lever outwards. The rod carries the plate along until it touches; then the rod goes slack and
+    the spring between lever and plate clamps, up to a stop that caps the force.
+    """
+
+    name = "centrifugal_lever"
+    title = "Centrifugal clutch, levers with headed rods"
+    sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "lining_wear", "contact_travel")
+    operating_point = states.OPERATING_POINT
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = blocks.declare_duty(d)
+        lever = lever_blocks.declare_lever(d, duty, "beyond contact, so that the clamp force is capped")
+        rods = self._declare_rods(d)
+        springs = blocks.declare_springs(d, "clamp_spring", "sp", "N_s", "between lever and pressure plate")
+        lining = blocks.declare_lining(d, self.name, duty)
+        lever_blocks.limit_contact(d, lever, rods.rod_arm, ROD_ARM[1], "rod_arm")
+        shortest = lever.worn_travel / (rods.ratio_max * lever.weights.angle_limit)
+        lever_blocks.refuse_room(d, duty, shortest, "spring_arm")
+
+        squeeze = rods.spring_arm * lever.stop_angle
+        travel = squeeze - lever.contact_travel
+        full = springs.force(lever.deflection + travel)
+        self._declare_guards(d, lever, rods, squeeze)
+        self._declare_speeds(d, duty, lining, lever, rods, springs, full)
+        blocks.declare_clamp(
+            d, lining, full, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED
+        )  # fmt: skip
+        self._declare_retraction(d, lever, rods, springs)
+        blocks.limit_spring_force(
+            d, "spring_force", springs, lever.deflection + travel, "The clamp springs stand the stop"
+        )
+        blocks.limit_weight_room(d, duty, lever.weights, lever.rest_radius, rods.spring_arm)
+        lever_blocks.declare_size(d, duty, lining, lever, [springs])
+        at_stop = formulas.clamp_flyweight_force(full, rods.spring_arm, lever.weights.arm)
+        at_start = formulas.travel_flyweight_force(
+            springs.force(lever.deflection), rods.spring_arm, rods.rod_arm, lever.weights.arm
+        )
+        lever_blocks.advise_lever(d, duty, lining, lever, at_start, at_stop, full)
+        blocks.advise_springs(d, duty, springs, lever.rest_radius, lever.deflection, travel, "the clamp springs")
+        blocks.declare_objectives(d)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return clamp force over lining; of a design what happens over the speed, with new and with worn linings.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``clamp_force_over_lining``, or of a design ``over_speed`` and ``over_speed_worn``.
+        """
+        if design is None:
+            return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
+        return centrifugal_lever_curves.rod_lever_curves(self, spec, design)
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        lever = centrifugal_lever_curves.rod_lever(spec, design)
+        regimes, own = centrifugal_lever_curves.ROD_REGIMES, centrifugal_lever_curves.ROD_OWN
+        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
+
+    def _declare_rods(self, d: Declaration) -> Rods:
+        return Rods(
+            ratio_max=d.requirement(
+                "rod_ratio_max", "-", 0.8, lower=0.1, upper=0.99, symbol="rho_rod",
+                text="Largest arm of the rod over arm of the spring; at 1 nothing draws the lever back",
+                source=PLACES,
+            ),
+            retraction_min=d.requirement(
+                "retraction_force_min", "N", 150, lower=0, upper=1e5, symbol="F_retract_min",
+                text="Least force at the spring's arm that draws the lever back at standstill", source=DERIVED,
+            ),
+            spring_arm=d.variable(
+                "spring_arm", "mm", *SPRING_ARM, grid=0.5, symbol="l_s",
+                text="Arm of the clamp springs on the lever", source=RECONSTRUCTED,
+            ),
+            rod_arm=d.variable(
+                "rod_arm", "mm", *ROD_ARM, grid=0.5, symbol="l_r",
+                text="Arm of the headed rod on the lever", source=RECONSTRUCTED,
+            ),
+        )  # fmt: skip
+
+    def _declare_guards(self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
+        d.at_least(
+            GUARDS[0], rods.spring_arm, rods.rod_arm, "mm", guard=True,
+            text="The rod sits nearer to the pivot than the spring; otherwise the lever cannot retract and the clutch "
+            "stays engaged", source=PLACES,
+        )  # fmt: skip
+        d.at_least(
+            GUARDS[1], lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_speeds(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        lining: blocks.Lining,
+        lever: lever_blocks.Lever,
+        rods: Rods,
+        springs: blocks.SpringSet,
+        full: Any,
+    ) -> None:
+        """Declare the speeds, and that no phase of the motion snaps."""
+        arm, contact_angle = lever.weights.arm, formulas.contact_angle(lever.contact_travel, rods.rod_arm)
+        after = lever.stop_angle - contact_angle
+        band_squared = formulas.band_squared(
+            formulas.growth(lever.deflection + rods.lead * contact_angle, rods.spring_arm, after),
+            formulas.growth(lever.radius(contact_angle), arm, after),
+            rods.ratio,
+        )
+        contact, stop, band = lever.speeds(formulas.clamp_flyweight_force(full, rods.spring_arm, arm), band_squared)
+        worn = full - springs.rate * lever.wear
+        blocks.declare_contact(d, duty, contact, needs=GUARDS)
+        blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, GUARDS[1])
+        blocks.declare_band(d, band, "Full-clamp speed over contact speed; a small one is sharp", GUARDS)
+        d.at_most(
+            "no_snap_travel", formulas.gradual_radius(lever.deflection, arm, rods.lead), lever.rest_radius, "mm",
+            text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
+            "the rest radius below which it would jump", source=DERIVED,
+        )  # fmt: skip
+        d.at_most(
+            "no_snap_clamp",
+            formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, rods.spring_arm),
+            lever.rest_radius, "mm",
+            text="The lever clamps step by step: the rod is free at a lower speed than it stops at; shown is the rest "
+            "radius below which it would jump", source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_retraction(
+        self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet
+    ) -> None:
+        d.at_most(
+            "retraction_arm", rods.rod_arm, rods.ratio_max * rods.spring_arm, "mm",
+            text="The spring draws the lever back with an arm to spare", source=PLACES,
+        )  # fmt: skip
+        force = formulas.retraction_force(springs.force(lever.deflection), rods.spring_arm, rods.rod_arm)
+        d.at_least(
+            "retraction_force", force, rods.retraction_min, "N",
+            text="At standstill the spring draws the lever back", source=DERIVED,
+        )  # fmt: skip

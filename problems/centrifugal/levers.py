@@ -1,0 +1,235 @@
+"""Blocks of declarations that the centrifugal clutches with levers share: gap, lever, room, remarks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems import centrifugal as blocks
+from problems.centrifugal import DERIVED, S4, TYPICAL
+from problems.mechanics import centrifugal
+from problems.mechanics import centrifugal_levers as formulas
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from synth.declaration import Declaration
+
+RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
+# Range of the stop angle [rad] and of the rest radius [mm]; refusals reason with them.
+STOP_ANGLE_MIN, STOP_ANGLE_MAX = 0.05, 0.35
+REST_RADIUS_MAX = 250.0
+
+
+@dataclass(frozen=True)
+class Lever:
+    """Lever, flyweights and gap that both families have, all in SI."""
+
+    rest_radius: Any
+    weights: blocks.Weights
+    contact_travel: Any
+    wear: Any
+    deflection: Any
+    stop_angle: Any
+
+    @property
+    def worn_travel(self) -> Any:
+        """Travel to contact with worn linings [m]."""
+        return self.contact_travel + self.wear
+
+    @property
+    def end_radius(self) -> Any:
+        """Radius of the flyweights at the stop [m]."""
+        return self.radius(self.stop_angle)
+
+    def radius(self, angle: Any) -> Any:
+        """Return the radius of the flyweights at an angle [m]."""
+        return centrifugal.orbit_radius(self.rest_radius, self.weights.arm, angle)
+
+    def speed(self, force: Any, angle: Any) -> Any:
+        """Return the speed at which the flyweights pull with a force at an angle [rad/s]."""
+        return centrifugal.speed_for_force(force, self.weights.mass, self.radius(angle))
+
+    def speeds(self, stop_pull: Any, band_squared: Any) -> tuple[Any, Any, Any]:
+        """Return contact speed, stop speed and engagement band, from the pull at the stop [N] and the band.
+
+        Where the same springs resist at contact and at the stop, mass, arm and springs stand in the contact speed once
+        this way, and the torque that the springs must hold says at once how heavy the weights are.
+        """
+        square = formulas.speed_squared(stop_pull, self.weights.mass, self.end_radius)
+        return np.sqrt(square / band_squared), np.sqrt(square), np.sqrt(band_squared)
+
+
+def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
+    """Declare gap, wear, flyweights, preload and stop angle, with the limits of angle and contact.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    stop_text : str
+        What the stop is.
+
+    Returns
+    -------
+    Lever
+        Symbols of the block.
+    """
+    travel = d.requirement(
+        "contact_travel", "mm", 3, lower=0.2, upper=30, symbol="x0",
+        text=f"Gap between pressure plate and friction disc at rest ({TYPICAL})", source=f"{S4}, x0; {TYPICAL}",
+    )  # fmt: skip
+    wear = blocks.declare_wear(d)
+    weights = blocks.declare_weights(d, duty)
+    lever = Lever(
+        rest_radius=blocks.declare_rest_radius(d),
+        weights=weights,
+        contact_travel=travel,
+        wear=wear,
+        deflection=d.variable(
+            "spring_preload_deflection", "mm", 1, 20, grid=0.1, symbol="delta",
+            text="Deflection of the clamp springs at rest", source=f"{S4}, F_R0/s",
+        ),
+        stop_angle=d.variable(
+            "lever_stop_angle", "rad", STOP_ANGLE_MIN, STOP_ANGLE_MAX, symbol="phi_max",
+            text=f"Angle at which the lever meets its stop: {stop_text}", source=RECONSTRUCTED,
+        ),
+    )  # fmt: skip
+    d.refuse(
+        "stop_angle_out_of_range",
+        weights.angle_limit < STOP_ANGLE_MIN,
+        f"a lever_angle_limit of at least {STOP_ANGLE_MIN:g} rad, the least angle of the stop",
+    )
+    d.at_most(
+        "lever_angle", lever.stop_angle, weights.angle_limit, "rad",
+        text="The lever swings so little that sine and tangent are the angle", source=DERIVED,
+    )  # fmt: skip
+    return lever
+
+
+def limit_contact(d: Declaration, lever: Lever, plate_arm: Any, longest: float, name: str) -> None:
+    """Declare that the lever meets its stop after contact, and refuse gaps that no lever closes.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    lever : Lever
+        Lever.
+    plate_arm : symbol
+        Arm that moves the plate [m].
+    longest : float
+        Its upper bound [mm].
+    name : str
+        Name of the arm.
+    """
+    d.refuse(
+        "travel_unreachable",
+        lever.worn_travel > lever.weights.angle_limit * longest / 1000,
+        f"a contact_travel with lining_wear of at most lever_angle_limit times {longest:g} mm, the longest {name}; no "
+        "lever closes more",
+    )
+    d.at_most(
+        "stop_after_contact", lever.worn_travel / plate_arm, lever.stop_angle, "rad",
+        text="With worn linings too the plate is on the disc before the lever meets its stop", source=DERIVED,
+    )  # fmt: skip
+
+
+def refuse_room(d: Declaration, duty: blocks.Duty, least_leg: Any, name: str) -> None:
+    """Refuse hubs and outside diameters that leave no room for the shortest lever.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    least_leg : symbol
+        Least length of the lever below the flyweights [m].
+    name : str
+        Name of that arm.
+    """
+    d.refuse(
+        "no_room_for_lever",
+        duty.hub_radius + least_leg >= REST_RADIUS_MAX / 1000,
+        f"a hub_radius that leaves room for the lever: with the least {name} that closes the gap it must stay below "
+        f"{REST_RADIUS_MAX:g} mm, the largest rest_radius",
+    )
+    if duty.outer_diameter_limit is not None:
+        d.refuse(
+            "envelope_too_small",
+            duty.outer_diameter_limit <= 2 * (duty.hub_radius + least_leg + duty.wall_thickness),
+            f"an outer_diameter_limit above twice hub_radius, the least {name} that closes the gap and wall_thickness",
+        )
+
+
+def declare_size(
+    d: Declaration, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet]
+) -> None:
+    """Declare outside diameter, mass and inertia with the weights of the lever.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    lining : Lining
+        Lining.
+    lever : Lever
+        Lever.
+    springs : sequence of SpringSet
+        All springs.
+    """
+    weights = lever.weights
+    flyweights = blocks.Flyweights(weights.mass, lever.end_radius, weights.thickness / 2)
+    blocks.declare_size(d, duty, lining, lever.rest_radius, flyweights, springs)
+
+
+def advise_lever(
+    d: Declaration,
+    duty: blocks.Duty,
+    lining: blocks.Lining,
+    lever: Lever,
+    start_pull: Any,
+    stop_pull: Any,
+    clamp: Any,
+) -> None:
+    """Declare the force on the stop, and remark what rests on assumptions and what must be watched for.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    lining : Lining
+        Lining.
+    lever : Lever
+        Lever.
+    start_pull, stop_pull : symbol
+        Centrifugal force of all flyweights where the lever leaves its rest, and where it meets its stop [N].
+    clamp : symbol
+        Largest clamp force [N].
+    """
+    pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
+    stop_force = blocks.declare_stop_force(
+        d, pull - stop_pull,
+        "Force of all levers on their stops at top_speed, at flyweight_arm", RECONSTRUCTED,
+    )  # fmt: skip
+    d.advise(
+        "assumed_values",
+        True,
+        "the figure of this lever is lost: speeds, forces and stop_force rest on an arrangement of its arms that is "
+        "reconstructed from words; outer_diameter, mass and inertia rest on hub_radius, wall_thickness, weight_width "
+        "and equivalent_plate_thickness, engagement_heat rests on driven_inertia, all travels on contact_travel: "
+        "their defaults are typical values, not those of your drive",
+        source=RECONSTRUCTED,
+    )
+    blocks.advise_release_gap(d, lever.contact_travel, lining)
+    blocks.advise_gravity(d, lever.rest_radius, lever.speed(start_pull, 0.0))
+    blocks.advise_stop_load(d, stop_force, clamp)

@@ -1,0 +1,191 @@
+"""Reversed centrifugal clutch: flyweights lift a disc off its stop and put preloaded springs on the pressure plate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems import centrifugal as blocks
+from problems.centrifugal import DERIVED
+from problems.centrifugal import curves as centrifugal_curves
+from problems.centrifugal import lever_curves as centrifugal_lever_curves
+from problems.centrifugal import levers as lever_blocks
+from problems.centrifugal import state as states
+from problems.centrifugal.levers import RECONSTRUCTED
+from problems.mechanics import centrifugal_levers as formulas
+from synth import DesignProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import pandas as pd
+
+    from synth.declaration import Declaration
+
+# Range of the short leg [mm]; refusals reason with it.
+PLATE_ARM = (3.0, 150.0)
+LOADED = "clamp_springs_loaded"
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Short leg of the lever and the springs that draw the plate back, all in SI."""
+
+    arm: Any
+    springs: blocks.SpringSet
+    deflection: Any
+
+    def force(self, travel: Any) -> Any:
+        """Return the force of the return springs after some travel of the plate [N]."""
+        return self.springs.force(self.deflection + travel)
+
+
+class CentrifugalReversed(DesignProblem):
+    """Reversed centrifugal clutch: springs preloaded between a disc and the housing clamp once the disc lifts.
+
+    The levers turn on disc 1. Their short legs first push the plate against its return springs, then against the
+    friction disc, and once they push harder than the clamp springs, lift disc 1, up to a stop that caps the force.
+    """
+
+    name = "centrifugal_reversed"
+    title = "Centrifugal clutch, reversed"
+    sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "lining_wear", "contact_travel")
+    operating_point = states.OPERATING_POINT
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = blocks.declare_duty(d)
+        lever = lever_blocks.declare_lever(d, duty, "the window of disc 1, so that the clamp force is capped")
+        springs = blocks.declare_springs(d, "clamp_spring", "sp", "N_s", "between disc 1 and the housing")
+        leg = self._declare_leg(d)
+        lining = blocks.declare_lining(d, self.name, duty)
+        lever_blocks.limit_contact(d, lever, leg.arm, PLATE_ARM[1], "plate_arm")
+        lever_blocks.refuse_room(d, duty, lever.worn_travel / lever.weights.angle_limit, "plate_arm")
+
+        squeeze = leg.arm * lever.stop_angle
+        d.at_least(
+            LOADED, lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=DERIVED,
+        )  # fmt: skip
+        lift = squeeze - lever.contact_travel
+        push = springs.force(lever.deflection + lift)
+        clamp = push - leg.force(lever.contact_travel)
+        self._declare_speeds(d, duty, lining, lever, leg, springs, push)
+        blocks.declare_clamp(
+            d, lining, clamp, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED
+        )  # fmt: skip
+        self._declare_springs(d, lever, leg, springs, lift)
+        blocks.limit_weight_room(d, duty, lever.weights, lever.rest_radius, leg.arm)
+        lever_blocks.declare_size(d, duty, lining, lever, [springs, leg.springs])
+        at_stop, at_start = (
+            formulas.clamp_flyweight_force(force, leg.arm, lever.weights.arm) for force in (push, leg.force(0.0))
+        )
+        lever_blocks.advise_lever(d, duty, lining, lever, at_start, at_stop, clamp)
+        blocks.advise_springs(d, duty, springs, lever.rest_radius, lever.deflection, lift, "the clamp springs")
+        blocks.advise_springs(
+            d, duty, leg.springs, lever.rest_radius, leg.deflection, lever.contact_travel, "the return springs"
+        )
+        blocks.declare_objectives(d)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return clamp force over lining; of a design what happens over the speed, with new and with worn linings.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``clamp_force_over_lining``, or of a design ``over_speed`` and ``over_speed_worn``.
+        """
+        if design is None:
+            return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
+        return centrifugal_lever_curves.reversed_lever_curves(self, spec, design)
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        lever = centrifugal_lever_curves.reversed_lever(spec, design)
+        regimes, own = centrifugal_lever_curves.REVERSED_REGIMES, centrifugal_lever_curves.REVERSED_OWN
+        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
+
+    def _declare_leg(self, d: Declaration) -> Leg:
+        return Leg(
+            arm=d.variable(
+                "plate_arm", "mm", *PLATE_ARM, grid=0.5, symbol="l_p",
+                text="Short leg of the lever, which pushes the plate", source=RECONSTRUCTED,
+            ),
+            springs=blocks.declare_springs(d, "return_spring", "spr", "N_r", "draw the plate off the friction disc"),
+            deflection=d.variable(
+                "return_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta_r",
+                text="Deflection of the return springs at rest", source=RECONSTRUCTED,
+            ),
+        )  # fmt: skip
+
+    def _declare_speeds(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        lining: blocks.Lining,
+        lever: lever_blocks.Lever,
+        leg: Leg,
+        springs: blocks.SpringSet,
+        push: Any,
+    ) -> None:
+        """Declare the speeds, and that no phase of the motion snaps."""
+        arm, contact_angle = lever.weights.arm, formulas.contact_angle(lever.contact_travel, leg.arm)
+        back = leg.force(lever.contact_travel)
+        band_squared = formulas.band_squared(
+            push / back, formulas.growth(lever.radius(contact_angle), arm, lever.stop_angle - contact_angle)
+        )
+        contact = lever.speed(formulas.clamp_flyweight_force(back, leg.arm, arm), contact_angle)
+        stop = lever.speed(formulas.clamp_flyweight_force(push, leg.arm, arm), lever.stop_angle)
+        worn = push - back - (springs.rate + leg.springs.rate) * lever.wear
+        blocks.declare_contact(d, duty, contact)
+        blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, LOADED)
+        blocks.declare_band(
+            d, np.sqrt(band_squared), "Full-clamp speed over contact speed; a small one is sharp", LOADED
+        )
+        d.at_most(
+            "no_snap_travel", formulas.gradual_radius(leg.deflection, arm, leg.arm), lever.rest_radius, "mm",
+            text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
+            "the rest radius below which it would jump", source=DERIVED,
+        )  # fmt: skip
+        d.at_most(
+            "no_snap_clamp",
+            formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, leg.arm),
+            lever.rest_radius, "mm",
+            text="Disc 1 lifts step by step: it leaves the housing at a lower speed than the lever stops at; shown is "
+            "the rest radius below which it would jump", source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_springs(
+        self, d: Declaration, lever: lever_blocks.Lever, leg: Leg, springs: blocks.SpringSet, lift: Any
+    ) -> None:
+        d.at_most(
+            "preload_order", leg.force(lever.contact_travel), springs.force(lever.deflection), "N",
+            text="The plate is on the friction disc before disc 1 lifts", source=DERIVED,
+        )  # fmt: skip
+        blocks.limit_spring_force(
+            d, "spring_force", springs, lever.deflection + lift, "The clamp springs stand the stop"
+        )
+        blocks.limit_spring_force(
+            d, "return_spring_force", leg.springs, leg.deflection + lever.contact_travel,
+            "The return springs stand the travel to contact",
+        )  # fmt: skip

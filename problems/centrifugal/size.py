@@ -1,0 +1,82 @@
+"""Outside diameter, mass and inertia of a centrifugal clutch, and its objectives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from problems.centrifugal.sources import DRIVE
+from problems.mechanics import centrifugal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from problems.centrifugal.duty import Duty
+    from problems.centrifugal.flyweights import Flyweights
+    from problems.centrifugal.lining import Lining
+    from problems.centrifugal.springs import SpringSet
+    from synth.declaration import Declaration
+
+# Remarks only.
+RIM_STRESS_MAX = 100e6  # hoop stress from which on the bursting of a rim is worth a calculation [Pa]
+
+
+def declare_size(
+    d: Declaration, duty: Duty, lining: Lining, rest_radius: Any, flyweights: Flyweights, springs: Sequence[SpringSet]
+) -> None:
+    """Declare outside diameter, mass and inertia, the limit of the room there is, and the default objectives.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    lining : Lining
+        Lining.
+    rest_radius : symbol
+        Radius of the flyweights at rest, on which the springs stand too [m].
+    flyweights : Flyweights
+        Flyweights at the end of their way.
+    springs : sequence of SpringSet
+        All springs.
+    """
+    diameter = d.derive(
+        "outer_diameter", "mm",
+        centrifugal.outside_diameter(
+            lining.outer_radius + duty.rim_width,
+            flyweights.end_radius + flyweights.half_height + duty.wall_thickness,
+        ),
+        symbol="D", text="Outside diameter over lining and flyweights, whichever reaches further", source="geometry",
+    )  # fmt: skip
+    spring_mass: Any = sum(spring_set.mass for spring_set in springs)
+    plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.plate_thickness)
+    d.derive(
+        "mass", "kg", plates + flyweights.mass + spring_mass, symbol="m",
+        text="Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs", source="geometry",
+    )  # fmt: skip
+    d.derive(
+        "inertia", "kg*m2",
+        centrifugal.clutch_inertia(
+            plates, diameter, duty.hub_radius, flyweights.mass, flyweights.end_radius, spring_mass, rest_radius
+        ),
+        symbol="J", text="Inertia of plates, flyweights at the end of their way, and springs", source="geometry",
+    )  # fmt: skip
+    if duty.outer_diameter_limit is not None:
+        d.at_most(
+            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
+            text="The clutch fits the room across", source=DRIVE,
+        )  # fmt: skip
+    d.advise(
+        "fast_rim",
+        centrifugal.rim_stress(duty.steel_density, diameter / 2, duty.top_speed) > RIM_STRESS_MAX,
+        "at top_speed the hoop stress of the rim is above 100 N/mm2: calculate the speed at which it bursts",
+        source="hoop stress of a thin ring",
+    )
+
+
+def declare_objectives(d: Declaration) -> None:
+    """Declare the objectives of all centrifugal clutches."""
+    d.objective("outer_diameter")
+    d.objective("mass")
+    d.objective("engagement_band", default=False)
+    d.objective("idle_margin", "max", default=False)

@@ -1,0 +1,300 @@
+"""Centrifugal clutch with capped clamp force: balls or levers, tension disc, two spring sets and a stop (device B)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems import centrifugal as blocks
+from problems.centrifugal import DERIVED, S4, TYPICAL, curves
+from problems.centrifugal import balls as ball_blocks
+from problems.centrifugal import state as states
+from problems.mechanics import centrifugal, two_spring
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ANALYSIS = f"{S4}, analysis 2, corrected"
+MECHANISMS = ("ball_ramp", "lever")
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What balls and levers have in common: axial over centrifugal force going out, and what comes back of the speed.
+
+    ``ratio`` is radial over axial travel, ``balls`` is None for levers.
+    """
+
+    mass: Any
+    half_height: Any
+    ratio: Any
+    push: Any
+    release_ratio: Any
+    needs: tuple[str, ...]
+    balls: ball_blocks.Balls | None
+
+
+@dataclass(frozen=True)
+class Way:
+    """Gaps, springs and forces at the borders of the regimes, in the order in which they are met."""
+
+    plate_travel: Any
+    stop_travel: Any
+    returning: blocks.SpringSet
+    clamping: blocks.SpringSet
+    clamp_preload: Any
+    return_preload: Any
+    contact_force: Any
+    stop_force: Any
+    start_travel: Any
+    contact_travel: Any
+    return_deflection: Any
+    clamp_deflection: Any
+
+    @property
+    def return_rate(self) -> Any:
+        """Rate of the return springs [N/m]."""
+        return self.return_preload / self.return_deflection
+
+    @property
+    def clamp_rate(self) -> Any:
+        """Rate of the clamp springs [N/m]."""
+        return self.clamp_preload / self.clamp_deflection
+
+
+class CentrifugalTwoSpring(DesignProblem):
+    """Centrifugal clutch whose flyweights press clamp springs on the plate until a stop caps them.
+
+    Because the clamp force is capped, a release bearing can open the clutch at any speed.
+    """
+
+    name = "centrifugal_two_spring"
+    title = "Centrifugal clutch, two springs"
+    sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "contact_speed_min", "clamp_force_limit", "lining_wear")
+    operating_point = states.OPERATING_POINT
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        mechanism = d.option(
+            "mechanism", MECHANISMS, "ball_ramp", symbol="mech",
+            text="ball_ramp: balls in ramps push the tension disc; lever: weights on single levers do",
+            source=f"{S4}, analysis 2; practice 2",
+        )  # fmt: skip
+        duty = blocks.declare_duty(d)
+        wants = ball_blocks.declare_force_limits(d, duty)
+        wear = blocks.declare_wear(d)
+        rest = blocks.declare_rest_radius(d)
+        way = self._declare_way(d)
+        drive = (
+            self._declare_balls(d, duty, rest) if mechanism == "ball_ramp" else self._declare_levers(d, duty, rest, way)
+        )
+        lining = blocks.declare_lining(d, self.name, duty)
+
+        def radius(travel: Any) -> Any:
+            return centrifugal.orbit_radius(rest, drive.ratio, travel)
+
+        end, at_contact = radius(way.stop_travel), radius(way.contact_travel)
+        contact = centrifugal.speed_for_force(way.contact_force, drive.mass, at_contact, drive.push)
+        stop = centrifugal.speed_for_force(way.stop_force, drive.mass, end, drive.push)
+        blocks.declare_contact(d, duty, contact, contact * drive.release_ratio, needs=drive.needs)
+        band = centrifugal.speed_ratio(way.stop_force, end, way.contact_force, at_contact)
+        blocks.declare_band(d, band, "Speed at which the clamp force is complete, over the contact speed")
+        clamp = two_spring.clamp_force(way.stop_force, way.contact_force)
+        worn = two_spring.worn_clamp_force(clamp, way.return_rate, way.clamp_rate, wear)
+        blocks.declare_full_clamp(d, duty, lining, worn, stop, ANALYSIS)
+        blocks.declare_clamp(d, lining, clamp, "Clamp force at the stop, the largest, new lining", ANALYSIS)
+        ball_blocks.limit_contact_and_clamp(d, wants, contact, clamp)
+        self._limit_order(d, way, wear, rest, at_contact, radius(way.start_travel), band)
+        blocks.limit_share_of_force(
+            d, "spring1_force", way.returning, way.contact_force,
+            "The return springs stand their deflection at contact",
+        )  # fmt: skip
+        blocks.limit_share_of_force(
+            d, "spring2_force", way.clamping, way.stop_force,
+            "The clamp springs stand their deflection at the stop",
+        )  # fmt: skip
+        if drive.balls is not None:
+            ball_blocks.declare_ball_pressure(d, duty, drive.balls, end)
+        ball_blocks.limit_circle_room(d, wants, rest, drive.balls, [way.returning, way.clamping])
+        push = centrifugal.axial_gain(drive.mass, end, drive.push) * duty.top_speed**2
+        load = blocks.declare_stop_force(
+            d, two_spring.stop_load(push, way.stop_force),
+            "Force on the stop of the tension disc at top_speed", ANALYSIS,
+        )  # fmt: skip
+        springs = [way.returning, way.clamping]
+        blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(drive.mass, end, drive.half_height), springs)
+        self._declare_remarks(d, duty, drive, way, lining, rest)
+        blocks.advise_stop_load(d, load, clamp)
+        blocks.declare_objectives(d)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return what the torque asks for; of a design forces and travel over speed, both branches.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``clamp_force_over_lining``, with balls ``idle_margin_over_ramp``, and of a design ``engaging_over_speed``
+            and ``releasing_over_speed``.
+        """
+        frames = {"clamp_force_over_lining": curves.clamp_force_over_lining(self, spec)}
+        if self.option("mechanism") == "ball_ramp":
+            frames["idle_margin_over_ramp"] = curves.idle_margin_over_ramp(self, spec)
+        if design is not None:
+            frames |= curves.over_speed(self, spec, curves.two_spring_path(self, spec, design))
+        return frames
+
+    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
+        """Return where the flyweights stand at a speed, what presses and what can be carried.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design
+            The design.
+        point : mapping
+            ``speed`` of the driving side [rad/s].
+        """
+        return states.of_path(spec, curves.two_spring_path(self, spec, design), point["speed"])
+
+    def _declare_way(self, d: Declaration) -> Way:
+        plate = d.variable(
+            "plate_travel", "mm", 1, 10, grid=0.1, symbol="a",
+            text="Travel of the pressure plate to contact", source=f"{S4}, h1",
+        )  # fmt: skip
+        stop = d.variable(
+            "stop_travel", "mm", 1, 40, grid=0.1, symbol="b",
+            text="Travel of the tension disc to its stop", source=f"{S4}, h2",
+        )  # fmt: skip
+        return_deflection = d.variable(
+            "return_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta1",
+            text="Deflection of the return springs at rest", source=f"{S4}, F_R10/s1",
+        )  # fmt: skip
+        clamp_deflection = d.variable(
+            "clamp_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta2",
+            text="Deflection of the clamp springs at rest", source=f"{S4}, F_R20/s2",
+        )  # fmt: skip
+        returning = blocks.declare_springs(
+            d, "return_spring", "sp1", "N_1", "they push the pressure plate off the lining (R1)"
+        )
+        clamping = blocks.declare_springs(
+            d, "clamp_spring", "sp2", "N_2", "the tension disc presses them on the pressure plate (R2)"
+        )
+        return_preload = returning.force(return_deflection)
+        clamp_preload = clamping.force(clamp_deflection)
+        # Through preloads and deflections: numbers and rates of the springs stand in the two preloads alone.
+        contact_force = two_spring.stretched_force(return_preload, return_deflection, plate)
+        return Way(
+            plate_travel=plate,
+            stop_travel=stop,
+            returning=returning,
+            clamping=clamping,
+            clamp_preload=clamp_preload,
+            return_preload=return_preload,
+            contact_force=contact_force,
+            stop_force=two_spring.stretched_force(clamp_preload, clamp_deflection, stop - plate),
+            start_travel=two_spring.clamp_spring_travel(return_preload, clamp_preload, clamp_deflection),
+            contact_travel=two_spring.contact_travel(contact_force, clamp_preload, clamp_deflection, plate),
+            return_deflection=return_deflection,
+            clamp_deflection=clamp_deflection,
+        )
+
+    def _declare_balls(self, d: Declaration, duty: blocks.Duty, rest: Any) -> Drive:
+        balls = ball_blocks.declare_balls(d, duty, rest)
+        return Drive(
+            mass=balls.mass,
+            half_height=balls.radius,
+            ratio=balls.ratio,
+            push=balls.push,
+            release_ratio=balls.release_ratio,
+            needs=("ramp_returns",),
+            balls=balls,
+        )
+
+    def _declare_levers(self, d: Declaration, duty: blocks.Duty, rest: Any, way: Way) -> Drive:
+        efficiency = d.requirement(
+            "mechanism_efficiency", "-", 0.95, lower=0.5, upper=1, symbol="eta_m",
+            text=f"Efficiency of the levers, going out as coming in ({TYPICAL})", source=TYPICAL,
+        )  # fmt: skip
+        weights = blocks.declare_weights(d, duty)
+        arm = d.variable(
+            "axial_arm", "mm", 5, 150, grid=0.5, symbol="l_a",
+            text="Arm of the levers on the tension disc", source=f"{S4}, l_a",
+        )  # fmt: skip
+        ratio = d.derive(
+            "lever_ratio", "-", weights.arm / arm, symbol="i_l",
+            text="Transmission of the levers dr/dx, l_c/l_a", source=f"{S4}, practice 2",
+        )  # fmt: skip
+        d.at_most(
+            "lever_angle", way.stop_travel / arm, weights.angle_limit, "rad",
+            text="The levers turn so little that the model holds", source=DERIVED,
+        )  # fmt: skip
+        blocks.limit_weight_room(d, duty, weights, rest)
+        d.advise(
+            "levers_reconstructed",
+            True,
+            "the drawings of the levers are lost: their arms and the room they need are a reconstruction, and "
+            "mechanism_efficiency is a typical value",
+            source=DERIVED,
+        )
+        return Drive(
+            mass=weights.mass,
+            half_height=weights.thickness / 2,
+            ratio=ratio,
+            push=ratio * efficiency,
+            release_ratio=efficiency,  # sqrt(eta_out/eta_in) with eta_in = 1/eta_out
+            needs=(),
+            balls=None,
+        )
+
+    def _limit_order(
+        self, d: Declaration, way: Way, wear: Any, rest: Any, at_contact: Any, at_start: Any, band: Any
+    ) -> None:
+        d.at_most(
+            "preload_order", way.clamp_preload, way.return_preload, "N",
+            text="The clamp springs do not push the plate onto the lining at rest: it would drag at idle",
+            source=f"{DERIVED}; practice 1",
+        )  # fmt: skip
+        worn = two_spring.worn_contact_travel(way.contact_travel, way.return_rate, way.clamp_rate, wear)
+        d.at_most(
+            "stop_after_contact", worn, way.stop_travel, "mm",
+            text="The tension disc reaches its stop only after the worn lining is in contact", source=DERIVED,
+        )  # fmt: skip
+        # Speeds of the same flyweights: mass and transmission cancel, and with them most of what blurs a bound.
+        text = "The {} gradually: every further travel asks for a larger speed (speed before over speed after)"
+        d.at_most(
+            "no_snap_tension", centrifugal.speed_ratio(way.clamp_preload, rest, way.return_preload, at_start), 1, "-",
+            text=text.format("tension disc moves alone"), source=DERIVED,
+        )  # fmt: skip
+        d.at_most(
+            "no_snap_plate", centrifugal.speed_ratio(way.return_preload, at_start, way.contact_force, at_contact), 1,
+            "-", text=text.format("plate moves"), source=DERIVED,
+        )  # fmt: skip
+        d.at_least(
+            "no_snap_clamp", band, 1, "-",
+            text="The clamp force rises gradually: full clamp speed over contact speed", source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_remarks(
+        self, d: Declaration, duty: blocks.Duty, drive: Drive, way: Way, lining: blocks.Lining, rest: Any
+    ) -> None:
+        start = centrifugal.speed_for_force(way.clamp_preload, drive.mass, rest, drive.push)
+        blocks.advise_gravity(d, rest, start)
+        blocks.advise_release_gap(d, way.plate_travel, lining)
+        blocks.advise_springs(
+            d, duty, way.returning, rest, way.return_deflection, way.plate_travel, "the return springs"
+        )
+        blocks.advise_springs(
+            d, duty, way.clamping, rest, way.clamp_deflection, way.stop_travel - way.plate_travel, "the clamp springs"
+        )

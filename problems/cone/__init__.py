@@ -1,0 +1,1 @@
+"""Cone clutch: its declaration and its own formulas."""

@@ -1,0 +1,444 @@
+"""Cone clutch: torque through a lined cone, with the spring outside or its force closed inside."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems import friction
+from problems.cone import formulas as cone
+from problems.friction import startup_curves
+from problems.mechanics import heat
+from synth import DesignProblem
+from synth.declaration import Declaration, Part
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+S1 = "S1 (lecture on friction clutches)"
+DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
+TYPICAL = "engineering-typical value"
+# The friction work is shared by the inner and the outer cone.
+SHELL_SHARE = 0.5
+COOLING = "still_air"
+
+
+# Of the curves: half angles [deg], and friction where no pair is chosen.
+ANGLES_SHOWN = (4.0, 30.0)
+FRICTION_SHOWN = (0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+@dataclass(frozen=True)
+class Wants:
+    """Requirements of the cone, all in SI; None where an optional one is not given."""
+
+    ratio_min: Any
+    ratio_max: Any
+    locking_margin: Any
+    seating_factor: Any
+    bearing_force_limit: Any
+    temperature_rise_limit: Any
+
+
+@dataclass(frozen=True)
+class Cone:
+    """The friction cone."""
+
+    force: Any
+    mean_diameter: Any
+    length: Any
+    angle: Any
+    shell_thickness: Any
+    ratio: Any
+    area: Any
+    largest_diameter: Any
+
+
+class ConeClutch(DesignProblem):
+    """Cone clutch with a spring that pushes against the shaft bearings, or with an inner cone that closes the force.
+
+    Sizing and start-up follow S1, whose cone formulas are lost in print and were derived again.
+    """
+
+    name = "cone_clutch"
+    title = "Cone clutch"
+    sources = (
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat); cone formulas derived again",
+        "Shigley, Mechanical Engineering Design, cone clutch: uniform pressure and uniform wear",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+    simulation_settings = startup_curves.SETTINGS
+    understands = (*friction.COMMON, "steel_specific_heat", "temperature_rise_limit")
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = friction.declare_duty(d, COOLING, None)
+        if duty.cooling != COOLING:
+            d.advise(
+                "cooling_not_counted",
+                True,
+                "the heat that a cone gives off is not computed: cooling decides only which hourly heat of the lining "
+                "counts, heat_transfer nothing",
+                source="premise of the cone model",
+            )
+        wants = self._declare_requirements(d)
+        shape = self._declare_cone(d, wants)
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(d, self.name, duty, None)
+        layout = d.part(
+            "cone_layout", "cone_layouts", symbol="lay",
+            text="Outer spring, or inner cone that closes the axial force inside", source=f"{S1}, inner-cone clutch",
+        )  # fmt: skip
+
+        def torque(peripheral_force: Any) -> Any:
+            return cone.friction_torque(peripheral_force, shape.mean_diameter, shape.ratio, shape.angle)
+
+        low, high = pair.mu_low, pair.mu_high
+        # The peripheral force stays one expression for torque and pressure, so that a bound on one reaches the other.
+        grip_low = shape.force * cone.grip_factor(shape.angle, low)
+        grip_high = grip_low if high is low else shape.force * cone.grip_factor(shape.angle, high)
+        seated_force = cone.seated_force(shape.force, shape.angle)
+        seated_torque = torque(high * seated_force)
+        torques = friction.declare_torque(
+            d, duty, pair, friction.sizing_torque(duty), torque(grip_low), torque(grip_high), overload=seated_torque
+        )
+        start = friction.declare_startup(d, duty, torques, ramp_time)
+        friction.declare_surface_loads(
+            d, duty, pair, start, shape.area, shape.area, grip_low / low / shape.area, shape.largest_diameter / 2
+        )
+        self._declare_seating(d, duty, wants, pair, shape, seated_torque, seated_force / shape.area)
+        self._declare_release(d, duty, wants, pair, shape, cone.release_force(grip_high / high, shape.angle, high))
+        self._declare_bearing(d, wants, shape, layout)
+        shell_mass = cone.shell_mass(duty.steel_density, shape.area, shape.shell_thickness)
+        lining = pair.part.lining_thickness
+        size = friction.Size(
+            mass=cone.clutch_mass(
+                layout.mass_factor, shape.area, duty.steel_density, shape.shell_thickness, pair.part.density, lining
+            ),
+            diameter=cone.overall_diameter(shape.largest_diameter, shape.shell_thickness, lining),
+            length=cone.overall_length(shape.length, shape.angle, layout.length_add),
+        )
+        friction.declare_size(
+            d, size, "Both shells and the lining, times the mass_factor of the layout", "Outside of the outer cone",
+            "dm + l_g sin(alpha) + 2 (t_s + t_lining)",
+            "Length of the cone and what the layout adds to it",
+        )  # fmt: skip
+        self._declare_temperature(d, duty, wants, pair, start, shell_mass)
+        friction.declare_envelope(d, duty, shape.force, size.diameter, size.length)
+        d.objective("mass")
+        d.objective("actuation_force")
+        for name in ("outer_diameter", "length", "volume", "friction_work"):
+            d.objective(name, default=False)
+
+    def _declare_requirements(self, d: Declaration) -> Wants:
+        wants = Wants(
+            ratio_min=d.requirement(
+                "ring_ratio_min", "-", 0.15, lower=0.02, upper=0.9, symbol="c_min",
+                text="Least generator length over mean diameter", source=f"{S1}, empirical range of c",
+            ),
+            ratio_max=d.requirement(
+                "ring_ratio_max", "-", 0.20, lower=0.02, upper=0.9, symbol="c_max",
+                text="Largest generator length over mean diameter", source=f"{S1}, empirical range of c",
+            ),
+            locking_margin=d.requirement(
+                "locking_margin", "-", 1.05, lower=0.5, upper=2, symbol="k_lock",
+                text="Least tan(alpha) over static friction; below 1 the cones may lock", source=DERIVED,
+            ),
+            seating_factor=d.requirement(
+                "seating_pressure_factor", "-", 2.5, lower=1, upper=10, symbol="k_seat",
+                text="Largest pressure after seating over p_allow of the lining", source="premise of the cone model",
+            ),
+            bearing_force_limit=d.requirement(
+                "bearing_force_limit", "N", lower=1, upper=1e6, optional=True, symbol="F_bearing_max",
+                text="Largest axial load of the shaft bearings", source="requirement of the drive",
+            ),
+            temperature_rise_limit=d.requirement(
+                "temperature_rise_limit", "K", 100, lower=1, upper=1000, symbol="dT_allow",
+                text=f"Largest temperature rise of a shell in one engagement ({TYPICAL})", source=TYPICAL,
+            ),
+        )  # fmt: skip
+        d.refuse(
+            "bad_ratio",
+            wants.ratio_min > wants.ratio_max,
+            "a ring_ratio_min of at most ring_ratio_max; otherwise no cone satisfies both",
+        )
+        d.advise(
+            "locking_allowed",
+            wants.locking_margin < 1,
+            "locking_margin below 1 lets the cones lock: they must be pulled apart, with more than release_force "
+            "says where the friction at rest is the higher one",
+            source=f"{S1}, release by an outer force",
+        )
+        return wants
+
+    def _declare_cone(self, d: Declaration, wants: Wants) -> Cone:
+        force = d.variable(
+            "actuation_force", "N", 50, 100000, symbol="F0",
+            text="Spring force: the axial force that engages the cones", source=f"{S1}, the spring is sized for it",
+        )  # fmt: skip
+        mean_diameter = d.variable(
+            "mean_diameter", "mm", 40, 800, grid=1, symbol="dm",
+            text="Mean diameter of the friction cone", source=f"{S1}, dm",
+        )  # fmt: skip
+        length = d.variable(
+            "generator_length", "mm", 4, 200, grid=0.5, symbol="l_g",
+            text="Length of the friction face along its generator", source=f"{S1}, b",
+        )  # fmt: skip
+        angle = d.variable(
+            "cone_half_angle", "deg", 6, 26, grid=0.5, symbol="alpha",
+            text="Between generator and axis", source=f"{S1}, alpha",
+        )  # fmt: skip
+        shell_thickness = d.variable(
+            "shell_thickness", "mm", 3, 20, grid=0.5, symbol="t_s",
+            text="Wall of the inner and of the outer cone, which store the heat", source="geometry",
+        )  # fmt: skip
+        ratio = d.derive(
+            "ring_ratio", "-", length / mean_diameter, symbol="c",
+            text="Generator length over mean diameter", source=f"{S1}, c = b/dm",
+        )  # fmt: skip
+        d.at_least(
+            "ring_ratio_min", ratio, wants.ratio_min, "-",
+            text="The face is not too narrow", source=f"{S1}, empirical range of c",
+        )  # fmt: skip
+        d.at_most(
+            "ring_ratio_max", ratio, wants.ratio_max, "-",
+            text="The face is not too wide", source=f"{S1}, empirical range of c",
+        )  # fmt: skip
+        practice = "practice of cone clutches: 8 to 15, at most 18 degrees"
+        d.advise(
+            "slender_cone", angle < np.radians(8), "half angles below 8 degrees tend to grab and to stick",
+            source=practice,
+        )  # fmt: skip
+        d.advise(
+            "blunt_cone", angle > np.radians(18),
+            "above 18 degrees little is left of the wedge effect for which a cone is chosen; a lining with less "
+            "friction at rest allows a smaller angle",
+            source=practice,
+        )  # fmt: skip
+        return Cone(
+            force=force,
+            mean_diameter=mean_diameter,
+            length=length,
+            angle=angle,
+            shell_thickness=shell_thickness,
+            ratio=ratio,
+            area=cone.face_area(mean_diameter, length),
+            largest_diameter=cone.largest_diameter(mean_diameter, length, angle),
+        )
+
+    def _declare_seating(
+        self,
+        d: Declaration,
+        duty: friction.Duty,
+        wants: Wants,
+        pair: friction.Pair,
+        shape: Cone,
+        torque: Any,
+        pressure: Any,
+    ) -> None:
+        """Declare torque and pressure after vibration has removed the axial friction."""
+        d.derive(
+            "seated_torque", "N*m", torque, symbol="M_seat",
+            text="Torque after vibration has seated the cones under the same spring (worst_case: with mu_max)",
+            source="derived, N = F/sin(alpha)",
+        )  # fmt: skip
+        seated = d.derive(
+            "seated_pressure", "N/mm2", pressure, symbol="p_seat",
+            text="Pressure after vibration has seated the cones under the same spring",
+            source="derived, N = F/sin(alpha)",
+        )  # fmt: skip
+        d.at_most(
+            "seated_pressure", seated, wants.seating_factor * pair.part.p_allow, "N/mm2",
+            text="The lining stands the pressure of the seated cones", source="premise of the cone model",
+        )  # fmt: skip
+        if duty.overload_torque is None:
+            d.advise(
+                "seating",
+                cone.seating_factor(shape.angle, pair.mu_high) > 2,
+                "seated by vibration the clutch slips only at more than twice its torque: reckon with seated_torque "
+                "for shafts and drive; overload_torque limits it",
+                source=f"{S1}, clutch as safety element; derived",
+            )
+
+    def _declare_release(
+        self, d: Declaration, duty: friction.Duty, wants: Wants, pair: friction.Pair, shape: Cone, force: Any
+    ) -> None:
+        """Declare the release force and the limit against self-locking."""
+        release = d.derive(
+            "release_force", "N", force, symbol="F_rel",
+            text="Force with which the cones push apart; negative: they must be pulled (worst_case: with mu_max)",
+            source=DERIVED,
+        )  # fmt: skip
+        static = pair.part.mu_static
+        if duty.friction_basis == "worst_case":
+            static = np.maximum(static, pair.part.mu_max)
+        d.at_least(
+            "self_locking", np.tan(shape.angle), wants.locking_margin * static, "-",
+            text="The cones come apart by themselves", source=f"{DERIVED}: tan(alpha) >= mu_static",
+        )  # fmt: skip
+        d.advise(
+            "pulled_apart",
+            release < 0,
+            "the cones stay together without a force and must be pulled apart",
+            source=f"{S1}, release by an outer force",
+        )
+
+    def _declare_bearing(self, d: Declaration, wants: Wants, shape: Cone, layout: Part) -> None:
+        force = d.derive(
+            "bearing_force", "N", cone.bearing_force(shape.force, layout.force_closed), symbol="F_bear",
+            text="Axial load of the shaft bearings: the spring force, 0 with an inner cone",
+            source=f"{S1}, cone and inner-cone clutch",
+        )  # fmt: skip
+        if wants.bearing_force_limit is not None:
+            d.at_most(
+                "bearing_axial", force, wants.bearing_force_limit, "N",
+                text="The shaft bearings stand the spring", source="requirement of the drive",
+            )  # fmt: skip
+        else:
+            d.advise(
+                "bearing_thrust",
+                layout.force_closed < 0.5,
+                "the spring loads the shaft bearings with bearing_force as long as the clutch is engaged; an inner "
+                "cone does not",
+                source=f"{S1}, cone and inner-cone clutch",
+            )
+
+    def _declare_temperature(
+        self,
+        d: Declaration,
+        duty: friction.Duty,
+        wants: Wants,
+        pair: friction.Pair,
+        start: friction.Startup,
+        shell_mass: Any,
+    ) -> None:
+        rise = d.derive(
+            "temperature_rise", "K",
+            heat.adiabatic_rise(start.friction_work, shell_mass, duty.steel_specific_heat, SHELL_SHARE), symbol="dT",
+            text="A shell after one engagement, which takes half of the friction work",
+            source="heat balance",
+        )  # fmt: skip
+        d.at_most(
+            "shell_temperature_rise", rise, wants.temperature_rise_limit, "K",
+            text="The shell is thick enough for the heat of one engagement", source="heat balance",
+        )  # fmt: skip
+        d.advise(
+            "lining_temperature",
+            rise > pair.part.optional("temp_max") - duty.ambient_temperature,
+            "one engagement makes the shell hotter than the lining stands, even from ambient_temperature; a thicker "
+            "shell helps, or a lower temperature_rise_limit",
+            source="Neale, Tribology Handbook, Table 7.4",
+        )
+        d.advise(
+            "cooling_pause",
+            rise > pair.part.optional("temp_continuous") - duty.ambient_temperature,
+            "one engagement makes the shell hotter than the lining stands continuously: it has to cool down before "
+            "the next; frequent switching makes cooling compulsory",
+            source="Neale, Tribology Handbook, Table 7.4; S0 (Szoke 1966), cooling of the plates",
+        )
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the conical shell over repeated engagements."""
+        return startup_curves.startup_frames(self, spec, design, startup_curves.heated_capacity(design, SHELL_SHARE))
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return axial forces over the half angle, for some friction values and of a design, and the start-up.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw; mean diameter, face and torque are held, the angle varies.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``force_ratio_over_angle``, ``startup_over_torque``, and of a design ``force_over_angle``.
+        """
+        curves = {
+            "force_ratio_over_angle": self._force_ratio_over_angle(spec),
+            "startup_over_torque": startup_curves.startup_over_torque(self, spec, design),
+        }
+        if design is not None:
+            curves["force_over_angle"] = self._force_over_angle(spec, design)
+        return curves
+
+    def _force_ratio_over_angle(self, spec: Mapping[str, Any]) -> pd.DataFrame:
+        import pandas as pd
+
+        degrees = np.linspace(*ANGLES_SHOWN, 105)
+        angle = np.radians(degrees)
+        engaging = {f"engaging, friction {mu:g} [-]": cone.engaging_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
+        releasing = {f"releasing, friction {mu:g} [-]": cone.release_force(1 / mu, angle, mu) for mu in FRICTION_SHOWN}
+        frame = pd.DataFrame({"half angle [deg]": degrees, **engaging, **releasing})
+        required = friction.sizing_torque_of(spec)
+        frame.attrs = {
+            "title": f"Cone clutch: axial force over peripheral force 2M/dm (M = {required:.4g} N*m)",
+            "panels": [
+                {"label": "engaging force dm/(2M) [-]", "columns": list(engaging)},
+                {"label": "releasing force dm/(2M) [-]", "columns": list(releasing)},
+            ],
+            "marks": [
+                {"x": float(np.degrees(cone.locking_angle(mu))), "label": f"self-locking below, {mu:g}"}
+                for mu in FRICTION_SHOWN
+            ],
+            "lines": [{"panel": 1, "y": 0.0, "label": "below: must be pulled apart"}],
+            "source": DERIVED,
+        }
+        return frame
+
+    def _force_over_angle(self, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+        import pandas as pd
+
+        value, pair = design.values, design.parts["friction_pair"]
+        worst_case = self.options.get("friction_basis", self.options.get("basis", "nominal")) == "worst_case"
+        low, high = (pair["mu_min"], pair["mu_max"]) if worst_case else (pair["mu_dynamic"], pair["mu_dynamic"])
+        static = max(pair["mu_static"], high) if worst_case else pair["mu_static"]
+        degrees = np.linspace(*ANGLES_SHOWN, 105)
+        angle = np.radians(degrees)
+        mean, ratio = value["mean_diameter"], value["ring_ratio"]
+        area = cone.face_area(mean, value["generator_length"])
+        # The normal force that carries the torque of the design at each angle, and the spring that engages it.
+        normal = value["torque"] / cone.friction_torque(low, mean, ratio, angle)
+        spring = cone.engaging_force(normal, angle, low)
+        seated = cone.seated_force(spring, angle)
+        frame = pd.DataFrame({
+            "half angle [deg]": degrees,
+            "engaging: the spring [N]": spring,
+            "in service [N]": cone.service_force(normal, angle),
+            "releasing [N]": cone.release_force(cone.normal_force(spring, angle, high), angle, high),
+            "engaged [N*m]": np.full_like(angle, value["torque"]),
+            "seated by vibration [N*m]": cone.friction_torque(high * seated, mean, ratio, angle),
+            "engaged [N/mm2]": normal / area / 1e6,
+            "seated by vibration [N/mm2]": seated / area / 1e6,
+        })  # fmt: skip
+        by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
+        locking, kept = np.degrees(cone.locking_angle(static * np.array([1.0, max(spec["locking_margin"], 1.0)])))
+        allowed = pair["p_allow"] / 1e6
+        lines = [
+            {"panel": 0, "y": 0.0, "label": "below: must be pulled apart"},
+            {"panel": 2, "y": allowed, "label": "p_allow"},
+            {"panel": 2, "y": allowed * spec["seating_pressure_factor"], "label": "p_allow of seated cones"},
+        ]
+        if spec["overload_torque"] is not None:
+            lines.append({"panel": 1, "y": spec["overload_torque"], "label": "overload_torque"})
+        frame.attrs = {
+            "title": f"Cone clutch: forces over the half angle for {value['torque']:.4g} N*m, {pair['designation']}",
+            "panels": [
+                {"label": "axial force [N]", "columns": by_unit["[N]"]},
+                {"label": "torque [N*m]", "columns": by_unit["[N*m]"]},
+                {"label": "pressure [N/mm2]", "columns": by_unit["[N/mm2]"]},
+            ],
+            "marks": [{"x": float(np.degrees(value["cone_half_angle"])), "label": "this design"}],
+            "spans": [
+                {"from": ANGLES_SHOWN[0], "to": locking, "label": "self-locking"},
+                {"from": locking, "to": kept, "label": "below locking_margin"},
+            ],
+            "lines": lines,
+            "source": DERIVED,
+        }
+        return frame

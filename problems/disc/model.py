@@ -1,0 +1,101 @@
+"""Disc clutch: torque through one or two large dry discs between pressure plates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from problems import friction
+from problems.disc import curves as disc_curves
+from problems.disc import pack as disc_pack
+from problems.friction import startup_curves
+from problems.mechanics import disc
+from problems.mechanics import ring as ring_formulas
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class DiscClutch(DesignProblem):
+    """Dry disc clutch with one or two discs, two friction surfaces each.
+
+    Sizing and start-up follow S1; the worn-in capacity (uniform wear) is Shigley's.
+    """
+
+    name = "disc_clutch"
+    title = "Disc clutch"
+    sources = (
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        "Shigley, Mechanical Engineering Design, disc clutch: uniform pressure and uniform wear",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+    simulation_settings = startup_curves.SETTINGS
+    understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap", "temperature_rise_limit")
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        duty = friction.declare_duty(d, "still_air", "dry")
+        ring = friction.declare_ring(d, 0.11, 0.13)
+        pack = disc_pack.declare_disc_pack(d, duty, ring)
+        force = d.variable(
+            "actuation_force", "N", 50, 200000, symbol="F0",
+            text="Axial force of the springs on the pressure plate", source="S1 (lecture on friction clutches), F",
+        )  # fmt: skip
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(d, self.name, duty, "dry")
+
+        def torque(mu: Any) -> Any:
+            return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
+
+        required = friction.sizing_torque(duty)
+        torques = friction.declare_torque(d, duty, pair, required, torque(pair.mu_low), torque(pair.mu_high))
+        disc_pack.declare_worn_torque(d, pair, torques, ring, pack, force)
+        start = friction.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        friction.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
+        size = disc_pack.disc_size(duty, ring, pair, pack)
+        friction.declare_size(
+            d, size, "Pressure plates, linings and cores, without flywheel, springs and cover",
+            "Outside of the cover",
+            "2 (r2 + s_cover)",
+            "Length of the released discs and pressure plates, without flywheel, springs and cover",
+        )  # fmt: skip
+        disc_pack.declare_disc_inertia(d, duty, ring, pair, pack)
+        disc_pack.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
+        friction.declare_envelope(d, duty, force, size.diameter, size.length)
+        d.objective("mass")
+        d.objective("actuation_force")
+        for name in ("outer_diameter", "volume", "friction_work", "disc_inertia"):
+            d.objective(name, default=False)
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""
+        hottest = startup_curves.heated_capacity(design, disc.HOTTEST_PLATE_SHARE)
+        return startup_curves.startup_frames(self, spec, design, hottest * design.values["discs"])
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the size a torque needs and what starts cost; of a design pressure over radius, torque over force.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``diameter_over_lining``, ``startup_over_torque``, and of a design ``pressure_over_radius`` and
+            ``torque_over_force``.
+        """
+        curves = {
+            "diameter_over_lining": disc_curves.diameter_over_lining(self, spec),
+            "startup_over_torque": startup_curves.startup_over_torque(self, spec, design),
+        }
+        if design is not None:
+            curves["pressure_over_radius"] = disc_curves.pressure_over_radius(self, design)
+            curves["torque_over_force"] = disc_curves.torque_over_force(self, spec, design)
+        return curves

@@ -1,0 +1,230 @@
+"""The pack of a dry disc clutch: one or two lined discs between pressure plates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems.friction.duty import Duty, Size
+from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching
+from problems.friction.ring import Ring
+from problems.friction.sources import S0, S1, TYPICAL
+from problems.mechanics import disc, heat, plates
+from problems.mechanics import ring as ring_formulas
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration
+
+
+@dataclass(frozen=True)
+class DiscRequirements:
+    """Requirements of a disc pack, all in SI."""
+
+    core_thickness: Any
+    hub_radius: Any
+    cover_gap: Any
+    plate_density: Any
+    plate_specific_heat: Any
+    temperature_rise_limit: Any
+
+
+@dataclass(frozen=True)
+class DiscPack:
+    """The discs and pressure plates."""
+
+    wants: DiscRequirements
+    discs: Any
+    surfaces: Any
+    plate_thickness: Any
+
+
+def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
+    """Declare requirements and unknowns of a disc pack, and the limit of its bore.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    ring : Ring
+        Block ring.
+
+    Returns
+    -------
+    DiscPack
+        Symbols of the block.
+    """
+    wants = DiscRequirements(
+        core_thickness=d.requirement(
+            "core_thickness", "mm", 2, lower=0.3, upper=30, symbol="t_core",
+            text=f"Steel core of a disc ({TYPICAL})", source=TYPICAL,
+        ),
+        hub_radius=d.requirement(
+            "disc_hub_radius", "mm", 20, lower=1, upper=500, symbol="r_hub",
+            text=f"Inner edge of the core: room for the hub ({TYPICAL})", source=TYPICAL,
+        ),
+        cover_gap=d.requirement(
+            "cover_gap", "mm", 8, lower=0, upper=100, symbol="s_cover",
+            text=f"From the edge of the friction ring to the outside ({TYPICAL})", source=TYPICAL,
+        ),
+        plate_density=d.requirement(
+            "pressure_plate_density", "kg/m3", 7200, lower=1000, upper=20000, symbol="rho_plate",
+            text="Density of the pressure plates, by default cast iron", source="material constant",
+        ),
+        plate_specific_heat=d.requirement(
+            "pressure_plate_specific_heat", "J/(kg*K)", 500, lower=100, upper=2000, symbol="cp_plate",
+            text="Specific heat of the pressure plates, by default cast iron", source="material constant",
+        ),
+        temperature_rise_limit=d.requirement(
+            "temperature_rise_limit", "K", 100, lower=1, upper=1000, symbol="dT_allow",
+            text=f"Largest temperature rise of a pressure plate in one engagement ({TYPICAL})", source=TYPICAL,
+        ),
+    )  # fmt: skip
+    discs = d.count(
+        "discs", 1, 2, symbol="n_d",
+        text="Lined discs, each with a pressure plate of its own; two friction surfaces per disc",
+        source=f"{S1}, disc clutch: few large friction surfaces",
+    )  # fmt: skip
+    plate_thickness = d.variable(
+        "pressure_plate_thickness", "mm", 3, 40, grid=0.5, symbol="t_p",
+        text="Thickness of a pressure plate, which stores the heat", source=f"{S1}, pressure plate",
+    )  # fmt: skip
+    d.at_least(
+        "hub_bore", ring.inner_radius, wants.hub_radius, "mm",
+        text="The hub fits inside the friction ring", source="geometry",
+    )  # fmt: skip
+    if duty.outer_diameter_limit is not None:
+        least_outer = 2 * wants.hub_radius * (1 + ring.ratio_min) / (1 - ring.ratio_min)
+        d.refuse(
+            "no_room_for_ring",
+            least_outer + 2 * wants.cover_gap > duty.outer_diameter_limit,
+            "room for a friction ring of at least ring_ratio_min between disc_hub_radius and outer_diameter_limit, "
+            "besides cover_gap",
+        )
+    d.advise(
+        "twin_disc_release",
+        discs > 1,
+        "the intermediate plate of a twin disc needs a release of its own (lift springs, a stop): discs that do not "
+        "part drag after release, on a vertical shaft most of all",
+        source=f"{S0}, release must separate the plates",
+    )
+    return DiscPack(wants, discs, disc.surface_count(discs), plate_thickness)
+
+
+def declare_worn_torque(d: Declaration, pair: Pair, torques: Torques, ring: Ring, pack: DiscPack, force: Any) -> None:
+    """Declare the capacity with worn-in lining and its limit.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    pair : Pair
+        Slot friction_pair.
+    torques : Torques
+        Torques of the clutch.
+    ring : Ring
+        Block ring.
+    pack : DiscPack
+        The discs.
+    force : symbol
+        Axial force F0 [N].
+    """
+    worn = d.derive(
+        "worn_torque", "N*m", ring_formulas.worn_torque(pack.surfaces, pair.mu_low, force, ring.mean_diameter),
+        symbol="M_worn", text="Capacity with worn-in lining, pressure times radius constant (worst_case: with mu_min)",
+        source="Shigley, Mechanical Engineering Design, uniform wear",
+    )  # fmt: skip
+    d.at_least(
+        "worn_torque_capacity", worn, torques.required, "N*m",
+        text="The worn-in clutch carries the sizing torque", source="Shigley, Mechanical Engineering Design",
+    )  # fmt: skip
+
+
+def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
+    """Return mass and room of a disc pack."""
+    wants, lining = pack.wants, pair.part.lining_thickness
+    core = plates.annulus_mass(
+        duty.steel_density,
+        pack.discs,
+        wants.core_thickness,
+        ring.outer_radius + wants.hub_radius,
+        ring.outer_radius - wants.hub_radius,
+    )
+    return Size(
+        mass=pack.discs * disc.pressure_plate_mass(wants.plate_density, pack.plate_thickness, ring.area)
+        + plates.lining_mass(pair.part.density, lining, pack.surfaces * ring.area)
+        + core,
+        diameter=2 * (ring.outer_radius + wants.cover_gap),
+        length=disc.clutch_length(pack.discs, lining, wants.core_thickness, pack.plate_thickness, duty.plate_gap),
+    )
+
+
+def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
+    """Declare the inertia of the discs, which the gearbox has to synchronise."""
+    d.derive(
+        "disc_inertia", "kg*m2",
+        disc.disc_inertia(
+            pack.discs,
+            disc.lining_inertia(pair.part.density, pair.part.lining_thickness, ring.mean_diameter, ring.ratio),
+            disc.core_inertia(
+                duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.hub_radius
+            ),
+        ),
+        symbol="J_disc", text="Inertia of the discs, cores with linings", source="geometry",
+    )  # fmt: skip
+
+
+def declare_disc_temperature(
+    d: Declaration, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: Size
+) -> None:
+    """Declare the temperatures of a disc pack and their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    pair : Pair
+        Slot friction_pair.
+    start : Startup
+        What one engagement costs.
+    ring : Ring
+        Block ring.
+    pack : DiscPack
+        The discs.
+    size : Size
+        Room of the clutch, whose outside gives off the heat.
+    """
+    wants = pack.wants
+    plate_mass = disc.pressure_plate_mass(wants.plate_density, pack.plate_thickness, ring.area)
+    rise = d.derive(
+        "temperature_rise", "K",
+        heat.adiabatic_rise(start.friction_work, plate_mass, wants.plate_specific_heat, disc.HOTTEST_PLATE_SHARE),
+        symbol="dT", text="Hottest pressure plate after one engagement, which takes half of the friction work",
+        source="heat balance; half of the work for the hottest plate of a single or twin disc",
+    )  # fmt: skip
+    cooled_area = plates.cylinder_surface(size.diameter, size.length)
+    mean_rise = d.derive(
+        "mean_temperature_rise", "K",
+        heat.mean_temperature_rise(start.friction_work, duty.switching_rate, duty.heat_transfer, cooled_area),
+        symbol="dT_m", text="Clutch over ambient, mean of repeated switching",
+        source=f"lumped heat balance; {S1}, repeated switching",
+    )  # fmt: skip
+    d.at_most(
+        "plate_temperature_rise", rise, wants.temperature_rise_limit, "K",
+        text="The pressure plate is thick enough for the heat of one engagement", source="heat balance",
+    )  # fmt: skip
+    d.at_most(
+        "mean_temperature", mean_rise, pair.part.temp_continuous - duty.ambient_temperature, "K",
+        text="The lining stands the mean temperature", source="Neale, Tribology Handbook, Table 7.4",
+    )  # fmt: skip
+    advise_frequent_switching(d, duty, pack.discs * plate_mass * wants.plate_specific_heat, cooled_area)
+    d.advise(
+        "lining_temperature",
+        mean_rise + rise > pair.part.optional("temp_max") - duty.ambient_temperature,
+        "just after an engagement in steady repetition the pressure plate is hotter than the lining stands: a thicker "
+        "pressure plate or a stronger cooling helps",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )

@@ -1,0 +1,292 @@
+"""Curves of the electromagnetic clutch: torque over current and temperature, pull over the gap, heat balance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.electromagnetic import formulas as pot_magnet
+from problems.friction import startup_curves
+from problems.magnet import coil_curves
+from problems.magnet.coil_curves import POINTS, Warmth
+from problems.mechanics import disc, heat, magnetics, plates
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth import DesignProblem
+
+SOURCE = "S4 (notes on centrifugal clutches), section 6.6; derived, not measured"
+
+
+@dataclass(frozen=True)
+class Built:
+    """The magnet of one design, all in SI."""
+
+    shape: pot_magnet.PotMagnet
+    leakage_factor: float
+    iron_reluctance: float
+    iron_saturation: float
+    return_force: float
+
+    def pole(self, flux_density: Any) -> Any:
+        """Return the flux density of the pole iron [T]."""
+        return self.leakage_factor * flux_density
+
+    def yoke(self, flux_density: Any) -> Any:
+        """Return the flux density of the yoke [T]."""
+        return self.pole(flux_density) * pot_magnet.yoke_flux_ratio(self.shape)
+
+    def ampere_turns(self, flux_density: Any) -> Any:
+        """Return the ampere-turns of a flux density [A]."""
+        densest = np.maximum(self.pole(flux_density), self.yoke(flux_density))
+        field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
+        return pot_magnet.engaged_ampere_turns(flux_density, self.shape, field)
+
+    def flux_density(self, ampere_turns: Any) -> np.ndarray:
+        """Return the flux densities that ampere-turns give, by bisection [T]."""
+        highest = self.iron_saturation / float(np.maximum(self.pole(1.0), self.yoke(1.0)))
+        return coil_curves.flux_densities(ampere_turns, self.ampere_turns, highest)
+
+    def force(self, flux_density: Any) -> Any:
+        """Return what is left for the pack [N]."""
+        return np.maximum(pot_magnet.magnet_force(flux_density, self.shape) - self.return_force, 0.0)
+
+
+def built(spec: Mapping[str, Any], design: Any) -> Built:
+    """Return what the formulas need of the magnet of a design."""
+    value = design.values
+    return Built(
+        shape=pot_magnet.PotMagnet(
+            bore=spec["magnet_bore_radius"],
+            pole_width=value["inner_pole_width"],
+            coil_length=value["coil_length"],
+            coil_height=value["coil_height"],
+            thickness=value["yoke_thickness"],
+            residual_gap=spec["residual_gap"],
+        ),
+        leakage_factor=spec["leakage_factor"],
+        iron_reluctance=spec["iron_reluctance"],
+        iron_saturation=spec["iron_saturation"],
+        return_force=spec["return_spring_force"],
+    )
+
+
+def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
+    """Return what heats and cools the magnet of a design."""
+    shape, wire, value = built(spec, design).shape, design.parts["winding_wire"], design.values
+    surface = magnetics.cylinder_surface(shape.outer_radius, shape.body_length)
+    radius = shape.inner_pole_radius + shape.coil_height / 2
+    return Warmth(
+        conductance=float(spec["still_heat_transfer"] * surface),
+        ambient=spec["ambient_temperature"],
+        limit=wire["insulation_temperature"],
+        limited_by="insulation",
+        other_heat=float(heat.hourly_heat(value["friction_work"], spec["engagements_per_hour"])),
+        brush_drop=0.0,
+        resistance=float(magnetics.coil_resistance(radius, value["turns"], wire["copper_area"])),
+    )
+
+
+@dataclass(frozen=True)
+class HeatedPack:
+    """What stores the heat of a start, and the surface that gives it off."""
+
+    heat_capacity: float
+    cooled_area: float
+
+
+def pack_of(spec: Mapping[str, Any], design: Any, discs: bool) -> HeatedPack:
+    """Return the friction pack of a design as the start-up heats it, without the magnet.
+
+    Parameters
+    ----------
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+    discs : bool
+        The pack is that of a disc clutch.
+
+    Returns
+    -------
+    HeatedPack
+        Heat capacity [J/K] and surface [m2].
+    """
+    value, pair, shape = design.values, design.parts["friction_pair"], built(spec, design).shape
+    length = value["length"] - shape.length
+    if discs:
+        diameter = value["ring_outer_diameter"] + 2 * spec["cover_gap"]
+        capacity = startup_curves.heated_capacity(design, disc.HOTTEST_PLATE_SHARE) * value["discs"]
+    else:
+        diameter = plates.drum_diameter(value["outer_spline_radius"], spec["drum_wall"])
+        section = value["turns"] * design.parts["winding_wire"]["copper_area"]
+        copper = magnetics.copper_mass(shape.inner_pole_radius + shape.coil_height / 2, section)
+        magnet = pot_magnet.magnet_mass(spec["steel_density"], shape, copper)
+        lining = plates.lining_mass(pair["density"], pair["lining_thickness"], value["friction_area"])
+        capacity = (value["mass"] - magnet - lining) * spec["steel_specific_heat"]
+    return HeatedPack(float(capacity), float(plates.cylinder_surface(diameter, length)))
+
+
+def _torques(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
+    return [
+        {"panel": 0, "y": design.values["required_torque"], "label": "sizing torque"},
+        {"panel": 0, "y": spec["load_torque"], "label": "load_torque"},
+    ]
+
+
+def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Torque, forces, flux densities and temperature rise over the current, with their limits.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From no current to half as much again as the design has.
+    """
+    import pandas as pd
+
+    body, warm, value = built(spec, design), warmth(spec, design), design.values
+    current = np.linspace(0.0, 1.5, POINTS) * value["current"]
+    turned = current * value["turns"]
+    flux_density = body.flux_density(turned)
+    force = body.force(flux_density)
+    share = turned / value["ampere_turns"]
+    frame = pd.DataFrame({
+        "current [A]": current,
+        "torque [N*m]": force / value["actuation_force"] * value["torque"],
+        "on the pack [N]": force,
+        "pull on the released armature [N]": share**2 * value["pull_in_force"],
+        "poles [T]": body.pole(flux_density),
+        "yoke [T]": body.yoke(flux_density),
+        "temperature rise [K]": warm.rise(current),
+    })  # fmt: skip
+    needed = spec["pull_in_margin"] * (spec["return_spring_force"] + spec["release_drag_force"])
+    lines = _torques(spec, design)
+    if spec["overload_torque"] is not None:
+        lines.append({"panel": 0, "y": spec["overload_torque"], "label": "overload_torque"})
+    frame.attrs = {
+        "title": f"{problem.title}: torque over current",
+        "panels": [
+            {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
+            {"label": "force [N]", "columns": ["on the pack [N]", "pull on the released armature [N]"]},
+            {"label": "flux density [T]", "columns": ["poles [T]", "yoke [T]"]},
+            {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
+        ],
+        "marks": coil_curves.current_marks(spec, design),
+        "lines": [
+            *lines,
+            {"panel": 1, "y": needed, "label": "pull_in"},
+            {"panel": 2, "y": spec["iron_flux_limit"], "label": "iron_flux_limit"},
+            {"panel": 3, "y": warm.limit - warm.ambient, "label": "insulation"},
+        ],
+        "source": SOURCE,
+    }
+    return frame
+
+
+def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Torque and current over the temperature of the coil; see :mod:`problems.magnet.coil_curves`.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    body, value = built(spec, design), design.values
+    unit = value["torque"] / value["actuation_force"]
+    return coil_curves.torque_over_temperature(
+        problem,
+        design,
+        warmth(spec, design),
+        lambda ampere_turns: unit * body.force(body.flux_density(ampere_turns)),
+        _torques(spec, design),
+        SOURCE,
+    )
+
+
+def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Pull of the magnet over the gap at each pole, at the current of the design, with and without iron.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From the engaged to the released armature and a little beyond.
+    """
+    import pandas as pd
+
+    body, value = built(spec, design), design.values
+    surfaces = value["friction_surfaces"] if "friction_surfaces" in value else disc.surface_count(value["discs"])
+    engaged, released = spec["residual_gap"], spec["residual_gap"] + surfaces * spec["plate_gap"]
+    gaps = np.linspace(engaged, 1.2 * released - 0.2 * engaged, POINTS)
+    turned = value["ampere_turns"]
+    pull = []
+    for gap in gaps:
+        opened = replace(body, shape=replace(body.shape, residual_gap=gap))
+        pull.append(float(pot_magnet.magnet_force(opened.flux_density([turned])[0], body.shape)))
+    springs = spec["return_spring_force"] + spec["release_drag_force"]
+    frame = pd.DataFrame({
+        "gap at each pole [mm]": gaps * 1e3,
+        "pull [N]": pull,
+        "pull, iron neglected [N]": pot_magnet.pull_in_force(turned, gaps, body.shape.pole_area),
+    })  # fmt: skip
+    frame.attrs = {
+        "title": f"{problem.title}: pull over the gap at {value['current']:.3g} A",
+        "panels": [{"label": "pull [N]", "columns": list(frame.columns[1:]), "log": True}],
+        "marks": [{"x": engaged * 1e3, "label": "engaged"}, {"x": released * 1e3, "label": "released"}],
+        "lines": [
+            {"panel": 0, "y": springs, "label": "springs and drag"},
+            {"panel": 0, "y": spec["pull_in_margin"] * springs, "label": "with pull_in_margin"},
+        ],
+        "source": SOURCE,
+    }
+    return frame
+
+
+def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Heat made and heat given off by the magnet over its temperature; see :mod:`problems.magnet.coil_curves`.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    return coil_curves.heat_balance(problem, design, warmth(spec, design), SOURCE)

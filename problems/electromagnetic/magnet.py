@@ -1,0 +1,194 @@
+"""The pot magnet that presses a friction pack: its force, its circuit and its limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.electromagnetic import formulas as pot_magnet
+from problems.friction.duty import Duty
+from problems.friction.sources import S4, TYPICAL
+from problems.magnet import coil as coil_blocks
+from problems.mechanics import heat, magnetics
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration
+
+HOLDS = "magnet_overcomes_springs"
+
+
+@dataclass(frozen=True)
+class MagnetRequirements:
+    """Requirements of the magnet beside those of its coil, all in SI."""
+
+    return_force: Any
+    drag_force: Any
+    pull_in_margin: Any
+    residual_gap: Any
+    bore_radius: Any
+
+
+@dataclass(frozen=True)
+class Magnet:
+    """The magnet and what it leaves for the pack."""
+
+    wants: MagnetRequirements
+    iron: coil_blocks.CoilRequirements
+    unknowns: coil_blocks.CoilUnknowns
+    shape: pot_magnet.PotMagnet
+    actuation_force: Any
+
+
+def declare_magnet(d: Declaration) -> Magnet:
+    """Declare requirements and unknowns of the magnet, its force, and what is left for the pack.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+
+    Returns
+    -------
+    Magnet
+        Symbols of the block.
+    """
+    wants = MagnetRequirements(
+        return_force=d.requirement(
+            "return_spring_force", "N", 100, lower=0, upper=1e5, symbol="F_ret",
+            text=f"Springs that draw the armature back ({TYPICAL})", source=f"{S4}, section 6.6",
+        ),
+        drag_force=d.requirement(
+            "release_drag_force", "N", 20, lower=0, upper=1e5, symbol="F_drag",
+            text=f"Push of the first phase: plates that slide in their guides ({TYPICAL})",
+            source="S0 (Szoke 1966), first phase of engagement",
+        ),
+        pull_in_margin=d.requirement(
+            "pull_in_margin", "-", 1.3, lower=1, upper=5, symbol="k_in",
+            text="Pull on the released armature over springs and drag", source=f"{S4}, section 6.6",
+        ),
+        residual_gap=d.requirement(
+            "residual_gap", "mm", 0.4, lower=0.05, upper=3, symbol="g_r",
+            text=f"Gap at each pole of the engaged magnet, against sticking ({TYPICAL}, 0.3 to 0.5)",
+            source=f"{S4}, section 6.6",
+        ),
+        bore_radius=d.requirement(
+            "magnet_bore_radius", "mm", 20, lower=2, upper=500, symbol="r_b",
+            text=f"Inside of the inner pole: room for shaft and bearing ({TYPICAL})", source=f"{S4}, section 6.6",
+        ),
+    )  # fmt: skip
+    iron = coil_blocks.declare_coil_requirements(d)
+    pole_width = d.variable(
+        "inner_pole_width", "mm", 3, 60, grid=0.5, symbol="w_p",
+        text="Radial width of the inner pole; the outer pole has the same area", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    unknowns = coil_blocks.declare_coil_unknowns(d)
+    shape = pot_magnet.PotMagnet(
+        bore=wants.bore_radius,
+        pole_width=pole_width,
+        coil_length=unknowns.length,
+        coil_height=unknowns.height,
+        thickness=unknowns.thickness,
+        residual_gap=wants.residual_gap,
+    )
+    pull = d.derive(
+        "magnet_force", "N", pot_magnet.magnet_force(unknowns.flux_density, shape), symbol="F_m",
+        text="Pull on the engaged armature", source="Maxwell; S4 (notes on centrifugal clutches), section 3.5",
+    )  # fmt: skip
+    d.at_least(
+        HOLDS, pull, wants.return_force, "N", guard=True,
+        text="The engaged magnet is stronger than the return springs; otherwise nothing presses the pack",
+        source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    force = d.derive(
+        "actuation_force", "N", pull - wants.return_force, symbol="F0", needs=HOLDS,
+        text="Axial force on the pack: magnet less return springs", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    return Magnet(wants, iron, unknowns, shape, force)
+
+
+def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: Any, friction_work: Any) -> Any:
+    """Declare the circuit, the pull on the released armature and the coil with their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    magnet : Magnet
+        The magnet.
+    surfaces : symbol
+        Friction surfaces of the pack, each with plate_gap when released [-].
+    friction_work : symbol
+        Per engagement; it heats the magnet too [J].
+
+    Returns
+    -------
+    symbol
+        Mass of the magnet [kg].
+    """
+    wants, iron, unknowns, shape = magnet.wants, magnet.iron, magnet.unknowns, magnet.shape
+    pole = iron.leakage_factor * unknowns.flux_density
+    ratio = pot_magnet.yoke_flux_ratio(shape)
+    yoke = pole * ratio
+    densest = pole * np.maximum(ratio, 1.0)
+    coil_blocks.declare_saturation(d, iron, densest)
+    d.at_most(
+        "pole_flux_density", pole, iron.iron_flux_limit, "T",
+        text="The iron of the poles carries the flux", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    d.at_most(
+        "yoke_flux_density", yoke, iron.iron_flux_limit, "T",
+        text="Yoke and armature carry the flux at the inner pole", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
+    ampere_turns = pot_magnet.engaged_ampere_turns(unknowns.flux_density, shape, field)
+    pull_in = d.derive(
+        "pull_in_force", "N",
+        pot_magnet.pull_in_force(ampere_turns, wants.residual_gap + surfaces * duty.plate_gap, shape.pole_area),
+        symbol="F_in", needs="iron_saturation",
+        text="Pull on the released armature, across all gaps of the pack", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    d.at_least(
+        "pull_in", pull_in, wants.pull_in_margin * (wants.return_force + wants.drag_force), "N",
+        text="The magnet draws the released armature in", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    d.derive(
+        "magnet_diameter", "mm", 2 * shape.outer_radius, symbol="D_m",
+        text="Outside of the outer pole", source="geometry",
+    )  # fmt: skip
+    around = coil_blocks.Surroundings(
+        ambient_temperature=duty.ambient_temperature,
+        temperature_limit=unknowns.wire.insulation_temperature,
+        heat_transfer=iron.still_heat_transfer,
+        surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
+        other_heat=heat.hourly_heat(friction_work, duty.switching_rate),
+    )
+    copper_section = coil_blocks.declare_winding(d, iron, unknowns, ampere_turns, shape.inner_pole_radius, around)
+    _declare_remarks(d, wants)
+    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.height / 2, copper_section)
+    return pot_magnet.magnet_mass(duty.steel_density, shape, copper)
+
+
+def _declare_remarks(d: Declaration, wants: MagnetRequirements) -> None:
+    d.advise(
+        "armature_sticks",
+        wants.residual_gap < 0.3e-3,
+        "with a residual_gap below 0.3 mm the remanence of the iron may hold the armature after the current is off",
+        source=f"{S4}, section 6.6",
+    )
+    d.advise(
+        "no_return_springs",
+        wants.return_force <= 0,
+        "without return springs nothing draws the armature back: the plates drag after release",
+        source=f"{S4}, section 6.6",
+    )
+    d.advise(
+        "magnet_model",
+        True,
+        "the magnet is sized by a circuit with typical figures (leakage_factor, residual_gap, iron curve) that no "
+        "source gives: confirm its force by a field calculation or a test",
+        source=f"{S4}, section 6.6",
+    )

@@ -1,0 +1,166 @@
+"""Electromagnetic clutch: a pot magnet with stationary coil presses the pack of a multi-plate or a disc clutch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from problems import friction
+from problems.disc import curves as disc_curves
+from problems.disc import pack as disc_pack
+from problems.electromagnetic import curves as magnet_curves
+from problems.electromagnetic import magnet as magnet_blocks
+from problems.friction import startup_curves
+from problems.mechanics import magnetics
+from problems.mechanics import ring as ring_formulas
+from problems.multi_plate import curves as pack_curves
+from problems.multi_plate import pack as plate_pack
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class ElectromagneticClutch(DesignProblem):
+    """Friction clutch that an electromagnet engages, with the pack of a multi-plate or of a disc clutch.
+
+    Instead of a given actuation force the magnet is sized with the pack: circuit, coil, heat, pull on the released
+    armature. Only the idea of the magnet is the source's (S4); the model is derived.
+    """
+
+    name = "electromagnetic_clutch"
+    title = "Electromagnetic clutch"
+    sources = (
+        "S4: notes on centrifugal clutches, figure 2-27: an electromagnet instead of clamp springs",
+        "S0: B. Szoke, Engagement and release of the multi-plate clutch (in Hungarian), 1966; appendix by I. Lipka",
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        "Ampere's law, Maxwell's force, Froehlich's saturation curve, steady heat balance",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+    simulation_settings = startup_curves.SETTINGS
+    understands = (*friction.COMMON, "ambient_temperature", "heat_transfer", "plate_gap")
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        pack = d.option(
+            "pack", ("multi_plate", "disc"), "multi_plate", symbol="pk",
+            text="Friction pack that the magnet presses: many plates in a drum, or one or two dry discs",
+            source="S4 (notes on centrifugal clutches), section 6.6",
+        )  # fmt: skip
+        if pack == "disc":
+            self._declare_disc(d)
+        else:
+            self._declare_multi_plate(d)
+        d.objective("coil_power")
+        d.objective("mass")
+        extra = "disc_inertia" if pack == "disc" else "drag_torque"
+        for name in ("outer_diameter", "volume", "friction_work", extra):
+            d.objective(name, default=False)
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the pack over repeated engagements.
+
+        The torque rises in ``ramp_time``; the rise of the current is not simulated.
+        """
+        disc_pack = self.option("pack") == "disc"
+        pack = magnet_curves.pack_of(spec, design, disc_pack)
+        return startup_curves.startup_frames(self, spec, design, pack.heat_capacity, pack.cooled_area)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the curves of pack and start-up; of a design torque over current and temperature, force over gap.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``startup_over_torque`` with ``torque_over_plates`` or ``diameter_over_lining``, and of a design
+            ``torque_over_current``, ``torque_over_temperature``, ``force_over_gap`` and ``heat_balance``.
+        """
+        frames = {"startup_over_torque": startup_curves.startup_over_torque(self, spec, design)}
+        if self.option("pack") == "disc":
+            frames["diameter_over_lining"] = disc_curves.diameter_over_lining(self, spec)
+        else:
+            frames["torque_over_plates"] = pack_curves.torque_over_plates(self, spec, design)
+        if design is not None:
+            frames["torque_over_current"] = magnet_curves.torque_over_current(self, spec, design)
+            frames["torque_over_temperature"] = magnet_curves.torque_over_temperature(self, spec, design)
+            frames["force_over_gap"] = magnet_curves.force_over_gap(self, spec, design)
+            frames["heat_balance"] = magnet_curves.heat_balance(self, spec, design)
+        return frames
+
+    def _declare_multi_plate(self, d: Declaration) -> None:
+        lubrication = plate_pack.declare_lubrication(d)
+        duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
+        options = plate_pack.declare_pack_options(d)
+        wants = plate_pack.declare_pack_requirements(d, options, lubrication)
+        ring = friction.declare_ring(d, 0.10, 0.25)
+        magnet = magnet_blocks.declare_magnet(d)
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(d, self.name, duty, lubrication)
+        pack = plate_pack.declare_pack(d, options, wants, ring)
+        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
+        plate_pack.refuse_impossible_pack(d, duty, options, wants, ring, pack, required)
+        torque = plate_pack.declare_pack_torque(d, options, wants, ring, pair, pack, magnet.actuation_force)
+        needs = ("guide_jams", magnet_blocks.HOLDS)
+        torques = friction.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=needs)
+        start = friction.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        rubbing = pack.aid.area_factor * area
+        friction.declare_surface_loads(d, duty, pair, start, area, rubbing, torque.pressure, ring.outer_radius)
+        size = plate_pack.pack_size(duty, wants, ring, pair, pack)
+        plate_pack.declare_pack_temperature(d, duty, pair, start, size)
+        plate_pack.declare_drag(d, duty, wants, ring, pack)
+        self._declare_magnet_and_size(d, duty, magnet, pack.surfaces, start, size)
+        plate_pack.declare_pack_remarks(d, options, lubrication)
+
+    def _declare_disc(self, d: Declaration) -> None:
+        duty = friction.declare_duty(d, "still_air", "dry")
+        ring = friction.declare_ring(d, 0.11, 0.13)
+        pack = disc_pack.declare_disc_pack(d, duty, ring)
+        magnet = magnet_blocks.declare_magnet(d)
+        force = magnet.actuation_force
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(d, self.name, duty, "dry")
+
+        def torque(mu: Any) -> Any:
+            return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
+
+        required = friction.sizing_torque(duty)
+        low, high = torque(pair.mu_low), torque(pair.mu_high)
+        torques = friction.declare_torque(d, duty, pair, required, low, high, needs=(magnet_blocks.HOLDS,))
+        disc_pack.declare_worn_torque(d, pair, torques, ring, pack, force)
+        start = friction.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        friction.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
+        size = disc_pack.disc_size(duty, ring, pair, pack)
+        disc_pack.declare_disc_inertia(d, duty, ring, pair, pack)
+        disc_pack.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
+        self._declare_magnet_and_size(d, duty, magnet, pack.surfaces, start, size)
+
+    def _declare_magnet_and_size(
+        self,
+        d: Declaration,
+        duty: friction.Duty,
+        magnet: magnet_blocks.Magnet,
+        surfaces: Any,
+        start: friction.Startup,
+        pack: friction.Size,
+    ) -> None:
+        mass = magnet_blocks.declare_magnet_coil(d, duty, magnet, surfaces, start.friction_work)
+        size = friction.Size(
+            mass=pack.mass + mass,
+            diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),
+            length=pack.length + magnet.shape.length,
+        )
+        friction.declare_size(
+            d, size, "Pack and magnet with armature and coil", "Outside of pack or magnet",
+            "the larger of both", "Released pack and engaged magnet",
+        )  # fmt: skip
+        friction.declare_envelope(d, duty, magnet.actuation_force, size.diameter, size.length)

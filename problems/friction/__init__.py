@@ -1,0 +1,53 @@
+"""Blocks of declarations that the friction clutches share: duty, engagement, ring.
+
+A block declares its quantities and limits and hands back their symbols. Each family composes the blocks it is made of,
+so that one thing has one name, one text and one formula everywhere.
+"""
+
+from __future__ import annotations
+
+from problems.friction.duty import (
+    COMMON,
+    Duty,
+    Size,
+    declare_duty,
+    declare_envelope,
+    declare_ramp_time,
+    declare_size,
+    sizing_torque,
+    sizing_torque_of,
+)
+from problems.friction.engagement import (
+    Pair,
+    Startup,
+    Torques,
+    advise_frequent_switching,
+    declare_friction_pair,
+    declare_startup,
+    declare_surface_loads,
+    declare_torque,
+)
+from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring, declare_ring
+
+__all__ = [
+    "COMMON",
+    "RING_OUTER_DIAMETER_MAX",
+    "Duty",
+    "Pair",
+    "Ring",
+    "Size",
+    "Startup",
+    "Torques",
+    "advise_frequent_switching",
+    "declare_duty",
+    "declare_envelope",
+    "declare_friction_pair",
+    "declare_ramp_time",
+    "declare_ring",
+    "declare_size",
+    "declare_startup",
+    "declare_surface_loads",
+    "declare_torque",
+    "sizing_torque",
+    "sizing_torque_of",
+]

@@ -1,0 +1,320 @@
+"""What the drive asks of a friction clutch, and the room it gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems.friction.sources import S0, S1, TYPICAL
+from problems.mechanics import plates, startup
+from problems.mechanics import ring as ring_formulas
+from synth.errors import InputError
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration
+
+# What a sheet for several families may state, as far as a family uses it.
+COMMON = (
+    "load_torque",
+    "driver_speed",
+    "driven_inertia",
+    "safety_factor",
+    "switching_factor",
+    "speed_factor",
+    "engagements_per_hour",
+    "startup_torque",
+    "overload_torque",
+    "actuation_force_limit",
+    "outer_diameter_limit",
+    "length_limit",
+    "slip_time_limit",
+    "jerk_limit",
+    "acceleration_limit",
+    "steel_density",
+)
+
+
+@dataclass(frozen=True)
+class Duty:
+    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+
+    load_torque: Any
+    driver_speed: Any
+    driven_inertia: Any
+    load_kind: str
+    friction_basis: str
+    cooling: str
+    allow_obsolete: str
+    safety_factor: Any
+    switching_factor: Any
+    speed_factor: Any
+    switching_rate: Any
+    startup_torque: Any
+    overload_torque: Any
+    actuation_force_limit: Any
+    outer_diameter_limit: Any
+    length_limit: Any
+    slip_time_limit: Any
+    jerk_limit: Any
+    acceleration_limit: Any
+    ambient_temperature: Any
+    heat_transfer: Any
+    steel_density: Any
+    steel_specific_heat: Any
+    plate_gap: Any
+
+
+def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) -> Duty:
+    """Declare the block duty and the refusals that concern it alone.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    cooling_default : str
+        Row of cooling_options used when the user names none.
+    lubrication : str or None
+        dry or oil where the family is bound to one of them; the cooling must fit.
+
+    Returns
+    -------
+    Duty
+        Symbols of the block.
+
+    Raises
+    ------
+    InputError
+        When the cooling does not go with the lubrication.
+    """
+    load_kind = d.option(
+        "load_kind",
+        startup.LOAD_KINDS,
+        "reactive",
+        symbol="load",
+        text="reactive: the load only resists, still until the clutch moves it; active: it acts from the start",
+        source=f"{S1}, hoisted weight",
+    )
+    friction_basis = d.option(
+        "friction_basis",
+        ("nominal", "worst_case"),
+        "nominal",
+        symbol="basis",
+        text="nominal: mu_dynamic everywhere; worst_case: mu_min where much friction is needed, mu_max where it harms",
+        source="scatter band of the friction pair",
+    )
+    cooling = d.option(
+        "cooling",
+        d.designations("cooling_options"),
+        cooling_default,
+        symbol="cool",
+        text="How heat leaves the clutch; gives the default of heat_transfer",
+        source=f"{S0}, cooling of the plates",
+    )
+    allow_obsolete = d.option(
+        "allow_obsolete",
+        ("no", "yes"),
+        "no",
+        symbol="obs",
+        text="yes: also friction pairs that are not allowed in new designs (asbestos), to re-compute old machines",
+        source="table friction_materials",
+    )
+    cooling_row = d.row("cooling_options", cooling)
+    if lubrication is not None and _row_text(d, "cooling_options", cooling, "lubrication") not in ("", lubrication):
+        fitting = [
+            c
+            for c in d.designations("cooling_options")
+            if _row_text(d, "cooling_options", c, "lubrication") == lubrication
+        ]
+        raise InputError(
+            "lubrication_mismatch",
+            f"cooling {cooling}",
+            f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}",
+        )
+    load_torque = d.requirement(
+        "load_torque", "N*m", lower=0.1, upper=1e6, symbol="M_load",
+        text="Torque of the load during start-up", source=f"{S1}, M2",
+    )  # fmt: skip
+    driver_speed = d.requirement(
+        "driver_speed", "1/min", lower=0.1, upper=60000, symbol="omega1",
+        text="Speed of the driving side, constant during start-up", source=f"{S1}, omega1",
+    )  # fmt: skip
+    driven_inertia = d.requirement(
+        "driven_inertia", "kg*m2", lower=1e-6, upper=1e5, symbol="J2",
+        text="Driven inertia at the clutch shaft", source=f"{S1}, J2",
+    )  # fmt: skip
+    duty = Duty(
+        load_torque=load_torque,
+        driver_speed=driver_speed,
+        driven_inertia=driven_inertia,
+        load_kind=load_kind,
+        friction_basis=friction_basis,
+        cooling=cooling,
+        allow_obsolete=allow_obsolete,
+        safety_factor=d.requirement(
+            "safety_factor", "-", 1.5, lower=1, upper=5, symbol="n",
+            text="Shock factor of the load", source=f"{S1}, n",
+        ),
+        switching_factor=d.requirement(
+            "switching_factor", "-", 1.0, lower=0.4, upper=1, symbol="c_m",
+            text="Engagement-count factor; 1 up to about 50 engagements per hour", source=f"{S1}, c_m",
+        ),
+        speed_factor=d.requirement(
+            "speed_factor", "-", 0.85, lower=0.5, upper=1.5, symbol="c_v",
+            text="Sliding-speed factor", source=f"{S1}, c_v",
+        ),
+        switching_rate=d.requirement(
+            "engagements_per_hour", "1/h", 50, lower=0.001, upper=36000, symbol="nu_h",
+            text="Switching rate", source=f"{S1}, m_k",
+        ),
+        startup_torque=d.requirement(
+            "startup_torque", "N*m", lower=0.1, upper=1e6, optional=True, symbol="T_start",
+            text="Torque to which the actuator is limited during start-up; above load_torque",
+            source=f"{S1}, start-up with 1080 N m",
+        ),
+        overload_torque=d.requirement(
+            "overload_torque", "N*m", lower=0.1, upper=1e7, optional=True, symbol="M_max",
+            text="The clutch must slip at this torque", source=f"{S1}, clutch as safety element",
+        ),
+        actuation_force_limit=d.requirement(
+            "actuation_force_limit", "N", lower=1, upper=1e6, optional=True, symbol="F_max",
+            text="Largest force of the actuator", source="requirement of the drive",
+        ),
+        outer_diameter_limit=d.requirement(
+            "outer_diameter_limit", "mm", lower=5, upper=5000, optional=True, symbol="D_max",
+            text="Largest outside diameter", source="requirement of the drive",
+        ),
+        length_limit=d.requirement(
+            "length_limit", "mm", lower=2, upper=5000, optional=True, symbol="L_max",
+            text="Largest length, without actuator and end stops", source="requirement of the drive",
+        ),
+        slip_time_limit=d.requirement(
+            "slip_time_limit", "s", 4, lower=0.01, upper=600, symbol="t_slip_max",
+            text="Longest slip of one engagement", source=f"{TYPICAL} of the reference model",
+        ),
+        jerk_limit=d.requirement(
+            "jerk_limit", "rad/s3", lower=0.01, upper=1e6, optional=True, symbol="jerk_max",
+            text="Largest jerk of the driven side: softness of the start", source="requirement of the drive",
+        ),
+        acceleration_limit=d.requirement(
+            "acceleration_limit", "rad/s2", lower=0.01, upper=1e6, optional=True, symbol="acc_max",
+            text="Largest acceleration, at the end of the ramp or of slip", source="requirement of the drive",
+        ),
+        ambient_temperature=d.requirement(
+            "ambient_temperature", "degC", 40, lower=-60, upper=150, symbol="T_amb",
+            text="Temperature of the surroundings", source=f"{TYPICAL} of the reference model",
+        ),
+        heat_transfer=d.requirement(
+            "heat_transfer", "W/(m2*K)", cooling_row.heat_transfer, lower=1, upper=5000, symbol="h_conv",
+            text=f"Surface coefficient; by default that of the cooling chosen ({TYPICAL})",
+            source="table cooling_options",
+        ),
+        steel_density=d.requirement(
+            "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_steel",
+            text="Density of the steel plates", source="material constant",
+        ),
+        steel_specific_heat=d.requirement(
+            "steel_specific_heat", "J/(kg*K)", 480, lower=100, upper=2000, symbol="cp_steel",
+            text="Specific heat of the steel plates", source="material constant",
+        ),
+        plate_gap=d.requirement(
+            "plate_gap", "mm", 0.3, lower=0.05, upper=3, symbol="gap",
+            text=f"Release gap per surface ({TYPICAL})", source=TYPICAL,
+        ),
+    )  # fmt: skip
+    if duty.startup_torque is not None:
+        d.refuse(
+            "never_starts",
+            duty.startup_torque <= duty.load_torque,
+            "a startup_torque above load_torque; otherwise the load never starts",
+        )
+    if duty.load_kind == "active":
+        d.advise(
+            "runs_backwards",
+            True,
+            "an active load turns the driven side backwards until the clutch carries it; "
+            "a brake or backstop that is released then makes it a reactive load with less heat",
+            source=f"{S1}, start-up; friction work of the two kinds of load",
+        )
+    if cooling == "fan":
+        d.advise(
+            "fan_cooling",
+            True,
+            "fan blades cost power and treat the symptom only; best is to avoid the heat",
+            source=f"{S0}, cooling of the plates",
+        )
+    return duty
+
+
+def _row_text(d: Declaration, table: str, designation: str, column: str) -> str:
+    """Cell of a text column; empty where a user's own table does not have it."""
+    found = d.catalogs.table(table)
+    return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+
+
+def declare_ramp_time(d: Declaration) -> Any:
+    """Declare the variable ramp_time."""
+    return d.variable(
+        "ramp_time", "s", 0.01, 10, symbol="t_r",
+        text="Ramp of the force: time until the clutch torque is built up; never 0", source=f"{S1}, t_max",
+    )  # fmt: skip
+
+
+def sizing_torque(duty: Duty, surface_factor: Any = 1.0) -> Any:
+    """Return M_req = n M_load/(c_m c_v c_z)."""
+    return ring_formulas.required_torque(
+        duty.load_torque, duty.safety_factor, duty.switching_factor, duty.speed_factor, surface_factor
+    )
+
+
+def sizing_torque_of(spec: Mapping[str, Any]) -> float:
+    """Return M_req [N m] of given requirements, in SI by name, as curves show it."""
+    factors = (spec["safety_factor"], spec["switching_factor"], spec["speed_factor"])
+    return float(ring_formulas.required_torque(spec["load_torque"], *factors))
+
+
+def declare_envelope(d: Declaration, duty: Duty, force: Any, diameter: Any, length: Any) -> None:
+    """Declare the limits of force, diameter and length that were asked for."""
+    asked = "requirement of the drive"
+    if duty.actuation_force_limit is not None:
+        d.at_most(
+            "actuation_force", force, duty.actuation_force_limit, "N",
+            text="The actuator can press so hard", source=asked,
+        )  # fmt: skip
+    if duty.outer_diameter_limit is not None:
+        d.at_most(
+            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
+            text="The clutch fits the room across", source=asked,
+        )  # fmt: skip
+    if duty.length_limit is not None:
+        d.at_most("length", length, duty.length_limit, "mm", text="The clutch fits the room along", source=asked)
+
+
+@dataclass(frozen=True)
+class Size:
+    """Mass and room of a clutch."""
+
+    mass: Any
+    diameter: Any
+    length: Any
+
+
+def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, across: str, along: str) -> None:
+    """Declare mass, outer diameter, length and volume.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    size : Size
+        What is declared.
+    mass_of, outside, across, along : str
+        What the mass is of, what is outermost and by which formula, and what the length runs over; for the reader.
+    """
+    d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source=f"geometry, {across}")
+    d.derive("length", "mm", size.length, symbol="L", text=along, source="geometry")
+    d.derive(
+        "volume", "dm3", plates.cylinder_volume(size.diameter, size.length), symbol="V",
+        text="Enveloping cylinder", source="geometry, pi D**2 L/4",
+    )  # fmt: skip
+    d.derive("mass", "kg", size.mass, symbol="m", text=mass_of, source="geometry")

@@ -1,0 +1,366 @@
+"""What an engagement does to a friction clutch: friction pair, torque, start-up and loads of the surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems.friction.duty import Duty
+from problems.friction.sources import PRACTICE, S0, S1
+from problems.mechanics import heat, plates, startup
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration, Part
+
+
+# -- friction pair ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Slot friction_pair with the friction to reckon with."""
+
+    part: Part
+    mu_low: Any
+    mu_high: Any
+    hourly_allow: Any
+
+
+def declare_friction_pair(d: Declaration, family: str, duty: Duty, lubrication: str | None) -> Pair:
+    """Declare the slot friction_pair of a family and its remarks.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    family : str
+        Name that the column family_hint must contain.
+    duty : Duty
+        Block duty.
+    lubrication : str or None
+        dry or oil; None accepts both.
+
+    Returns
+    -------
+    Pair
+        The part, the friction that is counted on (mu_low) and the friction that is feared (mu_high).
+    """
+    conditions = [f"'{family}' in family_hint"]
+    conditions.append(f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')")
+    if duty.allow_obsolete == "no":
+        conditions.append("new_design_allowed == 1")
+    part = d.part(
+        "friction_pair",
+        "friction_materials",
+        where=tuple(conditions),
+        symbol="pair",
+        text="Lining and the surface it rubs on",
+        source="table friction_materials",
+    )
+    worst_case = duty.friction_basis == "worst_case"
+    pair = Pair(
+        part=part,
+        mu_low=part.mu_min if worst_case else part.mu_dynamic,
+        mu_high=part.mu_max if worst_case else part.mu_dynamic,
+        hourly_allow=part.first_of("q_hourly_allow_forced_oil", "q_hourly_allow")
+        if duty.cooling == "through_oil"
+        else part.q_hourly_allow,
+    )
+    # A remark must not make a row unusable, so that columns of remarks only are optional.
+    d.advise(
+        "stick_slip",
+        part.optional("mu_static") < part.mu_dynamic,
+        "static friction is below sliding friction: unusual, check the figures and the behaviour at lock-up",
+        source=PRACTICE,
+    )
+    if duty.allow_obsolete == "yes":
+        d.advise(
+            "obsolete_material",
+            part.optional("new_design_allowed") < 0.5,
+            "this friction pair is not allowed in new designs; use it only to re-compute an old machine",
+            source="table friction_materials",
+        )
+    return pair
+
+
+# -- torque and start-up ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Torques of the start-up: with the friction counted on (low) and the friction feared (high)."""
+
+    required: Any
+    ramp_low: Any
+    ramp_high: Any
+
+
+def declare_torque(
+    d: Declaration,
+    duty: Duty,
+    pair: Pair,
+    required: Any,
+    torque_low: Any,
+    torque_high: Any,
+    overload: Any = None,
+    needs: tuple[str, ...] = (),
+) -> Torques:
+    """Declare the torques of the clutch and their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    pair : Pair
+        Slot friction_pair.
+    required : symbol
+        Sizing torque M_req [N m].
+    torque_low, torque_high : symbol
+        Built capacity M_k with the friction counted on and with the friction feared [N m].
+    overload : symbol, optional
+        Torque that must stay below overload_torque; by default torque_high [N m].
+    needs : tuple of str
+        Guards without which the torques do not exist.
+
+    Returns
+    -------
+    Torques
+        Sizing torque and the torques at the end of the ramp.
+    """
+    d.derive(
+        "required_torque", "N*m", required, symbol="M_req",
+        text="Sizing torque n M_load/(c_m c_v c_z)", source=f"{S1}, sizing",
+    )  # fmt: skip
+    d.derive(
+        "torque", "N*m", torque_low, symbol="M_k", needs=needs,
+        text="Built capacity with new lining (worst_case: with mu_min)", source=f"{S0}, eq. (5); {S1}, sizing",
+    )  # fmt: skip
+    given = duty.startup_torque
+    torques = Torques(
+        required=required,
+        ramp_low=torque_low if given is None else given,
+        ramp_high=torque_high if given is None else given,
+    )
+    d.derive(
+        "ramp_torque", "N*m", torques.ramp_low, symbol="T_k",
+        text="Torque at the end of the ramp in start-up: torque, or startup_torque when given",
+        source=f"{S1}, start-up",
+    )  # fmt: skip
+    d.at_least(
+        "torque_capacity", torque_low, required, "N*m",
+        text="The clutch carries the sizing torque", source=f"{S1}, sizing; {S0}, eq. (5)",
+    )  # fmt: skip
+    if given is not None:
+        d.at_least(
+            "startup_torque_available", torque_low, given, "N*m",
+            text="The clutch can deliver the start-up torque", source=f"{S1}, start-up and sizing linked",
+        )  # fmt: skip
+    d.at_least(
+        "never_starts", torques.ramp_low, duty.load_torque, "N*m", guard=True,
+        text="The start-up torque is above the load torque; otherwise the clutch slips for ever",
+        source=f"{S1}, start-up",
+    )  # fmt: skip
+    d.advise(
+        "static_hold",
+        plates.static_hold(torque_low, pair.part.optional("mu_static"), pair.part.mu_dynamic, duty.load_torque) < 1.2,
+        "locked, the clutch holds less than 1.2 times the load torque",
+        source=PRACTICE,
+    )
+    if duty.overload_torque is not None:
+        d.at_most(
+            "torque_limit", torque_high if overload is None else overload, duty.overload_torque, "N*m",
+            text="The clutch slips at the overload torque", source=f"{S1}, clutch as safety element",
+        )  # fmt: skip
+        d.refuse(
+            "capacity_window_empty",
+            duty.overload_torque < required,
+            "an overload_torque of at least the sizing torque (load_torque times safety_factor over the other "
+            "operating factors); otherwise no torque satisfies both",
+        )
+    return torques
+
+
+@dataclass(frozen=True)
+class Startup:
+    """What one engagement costs."""
+
+    friction_work: Any
+    slip_time: Any
+    peak_slip_power: Any
+
+
+def declare_startup(d: Declaration, duty: Duty, torques: Torques, ramp_time: Any) -> Startup:
+    """Declare friction work, slip time, power, jerk and acceleration of the start-up with their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    torques : Torques
+        Torques at the end of the ramp.
+    ramp_time : symbol
+        Variable ramp_time [s].
+
+    Returns
+    -------
+    Startup
+        Friction work, slip time and peak slip power.
+    """
+    low = (torques.ramp_low, duty.load_torque, duty.driven_inertia, duty.driver_speed, ramp_time, duty.load_kind)
+    high = (torques.ramp_high, *low[1:])
+    work = d.derive(
+        "friction_work", "J", startup.friction_work(*low), symbol="W", needs="never_starts",
+        text="Friction work per engagement", source=f"{S1}, start-up; closed form",
+    )  # fmt: skip
+    slip_time = d.derive(
+        "slip_time", "s", startup.slip_time(*low), symbol="t_D", needs="never_starts",
+        text="Time until lock-up", source=f"{S1}, start-up, t_D; closed form",
+    )  # fmt: skip
+    power = d.derive(
+        "peak_slip_power", "W", startup.peak_slip_power(*high), symbol="P_peak", needs="never_starts",
+        text="Greatest friction power (worst_case: with mu_max)", source=f"{S1}, start-up; closed form",
+    )  # fmt: skip
+    jerk = d.derive(
+        "jerk", "rad/s3",
+        startup.torque_rate_per_inertia(torques.ramp_high, duty.driven_inertia, ramp_time),
+        text="Jerk of the driven side during the ramp (worst_case: with mu_max)", source=f"{S1}, equation of motion",
+    )  # fmt: skip
+    acceleration = d.derive(
+        "acceleration", "rad/s2",
+        (startup.lock_torque(*high) - duty.load_torque) / duty.driven_inertia, symbol="acc", needs="never_starts",
+        text="Greatest acceleration, at the end of the ramp or of slip (worst_case: with mu_max)",
+        source=f"{S1}, alpha_2C",
+    )  # fmt: skip
+    d.at_most(
+        "slip_time", slip_time, duty.slip_time_limit, "s",
+        text="Slip ends soon enough", source="requirement of the drive",
+    )  # fmt: skip
+    d.at_most(
+        "cycle_time", slip_time, heat.cycle_time(duty.switching_rate), "s",
+        text="Slip ends before the next engagement", source=f"{S1}, repeated switching",
+    )  # fmt: skip
+    if duty.jerk_limit is not None:
+        d.at_most("jerk", jerk, duty.jerk_limit, "rad/s3", text="Soft start", source="requirement of the drive")
+    if duty.acceleration_limit is not None:
+        d.at_most(
+            "acceleration", acceleration, duty.acceleration_limit, "rad/s2",
+            text="The driven machine stands the acceleration", source="requirement of the drive",
+        )  # fmt: skip
+    if duty.jerk_limit is None:
+        d.advise(
+            "hard_start",
+            ramp_time < slip_time / 10,
+            "the ramp lasts less than a tenth of the slip, nearly a step: the driven side is jerked into motion; "
+            "jerk_limit asks for a soft start",
+            source=f"{S1}, soft start",
+        )
+    d.advise(
+        "locks_in_ramp",
+        slip_time < ramp_time,
+        "lock-up comes before the ramp ends: ramp_torque is not reached in start-up, and slip is longer than the "
+        "torque would allow",
+        source=f"{S1}, omega2C <= omega1",
+    )
+    return Startup(work, slip_time, power)
+
+
+def declare_surface_loads(
+    d: Declaration,
+    duty: Duty,
+    pair: Pair,
+    start: Startup,
+    area: Any,
+    rubbing_area: Any,
+    pressure: Any,
+    rubbing_radius: Any,
+) -> None:
+    """Declare pressure, heat, power and sliding speed of the friction surfaces with their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    pair : Pair
+        Slot friction_pair, whose limits apply.
+    start : Startup
+        What one engagement costs.
+    area, rubbing_area : symbol
+        All friction surfaces, whole and as far as they rub [m2].
+    pressure : symbol
+        Largest pressure [Pa].
+    rubbing_radius : symbol
+        Outermost radius that rubs [m].
+    """
+    part = pair.part
+    d.derive("friction_area", "cm2", area, symbol="A", text="All friction surfaces together", source=f"{S1}, A")
+    hourly = d.derive(
+        "hourly_heat", "J/(mm2*h)",
+        heat.specific_hourly_heat(start.friction_work, duty.switching_rate, rubbing_area), symbol="w",
+        text="Friction work per hour and area", source=f"{S1}, w",
+    )  # fmt: skip
+    single = d.derive(
+        "single_heat", "J/mm2", heat.single_heat(start.friction_work, rubbing_area), symbol="Q_A",
+        text="Friction work per engagement and area", source="makers' limit for a single engagement",
+    )  # fmt: skip
+    density = d.derive(
+        "power_density", "W/mm2", heat.power_density(start.peak_slip_power, rubbing_area), symbol="q_peak",
+        text="Greatest friction power per area", source="Neale, Tribology Handbook, Table 7.4",
+    )  # fmt: skip
+    speed = d.derive(
+        "sliding_speed", "m/s", plates.sliding_speed(duty.driver_speed, rubbing_radius), symbol="v_s",
+        text="Sliding speed at the outer edge when slip begins", source="kinematics",
+    )  # fmt: skip
+    pressure = d.derive(
+        "surface_pressure", "N/mm2", pressure, symbol="p_s",
+        text="Largest pressure on a friction surface", source=f"{S1}, p; {S0}, eq. (3)",
+    )  # fmt: skip
+    d.at_most(
+        "surface_pressure", pressure, part.p_allow, "N/mm2",
+        text="The lining stands the pressure", source=f"{S1}, sizing",
+    )  # fmt: skip
+    d.at_most(
+        "specific_heat", hourly, pair.hourly_allow, "J/(mm2*h)",
+        text="The lining stands the hourly heat", source=f"{S1}, w <= w_allow",
+    )  # fmt: skip
+    d.at_most(
+        "engagement_heat", single, part.optional("q_single_allow"), "J/mm2",
+        text="The lining stands the heat of one engagement", source="makers' limit for a single engagement",
+    )  # fmt: skip
+    d.at_most(
+        "specific_power", density, part.power_density_allow, "W/mm2",
+        text="The lining stands the peak power", source="Neale, Tribology Handbook, Table 7.4",
+    )  # fmt: skip
+    d.at_most(
+        "sliding_speed", speed, part.v_allow, "m/s",
+        text="The lining stands the sliding speed", source="makers' limit of the lining",
+    )  # fmt: skip
+
+
+def advise_frequent_switching(d: Declaration, duty: Duty, heat_capacity: Any, cooled_area: Any) -> None:
+    """Remark where the next engagement comes before the clutch has cooled down.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    heat_capacity : symbol
+        Of what stores the heat [J/K].
+    cooled_area : symbol
+        Surface that gives it off [m2].
+    """
+    d.advise(
+        "frequent_switching",
+        heat.cycle_time(duty.switching_rate)
+        < heat.thermal_time_constant(heat_capacity, duty.heat_transfer, cooled_area),
+        "the next engagement comes before the plates have cooled down (the cycle is shorter than their thermal time "
+        "constant): at this switching rate the cooling decides; best is to avoid the heat",
+        source=f"{S0}, frequent switching makes cooling compulsory",
+    )

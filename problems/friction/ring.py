@@ -1,0 +1,107 @@
+"""The friction ring of disc and multi-plate clutches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems.friction.sources import S0, S1
+from problems.mechanics import ring as ring_formulas
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration
+
+# Largest friction ring offered to the search [mm]; the refusal torque_above_guide_limit reasons with it.
+RING_OUTER_DIAMETER_MAX = 800.0
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A friction ring."""
+
+    ratio_min: Any
+    ratio_max: Any
+    mean_diameter: Any
+    ratio: Any
+    friction_radius: Any
+    width: Any
+    inner_radius: Any
+    outer_radius: Any
+    area: Any
+
+
+def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
+    """Declare the block ring with the empirical range of its ratio.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    ratio_min, ratio_max : float
+        Defaults of the range of ring width over mean diameter [-].
+
+    Returns
+    -------
+    Ring
+        Symbols of the block.
+    """
+    least = d.requirement(
+        "ring_ratio_min", "-", ratio_min, lower=0.02, upper=0.9, symbol="c_min",
+        text="Least ring width over mean diameter", source=f"{S1}, empirical range of c",
+    )  # fmt: skip
+    most = d.requirement(
+        "ring_ratio_max", "-", ratio_max, lower=0.02, upper=0.9, symbol="c_max",
+        text="Largest ring width over mean diameter", source=f"{S1}, empirical range of c",
+    )  # fmt: skip
+    d.refuse(
+        "bad_ratio",
+        least > most,
+        "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both",
+    )
+    outer = d.variable(
+        "ring_outer_diameter", "mm", 40, RING_OUTER_DIAMETER_MAX, grid=1, symbol="d_out",
+        text="Outer diameter of the friction ring", source=f"{S1}, d1",
+    )  # fmt: skip
+    inner = d.variable(
+        "ring_inner_diameter", "mm", 20, 700, grid=1, symbol="d_in",
+        text="Inner diameter of the friction ring", source=f"{S1}, d2",
+    )  # fmt: skip
+    mean = d.derive(
+        "mean_diameter", "mm", ring_formulas.mean_diameter(outer, inner), symbol="dm",
+        text="Mean diameter of the friction ring", source=f"{S1}, dm",
+    )  # fmt: skip
+    ratio = d.derive(
+        "ring_ratio", "-", ring_formulas.ring_ratio(outer, inner), symbol="c",
+        text="Ring width over mean diameter", source=f"{S1}, c = b/dm",
+    )  # fmt: skip
+    radius = d.derive(
+        "friction_radius", "mm", ring_formulas.friction_radius(mean, ratio), symbol="r",
+        text="Friction radius at uniform pressure", source=f"{S0}, friction radius",
+    )  # fmt: skip
+    d.advise(
+        "bad_ring",
+        inner >= outer,
+        "ring_inner_diameter is not below ring_outer_diameter: this is no ring, and its other figures mean nothing",
+        source=S0,
+    )
+    d.at_least(
+        "ring_ratio_min", ratio, least, "-",
+        text="The ring is not too narrow", source=f"{S1}, empirical range of c",
+    )  # fmt: skip
+    d.at_most(
+        "ring_ratio_max", ratio, most, "-",
+        text="The ring is not too wide", source=f"{S1}, empirical range of c",
+    )  # fmt: skip
+    return Ring(
+        ratio_min=least,
+        ratio_max=most,
+        mean_diameter=mean,
+        ratio=ratio,
+        friction_radius=radius,
+        # From the ratio, whose range is known, so that it is surely positive wherever the ratio is.
+        width=mean * ratio,
+        # Straight from the variables: a radius formed from mean diameter and ratio would use each of them twice.
+        inner_radius=inner / 2,
+        outer_radius=outer / 2,
+        area=ring_formulas.ring_area(mean, ratio),
+    )

@@ -1,0 +1,1 @@
+"""Blocks that clutches with a coil share: coil, winding, curves over temperature."""

@@ -1,0 +1,1 @@
+"""Magnetic powder clutch: its declaration, curves and own formulas."""

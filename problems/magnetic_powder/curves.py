@@ -1,0 +1,241 @@
+"""Curves of the magnetic-powder clutch: stress needed, torque over current and temperature, heat balance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.magnet import coil_curves
+from problems.magnet.coil_curves import POINTS, Warmth
+from problems.magnetic_powder import formulas as powder
+from problems.mechanics import magnetics
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth import DesignProblem
+
+POLE_LENGTHS = (0.01, 0.02, 0.04)  # [m]
+SOURCE = "S4 (notes on centrifugal clutches) [P1] to [P8]; the shear curve of the powder is unverified"
+
+
+@dataclass(frozen=True)
+class Built:
+    """One design, all in SI."""
+
+    layout: powder.Layout
+    permeability: float
+    saturation_stress: float
+    half_flux_density: float
+    leakage_factor: float
+    iron_reluctance: float
+    iron_saturation: float
+
+    def yoke(self, flux_density: Any) -> Any:
+        """Return the flux density of the yoke [T]."""
+        line_flux = flux_density * self.layout.pole_length
+        return powder.yoke_flux_density(self.leakage_factor, line_flux, self.layout.yoke_ratio, self.layout.thickness)
+
+    def rotor(self, flux_density: Any) -> Any:
+        """Return the flux density of the rim of the rotor [T]."""
+        width = powder.rim_section_width(self.layout.gap_radius, self.layout.thickness)
+        return powder.rotor_flux_density(flux_density * self.layout.pole_length, width)
+
+    def ampere_turns(self, flux_density: Any) -> Any:
+        """Return the ampere-turns of a flux density [A]."""
+        densest = np.maximum(self.yoke(flux_density), self.rotor(flux_density))
+        field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
+        return powder.ampere_turns(flux_density, self.permeability, self.layout, field)
+
+    def flux_density(self, ampere_turns: Any) -> np.ndarray:
+        """Return the flux densities that ampere-turns give, by bisection [T]."""
+        highest = self.iron_saturation / float(np.maximum(self.yoke(1.0), self.rotor(1.0)))
+        return coil_curves.flux_densities(ampere_turns, self.ampere_turns, highest)
+
+    def torque(self, flux_density: Any) -> Any:
+        """Return the torque of a flux density [N m]."""
+        stress = powder.shear_stress(np.maximum(flux_density, 1e-9), self.saturation_stress, self.half_flux_density)
+        return powder.torque(stress, self.layout.gap_radius, self.layout.pole_length)
+
+
+def built(spec: Mapping[str, Any], design: Any) -> Built:
+    """Return what the formulas need of a design."""
+    value, row = design.values, design.parts["powder"]
+    still = design.choices["coil"] == "stationary"
+    return Built(
+        layout=powder.Layout(
+            gap_radius=value["gap_radius"],
+            pole_length=value["pole_length"],
+            gap=value["powder_gap"],
+            coil_length=value["coil_length"],
+            coil_height=value["coil_height"],
+            thickness=value["yoke_thickness"],
+            drum=spec["drum_thickness"] if still else 0.0,
+            air_gap=spec["air_gap"] if still else 0.0,
+        ),
+        permeability=row["relative_permeability"],
+        saturation_stress=row["tau_sat"],
+        half_flux_density=row["half_flux_density"],
+        leakage_factor=spec["leakage_factor"],
+        iron_reluctance=spec["iron_reluctance"],
+        iron_saturation=spec["iron_saturation"],
+    )
+
+
+def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
+    """Return what heats and cools a design."""
+    layout, wire = built(spec, design).layout, design.parts["winding_wire"]
+    still = design.choices["coil"] == "stationary"
+    transfer = spec["still_heat_transfer"]
+    if not still:
+        transfer = magnetics.heat_transfer_in_motion(
+            transfer, spec["rotating_heat_transfer"], spec["driver_speed"], layout.outer_radius
+        )
+    surface = magnetics.cylinder_surface(layout.outer_radius, layout.length)
+    return Warmth(
+        conductance=float(transfer * surface),
+        ambient=spec["ambient_temperature"],
+        limit=min(wire["insulation_temperature"], design.parts["powder"]["temp_max"]),
+        limited_by="insulation and powder",
+        other_heat=design.values["slip_heat"],
+        brush_drop=0.0 if still else 2 * spec["brush_voltage"],
+        resistance=float(magnetics.coil_resistance(layout.coil_radius, design.values["turns"], wire["copper_area"])),
+    )
+
+
+def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Shear stress that the powder must carry over the radius of the gap, for some pole lengths.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+
+    Returns
+    -------
+    pandas.DataFrame
+        For two pole faces of 10, 20 and 40 mm.
+    """
+    import pandas as pd
+
+    radius = np.linspace(0.02, 0.15, POINTS)
+    needed = spec["torque_reserve"] * spec["required_torque"]
+    columns = {"gap radius [mm]": radius * 1e3}
+    for length in POLE_LENGTHS:
+        columns[f"poles of {length * 1e3:.0f} mm [kPa]"] = needed / powder.torque(1.0, radius, length) / 1e3
+    frame = pd.DataFrame(columns)
+    frame.attrs = {
+        "title": f"{problem.title}: shear stress for {needed:.4g} N*m",
+        "panels": [{"label": "shear stress [kPa]", "columns": list(frame.columns[1:]), "log": True}],
+        "source": "S4 (notes on centrifugal clutches) [P5]",
+    }
+    return frame
+
+
+def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Torque, flux densities and temperature rise over the current, with their limits.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From no current to half as much again as the design has.
+    """
+    import pandas as pd
+
+    body, heat, value = built(spec, design), warmth(spec, design), design.values
+    current = np.linspace(0.0, 1.5, POINTS) * value["current"]
+    flux_density = body.flux_density(current * value["turns"])
+    frame = pd.DataFrame({
+        "current [A]": current,
+        "torque [N*m]": body.torque(flux_density),
+        "powder [T]": flux_density,
+        "yoke [T]": body.yoke(flux_density),
+        "rotor [T]": body.rotor(flux_density),
+        "temperature rise [K]": heat.rise(current),
+    })  # fmt: skip
+    frame.attrs = {
+        "title": f"{problem.title}: torque over current",
+        "panels": [
+            {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
+            {"label": "flux density [T]", "columns": ["powder [T]", "yoke [T]", "rotor [T]"]},
+            {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
+        ],
+        "marks": coil_curves.current_marks(spec, design),
+        "lines": [
+            *_torques(spec),
+            {"panel": 1, "y": spec["powder_flux_limit"], "label": "powder_flux_limit"},
+            {"panel": 1, "y": spec["iron_flux_limit"], "label": "iron_flux_limit"},
+            {"panel": 2, "y": heat.limit - heat.ambient, "label": "insulation and powder"},
+        ],
+        "source": SOURCE,
+    }
+    return frame
+
+
+def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Torque and current over the temperature of the coil; see :mod:`problems.magnet.coil_curves`.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    body = built(spec, design)
+    return coil_curves.torque_over_temperature(
+        problem,
+        design,
+        warmth(spec, design),
+        lambda ampere_turns: body.torque(body.flux_density(ampere_turns)),
+        _torques(spec),
+        SOURCE,
+    )
+
+
+def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Heat made and heat given off over the temperature; see :mod:`problems.magnet.coil_curves`.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        From ambient temperature to a little above the limit.
+    """
+    return coil_curves.heat_balance(problem, design, warmth(spec, design), SOURCE)
+
+
+def _torques(spec: Mapping[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {"panel": 0, "y": spec["required_torque"], "label": "required_torque"},
+        {"panel": 0, "y": spec["torque_reserve"] * spec["required_torque"], "label": "with torque_reserve"},
+    ]

@@ -1,0 +1,358 @@
+"""Magnetic-powder clutch: a ring coil magnetises iron powder between a rotor and a drum, which then carries shear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.friction.sources import S4, TYPICAL
+from problems.magnet import coil as coil_blocks
+from problems.magnetic_powder import curves as powder_curves
+from problems.magnetic_powder import formulas as powder
+from problems.mechanics import magnetics
+from synth import DesignProblem
+from synth.declaration import Choice, Declaration, Part
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+GRAVITY = 9.80665  # [m/s2]
+SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
+
+
+@dataclass(frozen=True)
+class Wants:
+    """Requirements beside those of the coil, all in SI; None where an optional one is not given."""
+
+    steel_density: Any
+    torque: Any
+    reserve: Any
+    driver_speed: Any
+    slip_speed: Any
+    ambient_temperature: Any
+    powder_flux_limit: Any
+    brush_voltage: Any
+    rotating_heat_transfer: Any
+    fill_factor: Any
+    web_thickness: Any
+    air_gap: Any
+    drum_thickness: Any
+    shaft_radius: Any
+    powder_mass_limit: Any
+    outer_diameter_limit: Any
+    length_limit: Any
+
+
+class MagneticPowderClutch(DesignProblem):
+    """Magnetic-powder clutch with a stationary coil, or with a coil that rotates and has slip rings.
+
+    The source (S4) describes it in words and figures of experience; the sizing model is derived. The shear curve of the
+    powder is an unverified calibration (table powders).
+    """
+
+    name = "magnetic_powder_clutch"
+    title = "Magnetic-powder clutch"
+    sources = (
+        "S4: notes on centrifugal clutches, powder clutch (coil about 50 W, 60 to 100 cm3 of carbonyl iron powder)",
+        "Chen, Tian et al., Smart Mater. Struct. 22 (2013) 115036: form of the shear curve",
+        "Ampere's law, Froehlich's saturation curve, steady heat balance",
+    )
+    understands = (
+        "required_torque",
+        "driver_speed",
+        "outer_diameter_limit",
+        "length_limit",
+        "ambient_temperature",
+        "steel_density",
+    )
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        wants = _declare_requirements(d)
+        iron = coil_blocks.declare_coil_requirements(d)
+        radius = d.variable(
+            "gap_radius", "mm", 20, 150, grid=1, symbol="r_g",
+            text="Outside of the rotor, where the powder acts", source=f"{S4} [P4]",
+        )  # fmt: skip
+        pole = d.variable(
+            "pole_length", "mm", 5, 60, grid=1, symbol="l_p",
+            text="Length of one pole face; there are two", source=f"{S4} [P4]",
+        )  # fmt: skip
+        gap = d.variable(
+            "powder_gap", "mm", 1, 1.5, grid=0.05, symbol="g",
+            text="Gap between rotor and drum", source=f"{S4}, 1 to 1.5 mm",
+        )  # fmt: skip
+        unknowns = coil_blocks.declare_coil_unknowns(d)
+        coil = d.choice(
+            "coil", ("stationary", "rotating"), symbol="lay",
+            text="stationary: a second air gap, no slip rings; rotating: slip rings, the coil turns with the driver",
+            source=f"{S4}, figures 2-27 to 2-29",
+        )  # fmt: skip
+        part = d.part("powder", "powders", symbol="pw", text="Magnetic powder", source="table powders")
+        layout = powder.Layout(
+            gap_radius=radius,
+            pole_length=pole,
+            gap=gap,
+            coil_length=unknowns.length,
+            coil_height=unknowns.height,
+            thickness=unknowns.thickness,
+            drum=coil.select({"stationary": wants.drum_thickness, "rotating": 0.0}),
+            air_gap=coil.select({"stationary": wants.air_gap, "rotating": 0.0}),
+        )
+        rim = powder.rim_section_width(radius, unknowns.thickness)
+        _declare_torque(d, wants, part, unknowns.flux_density, layout)
+        ampere_turns = _declare_circuit(d, wants, iron, part, unknowns.flux_density, layout, rim)
+        slip_heat = d.derive(
+            "slip_heat", "W", wants.torque * wants.slip_speed, symbol="P_slip",
+            text="Heat of continuous slip under required_torque", source=f"{S4} [P9]",
+        )  # fmt: skip
+        moving = magnetics.heat_transfer_in_motion(
+            iron.still_heat_transfer, wants.rotating_heat_transfer, wants.driver_speed, layout.outer_radius
+        )
+        around = coil_blocks.Surroundings(
+            ambient_temperature=wants.ambient_temperature,
+            temperature_limit=np.minimum(unknowns.wire.insulation_temperature, part.temp_max),
+            heat_transfer=coil.select({"stationary": iron.still_heat_transfer, "rotating": moving}),
+            surface=magnetics.cylinder_surface(layout.outer_radius, layout.length),
+            other_heat=slip_heat,
+            brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
+        )
+        copper = coil_blocks.declare_winding(d, iron, unknowns, ampere_turns, layout.bore, around)
+        _declare_size(d, wants, part, coil, layout, rim, copper)
+        _declare_remarks(d, wants, coil, part, layout)
+        d.objective("coil_power")
+        d.objective("input_inertia")
+        for name in ("mass", "outer_diameter"):
+            d.objective(name, default=False)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the shear stress that a torque needs; of a design torque over current and temperature, heat balance.
+
+        Parameters
+        ----------
+        spec : mapping
+            Requirements in SI by name, None where an optional one is not given.
+        design : Design, optional
+            The design to draw.
+
+        Returns
+        -------
+        dict of str to DataFrame
+            ``stress_over_radius``, and of a design ``torque_over_current``, ``torque_over_temperature`` and
+            ``heat_balance``.
+        """
+        frames = {"stress_over_radius": powder_curves.stress_over_radius(self, spec)}
+        if design is not None:
+            frames["torque_over_current"] = powder_curves.torque_over_current(self, spec, design)
+            frames["torque_over_temperature"] = powder_curves.torque_over_temperature(self, spec, design)
+            frames["heat_balance"] = powder_curves.heat_balance(self, spec, design)
+        return frames
+
+
+def _declare_requirements(d: Declaration) -> Wants:
+    return Wants(
+        steel_density=d.requirement(
+            "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_steel",
+            text="Density of rotor, drum and body", source="material constant",
+        ),
+        torque=d.requirement(
+            "required_torque", "N*m", lower=0.1, upper=1e5, symbol="M_req",
+            text="Torque that the clutch has to carry, slipping or not", source="requirement of the drive",
+        ),
+        reserve=d.requirement(
+            "torque_reserve", "-", 1.2, lower=1, upper=5, symbol="k_M",
+            text="Torque at full current over required_torque", source=f"{S4}, section 6.1",
+        ),
+        driver_speed=d.requirement(
+            "driver_speed", "1/min", 1432.39, lower=1, upper=60000, symbol="omega_in",
+            text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil", source=f"{S4}, section 6.1",
+        ),
+        slip_speed=d.requirement(
+            "slip_speed", "1/min", 9.549, lower=0, upper=60000, symbol="omega_slip",
+            text=f"Continuous slip ({TYPICAL}, 1 rad/s)", source=f"{S4} [P9]",
+        ),
+        ambient_temperature=d.requirement(
+            "ambient_temperature", "degC", 40, lower=-60, upper=150, symbol="T_amb",
+            text="Temperature of the surroundings", source=f"{S4}, section 6.1",
+        ),
+        powder_flux_limit=d.requirement(
+            "powder_flux_limit", "T", 1.0, lower=0.05, upper=1.6, symbol="B_max",
+            text="Largest flux density in the powder", source=f"{S4}, section 6.1",
+        ),
+        brush_voltage=d.requirement(
+            "brush_voltage", "V", 1, lower=0, upper=10, symbol="U_brush",
+            text=f"Drop of one brush contact ({TYPICAL}); rotating coil only", source=f"{S4} [P8]",
+        ),
+        rotating_heat_transfer=d.requirement(
+            "rotating_heat_transfer", "-", 3, lower=0, upper=100, symbol="h_rot",
+            text=f"W/(m2 K) per (m/s)**0.8 of the rim of a rotating coil body ({TYPICAL})", source=f"{S4} [P7]",
+        ),
+        fill_factor=d.requirement(
+            "fill_factor", "-", 0.6, lower=0.05, upper=1, symbol="fill",
+            text=f"Part of the gap that powder fills ({TYPICAL})", source=f"{S4} [P10]",
+        ),
+        web_thickness=d.requirement(
+            "rotor_web_thickness", "mm", 8, lower=1, upper=200, symbol="t_web",
+            text=f"Web of the rotor ({TYPICAL})", source=f"{S4} [P10]",
+        ),
+        air_gap=d.requirement(
+            "air_gap", "mm", 0.4, lower=0.05, upper=5, symbol="delta_a",
+            text=f"Gap between drum and stationary body ({TYPICAL})", source=f"{S4} [P4]",
+        ),
+        drum_thickness=d.requirement(
+            "drum_thickness", "mm", 6, lower=0.5, upper=50, symbol="t_drum",
+            text=f"Drum between powder and stationary body ({TYPICAL})", source=f"{S4} [P4]",
+        ),
+        shaft_radius=d.requirement(
+            "shaft_radius", "mm", 12, lower=1, upper=200, symbol="r_shaft",
+            text=f"Shaft with hub inside the rotor ({TYPICAL})", source=f"{S4}, section 6.1",
+        ),
+        powder_mass_limit=d.requirement(
+            "powder_mass_limit", "kg", 0.40, lower=0.01, upper=50, symbol="m_powder_max",
+            text="Largest mass of powder", source=f"{S4}, 250 to 400 g",
+        ),
+        outer_diameter_limit=d.requirement(
+            "outer_diameter_limit", "mm", lower=20, upper=2000, optional=True, symbol="D_max",
+            text="Largest outside diameter", source="requirement of the drive",
+        ),
+        length_limit=d.requirement(
+            "length_limit", "mm", lower=10, upper=2000, optional=True, symbol="L_max",
+            text="Largest length of the body", source="requirement of the drive",
+        ),
+    )  # fmt: skip
+
+
+def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
+    stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
+    torque = d.derive(
+        "torque", "N*m", powder.torque(stress, layout.gap_radius, layout.pole_length), symbol="M",
+        text="Torque at full current, whatever the slip speed; rests on the unverified shear curve of the powder",
+        source=f"{S4} [P1], [P5]",
+    )  # fmt: skip
+    d.at_least(
+        "torque_capacity", torque, wants.reserve * wants.torque, "N*m",
+        text="The clutch carries the torque with its reserve", source=f"{S4}, section 6.3",
+    )  # fmt: skip
+    d.at_most(
+        "powder_flux_density", flux_density, wants.powder_flux_limit, "T",
+        text="The powder is not saturated", source=f"{S4}, section 6.3",
+    )  # fmt: skip
+
+
+def _declare_circuit(
+    d: Declaration,
+    wants: Wants,
+    iron: coil_blocks.CoilRequirements,
+    part: Part,
+    flux_density: Any,
+    layout: powder.Layout,
+    rim: Any,
+) -> Any:
+    """Declare the flux densities of the iron and return the ampere-turns that the circuit needs."""
+    line_flux = flux_density * layout.pole_length
+    outside = powder.yoke_flux_density(iron.leakage_factor, line_flux, layout.yoke_ratio, layout.thickness)
+    inside = powder.rotor_flux_density(line_flux, rim)
+    densest = magnetics.larger(outside, inside)
+    coil_blocks.declare_saturation(d, iron, densest)
+    d.at_most(
+        "yoke_flux_density", outside, iron.iron_flux_limit, "T",
+        text="The yoke outside the coil carries the flux", source=f"{S4} [P4]",
+    )  # fmt: skip
+    d.at_most(
+        "rotor_flux_density", inside, iron.iron_flux_limit, "T",
+        text="The rim of the rotor carries the flux", source=f"{S4} [P4]",
+    )  # fmt: skip
+    d.at_least(
+        "rotor_bore", layout.gap_radius, layout.thickness + wants.shaft_radius, "mm",
+        text="The shaft fits inside the rim of the rotor", source="geometry",
+    )  # fmt: skip
+    field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
+    return powder.ampere_turns(flux_density, part.relative_permeability, layout, field)
+
+
+def _declare_size(
+    d: Declaration, wants: Wants, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
+) -> None:
+    filling = d.derive(
+        "powder_mass", "kg",
+        powder.powder_mass(part.bulk_density, wants.fill_factor, layout.gap_radius, layout.gap, layout.face_length),
+        symbol="m_pow", text="Powder in the gap", source=f"{S4} [P10]",
+    )  # fmt: skip
+    d.at_most(
+        "powder_mass", filling, wants.powder_mass_limit, "kg",
+        text="The powder is not more than asked for", source=f"{S4}, 250 to 400 g",
+    )  # fmt: skip
+    density = wants.steel_density
+    inner = layout.gap_radius + layout.gap
+    drum = powder.cylinder_mass(density, inner, layout.drum, layout.face_length)
+    body = powder.body_mass(
+        density, layout.bore, layout.coil_height, layout.coil_length, layout.thickness, layout.length
+    )
+    copper = magnetics.copper_mass(layout.coil_radius, copper_section)
+    rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.web_thickness)
+    d.derive(
+        "input_inertia", "kg*m2",
+        coil.select({
+            "stationary": powder.ring_inertia(drum, layout.drum_radius, inner),
+            "rotating": powder.ring_inertia(body, layout.outer_radius, layout.bore) + copper * layout.coil_radius**2,
+        }),
+        symbol="J_in", text="Driving side: the drum, or the body with its rotating coil", source=f"{S4} [P10]",
+    )  # fmt: skip
+    diameter = d.derive(
+        "outer_diameter", "mm", 2 * layout.outer_radius, symbol="D",
+        text="Outside of the yoke", source="geometry",
+    )  # fmt: skip
+    length = d.derive(
+        "length", "mm", layout.length, symbol="L", text="Length of the body, 2 l_p + l_m + 2 t_y", source="geometry"
+    )
+    d.derive(
+        "mass", "kg", rotor + drum + body + copper + filling, symbol="m",
+        text="Rotor without shaft, drum of a stationary coil, body, copper and powder", source=f"{S4} [P10]",
+    )  # fmt: skip
+    asked = "requirement of the drive"
+    if wants.outer_diameter_limit is not None:
+        d.at_most(
+            "outer_diameter", diameter, wants.outer_diameter_limit, "mm",
+            text="The clutch fits the room across", source=asked,
+        )  # fmt: skip
+    if wants.length_limit is not None:
+        d.at_most("length", length, wants.length_limit, "mm", text="The clutch fits the room along", source=asked)
+
+
+def _declare_remarks(d: Declaration, wants: Wants, coil: Choice, part: Part, layout: powder.Layout) -> None:
+    rise = d.derived["coil_temperature_rise"].sx
+    d.advise(
+        "powder_calibration",
+        True,
+        "torque, flux density and coil power rest on the shear curve of the powder (tau_sat, half_flux_density), an "
+        "unverified calibration: put measured values into table powders before the design is released",
+        source=f"{S4} [P1], section 10",
+    )
+    d.advise(
+        "unusual_powder_gap",
+        np.logical_or(layout.gap < part.optional("gap_min"), layout.gap > part.optional("gap_max")),
+        "the powder gap is outside what is usual for this powder",
+        source=f"{S4}, section 9",
+    )
+    d.advise(
+        "hot_surface",
+        rise + wants.ambient_temperature > SURFACE_WARNING,
+        "the surface is above 75 degC, which one maker names as the limit of powder clutches: look at seals and at "
+        "what can be touched",
+        source=f"{S4} [P9]",
+    )
+    d.advise(
+        "powder_not_spread",
+        wants.driver_speed**2 * layout.gap_radius < 10 * GRAVITY,
+        "the centrifugal acceleration in the gap is below 10 g: the powder may lie at the bottom instead of all around",
+        source=f"{S4}, checks X6 and X11",
+    )
+    d.advise(
+        "slip_rings",
+        coil.select({"stationary": 0.0, "rotating": 1.0}) > 0.5,
+        "the rotating coil needs slip rings: their wear, and dust that must not reach the powder, are not in the model",
+        source=f"{S4}, stationary and rotating coil",
+    )

@@ -1,0 +1,102 @@
+"""Multi-plate clutch: torque through many rings in a drum, with friction in the plate guides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from problems import friction
+from problems.friction import startup_curves
+from problems.mechanics import plates
+from problems.multi_plate import curves as pack_curves
+from problems.multi_plate import pack as plate_pack
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class MultiPlateClutch(DesignProblem):
+    """Multi-plate clutch, dry or in oil, both end plates being inner plates.
+
+    The torque fades along the pack by friction in the plate guides (S0); start-up, heat and sizing follow S1.
+    """
+
+    name = "multi_plate_clutch"
+    title = "Multi-plate clutch"
+    sources = (
+        "S0: B. Szoke, Engagement and release of the multi-plate clutch (in Hungarian), 1966; appendix by I. Lipka",
+        "S1: lecture on friction clutches (cone, disc, multi-plate; start-up and heat)",
+        "Neale, Tribology Handbook, Tables 7.4 and 7.5",
+    )
+    simulation_settings = startup_curves.SETTINGS
+    understands = (
+        *friction.COMMON,
+        "ambient_temperature",
+        "heat_transfer",
+        "steel_specific_heat",
+        "plate_gap",
+        "drag_torque_limit",
+    )
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        lubrication = plate_pack.declare_lubrication(d)
+        duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
+        options = plate_pack.declare_pack_options(d)
+        wants = plate_pack.declare_pack_requirements(d, options, lubrication)
+        ring = friction.declare_ring(d, 0.10, 0.25)
+        force = self._declare_force(d)
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(d, self.name, duty, lubrication)
+        pack = plate_pack.declare_pack(d, options, wants, ring)
+
+        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
+        plate_pack.refuse_impossible_pack(d, duty, options, wants, ring, pack, required)
+        torque = plate_pack.declare_pack_torque(d, options, wants, ring, pair, pack, force)
+        torques = friction.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=("guide_jams",))
+        start = friction.declare_startup(d, duty, torques, ramp_time)
+        area = pack.surfaces * ring.area
+        friction.declare_surface_loads(
+            d, duty, pair, start, area, pack.aid.area_factor * area, torque.pressure, ring.outer_radius
+        )
+        size = plate_pack.pack_size(duty, wants, ring, pair, pack)
+        plate_pack.declare_pack_temperature(d, duty, pair, start, size)
+        friction.declare_size(
+            d, size, "Plates with linings", "Outside of the drum", "2 (b + s_drum)",
+            "Length of the released pack, without actuator and end stops",
+        )  # fmt: skip
+        plate_pack.declare_drag(d, duty, wants, ring, pack)
+        friction.declare_envelope(d, duty, force, size.diameter, size.length)
+        plate_pack.declare_pack_remarks(d, options, lubrication)
+        self._declare_objectives(d)
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return the start-up in time, and the temperature of the steel plates over repeated engagements."""
+        pair = design.parts["friction_pair"]
+        lining = plates.lining_mass(pair["density"], pair["lining_thickness"], design.values["friction_area"])
+        capacity = (design.values["mass"] - lining) * spec["steel_specific_heat"]
+        return startup_curves.startup_frames(self, spec, design, capacity)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return torque over plates and start-up over torque; with a design also force and pressure along the pack."""
+        frames = {
+            "torque_over_plates": pack_curves.torque_over_plates(self, spec, design),
+            "startup_over_torque": startup_curves.startup_over_torque(self, spec, design),
+        }
+        if design is not None:
+            frames["force_along_pack"] = pack_curves.force_along_pack(self, spec, design)
+        return frames
+
+    def _declare_force(self, d: Declaration) -> Any:
+        return d.variable(
+            "actuation_force", "N", 50, 200000, symbol="F0",
+            text="Axial force of the actuator on the first plate", source="S0 (Szoke 1966), F0",
+        )  # fmt: skip
+
+    def _declare_objectives(self, d: Declaration) -> None:
+        d.objective("mass")
+        d.objective("actuation_force")
+        for name in ("outer_diameter", "volume", "friction_work", "drag_torque"):
+            d.objective(name, default=False)

@@ -1,0 +1,628 @@
+"""The pack of a multi-plate clutch: many rings in a drum, with friction in the plate guides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.friction.duty import Duty, Size
+from problems.friction.engagement import Pair, Startup, advise_frequent_switching
+from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
+from problems.friction.sources import S0, S1, TYPICAL
+from problems.mechanics import guide_friction, heat, plates
+from problems.mechanics import ring as ring_formulas
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration
+
+
+@dataclass(frozen=True)
+class PackOptions:
+    """Options of a multi-plate pack."""
+
+    guide_model: str
+    guide_series: str
+    release_aid: str
+    spline_choice: str
+    shaft_position: str
+
+
+@dataclass(frozen=True)
+class PackRequirements:
+    """Requirements of a multi-plate pack, all in SI; None where an optional one is not given."""
+
+    surface_factor: Any
+    guide_friction: Any
+    hub_bore_diameter: Any
+    drag_torque_limit: Any
+    oil_viscosity: Any
+    lug_clearance: Any
+    lug_count: Any
+    lug_height: Any
+    lug_pressure_limit: Any
+    drum_wall: Any
+    plate_effectiveness_min: Any
+
+
+@dataclass(frozen=True)
+class ReleaseAid:
+    """What a release aid takes of the force and leaves of area and drag; 0, 1, 1 without one."""
+
+    force_fraction: Any = 0.0
+    area_factor: Any = 1.0
+    drag_factor: Any = 1.0
+
+
+@dataclass(frozen=True)
+class Pack:
+    """The plates of a multi-plate pack."""
+
+    surfaces: Any
+    inner_thickness: Any
+    outer_thickness: Any
+    inner_spline_radius: Any
+    outer_spline_radius: Any
+    inner_mean_diameter: Any
+    inner_width: Any
+    inner_lug_count: Any
+    inner_lug_height: Any
+    aid: ReleaseAid
+
+
+@dataclass(frozen=True)
+class PackTorque:
+    """Torque and pressure of a pack under an actuation force."""
+
+    low: Any
+    high: Any
+    pressure: Any
+
+
+@dataclass(frozen=True)
+class PackSize(Size):
+    """Mass, size and heat capacity of a pack."""
+
+    heat_capacity: Any
+    cooled_area: Any
+
+
+def declare_lubrication(d: Declaration) -> str:
+    """Declare the option lubrication; it comes first, because defaults of others depend on it."""
+    return d.option(
+        "lubrication",
+        ("oil", "dry"),
+        "oil",
+        symbol="lub",
+        text="Condition on the friction pair; sets the defaults of oil_viscosity and cooling",
+        source=f"{S0}, plates in oil",
+    )
+
+
+def declare_pack_options(d: Declaration) -> PackOptions:
+    """Declare the options of a multi-plate pack."""
+    return PackOptions(
+        guide_model=d.option(
+            "guide_model",
+            ("series", "cz"),
+            "series",
+            symbol="guide",
+            text="series: friction in the plate guides is computed; cz: the lecture's factor surface_factor instead",
+            source=f"{S0}, eq. (2) to (5); {S1}, c_z",
+        ),
+        guide_series=d.option(
+            "guide_series",
+            guide_friction.GUIDE_SERIES,
+            "geometric",
+            symbol="gs",
+            text="Torque sum: geometric (5), exponential_form (5'), lipka (5''), exponential_K (10), exact",
+            source=f"{S0}, eq. (5), (10) and appendix",
+        ),
+        release_aid=d.option(
+            "release_aid",
+            d.designations("release_aids"),
+            "none",
+            symbol="aid",
+            text="What separates the plates of the released pack",
+            source=f"{S0}, release of the plates",
+        ),
+        spline_choice=d.option(
+            "spline_choice",
+            ("free", "catalogue"),
+            "free",
+            symbol="spl",
+            text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
+            source="table splines",
+        ),
+        shaft_position=d.option(
+            "shaft_position",
+            ("horizontal", "vertical"),
+            "horizontal",
+            symbol="pos",
+            text="Position of the shaft",
+            source=f"{S0}, vertical shafts",
+        ),
+    )
+
+
+def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication: str) -> PackRequirements:
+    """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    options : PackOptions
+        Options of the pack.
+    lubrication : str
+        dry or oil.
+
+    Returns
+    -------
+    PackRequirements
+        Symbols of the block.
+    """
+    series = options.guide_model == "series"
+    pack = PackRequirements(
+        surface_factor=d.requirement(
+            "surface_factor", "-", 1.0 if series else 0.75, lower=0.3, upper=1, symbol="c_z",
+            text="Surface-count factor, used with guide_model cz only; 0.75 belongs to ten surfaces",
+            source=f"{S1}, c_z",
+        ),
+        guide_friction=d.requirement(
+            "guide_friction", "-", 0.1, lower=0, upper=0.5, symbol="mu_guide",
+            text="Friction of the plates in their splines", source=f"{S0}, mu1",
+        ),
+        hub_bore_diameter=d.requirement(
+            "hub_bore_diameter", "mm", lower=2, upper=700, optional=True, symbol="d_hub_min",
+            text="Least mean diameter 2a of the inner spline: room for the shaft", source="requirement of the drive",
+        ),
+        drag_torque_limit=d.requirement(
+            "drag_torque_limit", "N*m", lower=0.001, upper=1e4, optional=True, symbol="T_drag_max",
+            text="Largest drag of the released clutch", source=f"{S0}, after-running",
+        ),
+        oil_viscosity=d.requirement(
+            "oil_viscosity", "Pa*s", 0.02 if lubrication == "oil" else 0.0, lower=0, upper=2, symbol="eta_oil",
+            text=f"Dynamic viscosity of the oil, 0 when dry ({TYPICAL})", source=TYPICAL,
+        ),
+        lug_clearance=d.requirement(
+            "lug_clearance", "mm", 3, lower=0.1, upper=30, symbol="e_lug",
+            text="From the edge of the friction ring to the mean spline radius", source=f"{S0}, example",
+        ),
+        lug_count=d.requirement(
+            "lug_count", "-", 12, lower=3, upper=200, symbol="n_lug",
+            text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL,
+        ),
+        lug_height=d.requirement(
+            "lug_height", "mm", 3, lower=0.5, upper=30, symbol="h_lug",
+            text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL,
+        ),
+        lug_pressure_limit=d.requirement(
+            "lug_pressure_limit", "N/mm2", 30, lower=1, upper=200, symbol="p_lug_allow",
+            text=f"Pressure of the lugs on the spline flanks; 25 to 40 when hardened ({TYPICAL})", source=TYPICAL,
+        ),
+        drum_wall=d.requirement(
+            "drum_wall", "mm", 6, lower=1, upper=50, symbol="s_drum",
+            text=f"Drum outside the mean radius of the outer spline ({TYPICAL})", source=TYPICAL,
+        ),
+        plate_effectiveness_min=d.requirement(
+            "plate_effectiveness_min", "-", 0.5, lower=0.05, upper=1, symbol="eta_min",
+            text="Least torque of the pack over that without guide friction; used with guide_model series",
+            source=f"{S0}, eq. (16)",
+        ),
+    )  # fmt: skip
+    if series:
+        d.refuse(
+            "double_guide_loss",
+            pack.surface_factor < 1,
+            "no surface_factor below 1 with guide_model series, which computes the friction in the guides itself; "
+            "leave surface_factor out or choose guide_model cz",
+        )
+    if lubrication == "dry":
+        d.refuse("lubrication_mismatch", pack.oil_viscosity > 0, "an oil_viscosity of 0 with lubrication dry")
+    else:
+        d.refuse("lubrication_mismatch", pack.oil_viscosity <= 0, "an oil_viscosity above 0 with lubrication oil")
+    return pack
+
+
+def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
+    """Declare the plates of a pack and their splines.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    options : PackOptions
+        Options of the pack.
+    wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+
+    Returns
+    -------
+    Pack
+        The plates.
+    """
+    surfaces = d.count(
+        "friction_surfaces", 2, 60, step=2, symbol="z",
+        text="Friction surface pairs; even, because both end plates are inner plates", source=f"{S0}, x; {S1}, z",
+    )  # fmt: skip
+    inner_plate = d.part(
+        "inner_plate", "core_plates", symbol="ip",
+        text="Steel core of the inner plates", source="table core_plates",
+    )  # fmt: skip
+    outer_plate = d.part(
+        "outer_plate", "core_plates", symbol="op",
+        text="Steel core of the outer plates, lined on both sides", source="table core_plates",
+    )  # fmt: skip
+    if options.spline_choice == "catalogue":
+        spline = d.part(
+            "inner_spline", "splines", symbol="is", text="Spline of the inner plates", source="table splines"
+        )
+        inner_spline_radius = spline.mean_flank_diameter / 2
+        inner_mean_diameter = ring.outer_radius + inner_spline_radius
+        inner_width = ring.outer_radius - inner_spline_radius
+        lug_count, lug_height = spline.teeth, spline.flank_height_h
+        d.at_least(
+            "spline_clearance", ring.inner_radius - inner_spline_radius, wants.lug_clearance, "mm",
+            text="The spline stays clear of the friction ring", source=f"{S0}, a < r1",
+        )  # fmt: skip
+    else:
+        inner_spline_radius = ring.inner_radius - wants.lug_clearance
+        inner_mean_diameter = ring.mean_diameter - wants.lug_clearance
+        inner_width = ring.width + wants.lug_clearance
+        lug_count, lug_height = wants.lug_count, wants.lug_height
+    aid_row = None if options.release_aid == "none" else d.row("release_aids", options.release_aid)
+    d.derive(
+        "outer_plates", "-", ring_formulas.outer_plate_count(surfaces), symbol="z_k",
+        text="Outer plates", source=f"{S1}, z_k",
+    )  # fmt: skip
+    d.derive(
+        "inner_plates", "-", ring_formulas.inner_plate_count(surfaces), symbol="z_b",
+        text="Inner plates", source=f"{S1}, z_b = z_k + 1",
+    )  # fmt: skip
+    pack = Pack(
+        surfaces=surfaces,
+        inner_thickness=inner_plate.thickness,
+        outer_thickness=outer_plate.thickness,
+        inner_spline_radius=d.derive(
+            "inner_spline_radius", "mm", inner_spline_radius, symbol="a",
+            text="Mean spline radius of the inner plates", source=f"{S0}, a",
+        ),
+        outer_spline_radius=d.derive(
+            "outer_spline_radius", "mm", ring.outer_radius + wants.lug_clearance, symbol="b",
+            text="Mean spline radius of the outer plates", source=f"{S0}, b",
+        ),
+        inner_mean_diameter=inner_mean_diameter,
+        inner_width=inner_width,
+        inner_lug_count=lug_count,
+        inner_lug_height=lug_height,
+        aid=ReleaseAid()
+        if aid_row is None
+        else ReleaseAid(aid_row.force_fraction, aid_row.area_factor, aid_row.drag_factor),
+    )  # fmt: skip
+    if wants.hub_bore_diameter is not None:
+        d.at_least(
+            "hub_bore", 2 * pack.inner_spline_radius, wants.hub_bore_diameter, "mm",
+            text="The shaft fits inside the plates", source="requirement of the drive",
+        )  # fmt: skip
+    return pack
+
+
+def refuse_impossible_pack(
+    d: Declaration,
+    duty: Duty,
+    options: PackOptions,
+    wants: PackRequirements,
+    ring: Ring,
+    pack: Pack,
+    required: Any,
+) -> None:
+    """Refuse requirements that no design can meet, whatever the unknowns.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    options : PackOptions
+        Options of the pack.
+    wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+    pack : Pack
+        The plates.
+    required : symbol
+        Sizing torque M_req [N m].
+    """
+    if wants.hub_bore_diameter is not None and duty.outer_diameter_limit is not None:
+        least_inner = wants.hub_bore_diameter + 2 * wants.lug_clearance
+        least_outer = least_inner * (1 + ring.ratio_min) / (1 - ring.ratio_min)
+        d.refuse(
+            "no_room_for_ring",
+            least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
+            "room for a friction ring of at least ring_ratio_min between hub_bore_diameter and "
+            "outer_diameter_limit, besides lug_clearance and drum_wall",
+        )
+    # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
+    saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
+    if duty.actuation_force_limit is not None and saturates:
+        outer_spline = RING_OUTER_DIAMETER_MAX / 2000 + wants.lug_clearance
+        if duty.outer_diameter_limit is not None:
+            outer_spline = np.minimum(outer_spline, duty.outer_diameter_limit / 2 - wants.drum_wall)
+        outer_radius = outer_spline - wants.lug_clearance
+        inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - wants.lug_clearance
+        net_force = duty.actuation_force_limit * (1 - pack.aid.force_fraction)
+        d.refuse(
+            "torque_above_guide_limit",
+            np.logical_and(
+                inner_spline > 0,
+                required * wants.guide_friction * (inner_spline + outer_spline)
+                > net_force * inner_spline * outer_spline,
+            ),
+            "a sizing torque that the friction in the guides lets pass at actuation_force_limit with the largest "
+            "splines that fit; more plates do not help: raise actuation_force_limit or outer_diameter_limit, or "
+            "lower guide_friction",
+        )
+
+
+def declare_pack_torque(
+    d: Declaration,
+    options: PackOptions,
+    wants: PackRequirements,
+    ring: Ring,
+    pair: Pair,
+    pack: Pack,
+    force: Any,
+) -> PackTorque:
+    """Declare guide friction, lug pressures and drag of a pack; return its torque and pressure.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    options : PackOptions
+        Options of the pack.
+    wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+    pair : Pair
+        Slot friction_pair.
+    pack : Pack
+        The plates.
+    force : symbol
+        Actuation force F0 [N].
+
+    Returns
+    -------
+    PackTorque
+        Torque with the friction counted on and the friction feared, largest pressure.
+    """
+    radius, surfaces = ring.friction_radius, pack.surfaces
+    a, b = pack.inner_spline_radius, pack.outer_spline_radius
+    series = options.guide_model == "series"
+
+    def ratios(mu: Any) -> tuple[Any, Any]:
+        return (
+            guide_friction.guide_ratio(mu, wants.guide_friction, radius, a),
+            guide_friction.guide_ratio(mu, wants.guide_friction, radius, b),
+        )
+
+    def sum_factor(mu: Any) -> Any:
+        return guide_friction.torque_sum_factor(options.guide_series, surfaces, *ratios(mu)) if series else surfaces
+
+    def share(surface: int, mu: Any) -> Any:
+        """Return the part of the actuation force that reaches a surface."""
+        return guide_friction.contact_force(options.guide_series, 1.0, surface, *ratios(mu)) if series else 1.0
+
+    net_force = force * (1 - pack.aid.force_fraction)
+    # M0 = mu r F0 stays one expression for torque and lugs, so that a bound on the torque reaches the lugs.
+    moment_low = pair.mu_low * net_force * radius
+    moment_high = moment_low if pair.mu_high is pair.mu_low else pair.mu_high * net_force * radius
+    d.at_least(
+        "guide_jams", a, pair.mu_high * wants.guide_friction * radius, "mm", guard=True,
+        text="The inner plates slide in their spline and do not jam; their mean spline radius is above 0",
+        source=f"{S0}, first phase of engagement",
+    )  # fmt: skip
+    guide_number = sum(ratios(pair.mu_low)) if series else 0.0
+    d.derive(
+        "guide_number", "-", guide_number, symbol="S", needs="guide_jams",
+        text="Friction in the guides; 0 with guide_model cz", source=f"{S0}, eq. (2)",
+    )  # fmt: skip
+    factor = d.derive(
+        "torque_sum_factor", "-", sum_factor(pair.mu_low), symbol="E", needs="guide_jams",
+        text="Torque of the pack over mu F0 r", source=f"{S0}, eq. (5)",
+    )  # fmt: skip
+    factor_high = factor if pair.mu_high is pair.mu_low else sum_factor(pair.mu_high)
+    effectiveness = d.derive(
+        "plate_effectiveness", "-", factor_high / surfaces, symbol="eta_z", needs="guide_jams",
+        text="Torque of the pack over that of as many surfaces without guide friction (worst_case: with mu_max)",
+        source=f"{S0}, eq. (16)",
+    )  # fmt: skip
+    if series:
+        d.at_least(
+            "plate_count_worthwhile", effectiveness, wants.plate_effectiveness_min, "-",
+            text="Adding plates is still worth while", source=f"{S0}, eq. (16)",
+        )  # fmt: skip
+        d.advise(
+            "beyond_legacy_plate_limit",
+            surfaces > guide_friction.legacy_plate_limit(guide_number),
+            "more friction surfaces than the rule sqrt(2)/K of eq. (15) allows; plate_count_worthwhile (16) decides",
+            source=f"{S0}, eq. (15)",
+        )
+    else:
+        d.advise(
+            "surface_factor_fits_ten_surfaces",
+            np.logical_or(surfaces < 10, surfaces > 10),
+            "surface_factor was taken for a pack that may have another number of surfaces: 0.75 belongs to ten; "
+            "guide_model series computes the loss for any number",
+            source=f"{S1}, c_z",
+        )
+    _declare_lugs(d, wants, pack, moment_high, [share(j, pair.mu_high) for j in (1, 2, 3)])
+    return PackTorque(
+        low=moment_low * factor,
+        high=moment_high * factor_high,
+        pressure=net_force * share(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
+    )
+
+
+def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
+    """Declare the lug pressures; ``moment`` is mu r F0 and ``shares`` the parts of F0 on surfaces 1, 2 and 3."""
+    first, second, third = shares
+    outer_torque = moment * (first + second)
+    # With two surfaces both inner plates are end plates, and the first is loaded by surface 1 alone.
+    inner_torque = moment * np.where(pack.surfaces > 2, second + third, first)
+    outer = d.derive(
+        "lug_pressure_outer", "N/mm2",
+        plates.lug_pressure(
+            outer_torque, pack.outer_spline_radius, wants.lug_count, wants.lug_height, pack.outer_thickness
+        ),
+        symbol="p_lo", needs="guide_jams",
+        text="Pressure of the lugs of the first outer plate (worst_case: with mu_max)",
+        source=f"{S0}, plate thickness; derived",
+    )  # fmt: skip
+    inner = d.derive(
+        "lug_pressure_inner", "N/mm2",
+        plates.lug_pressure(
+            inner_torque, pack.inner_spline_radius, pack.inner_lug_count, pack.inner_lug_height, pack.inner_thickness
+        ),
+        symbol="p_li", needs="guide_jams",
+        text="Pressure of the lugs of the first inner plate between two surfaces (worst_case: with mu_max)",
+        source=f"{S0}, plate thickness; derived",
+    )  # fmt: skip
+    rule = f"{S0}: the lugs must not bite into the spline groove"
+    d.at_most(
+        "lug_pressure_outer", outer, wants.lug_pressure_limit, "N/mm2",
+        text="The lugs of the outer plates do not bite into the drum", source=rule,
+    )  # fmt: skip
+    d.at_most(
+        "lug_pressure_inner", inner, wants.lug_pressure_limit, "N/mm2",
+        text="The lugs of the inner plates do not bite into the hub", source=rule,
+    )  # fmt: skip
+    d.advise(
+        "thin_plates",
+        np.logical_or(outer > 25e6, inner > 25e6),
+        "thin plates load the spline flanks above 25 N/mm2: the groove flanks must be hardened",
+        source=f"{S0}, thin plates need hard grooves",
+    )
+
+
+def declare_drag(d: Declaration, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> None:
+    """Declare the drag of the released pack and its limit."""
+    drag = d.derive(
+        "drag_torque", "N*m",
+        pack.aid.drag_factor
+        * plates.drag_torque(
+            pack.surfaces, wants.oil_viscosity, duty.driver_speed, ring.mean_diameter, ring.ratio, duty.plate_gap
+        ),
+        symbol="T_drag",
+        text="Drag of the released clutch with full oil films; 0 when dry",
+        source=f"laminar shear; {S0}, after-running",
+    )  # fmt: skip
+    if wants.drag_torque_limit is not None:
+        d.at_most(
+            "drag_torque", drag, wants.drag_torque_limit, "N*m",
+            text="The released clutch does not run after", source=f"{S0}, after-running",
+        )  # fmt: skip
+
+
+def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack) -> PackSize:
+    """Return mass, size and heat capacity of a pack."""
+    z, lining = pack.surfaces, pair.part.lining_thickness
+    steel = plates.annulus_mass(
+        duty.steel_density,
+        ring_formulas.inner_plate_count(z),
+        pack.inner_thickness,
+        pack.inner_mean_diameter,
+        pack.inner_width,
+    ) + plates.annulus_mass(
+        duty.steel_density,
+        ring_formulas.outer_plate_count(z),
+        pack.outer_thickness,
+        ring.mean_diameter + wants.lug_clearance,
+        ring.width + wants.lug_clearance,
+    )
+    diameter = plates.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
+    length = plates.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, duty.plate_gap)
+    return PackSize(
+        mass=steel + plates.lining_mass(pair.part.density, lining, z * ring.area),
+        diameter=diameter,
+        length=length,
+        heat_capacity=steel * duty.steel_specific_heat,
+        cooled_area=plates.cylinder_surface(diameter, length),
+    )
+
+
+def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Startup, size: PackSize) -> None:
+    """Declare the peak temperature of a pack and its limit."""
+    rise = d.derive(
+        "peak_temperature_rise", "K",
+        heat.peak_temperature_rise(
+            start.friction_work, duty.switching_rate, size.heat_capacity, duty.heat_transfer, size.cooled_area
+        ),
+        symbol="dT_pk",
+        text="Steel plates over ambient just after an engagement, in steady repetition",
+        source=f"lumped heat balance; {S1}, repeated switching",
+    )  # fmt: skip
+    d.at_most(
+        "peak_temperature", rise, pair.part.temp_max - duty.ambient_temperature, "K",
+        text="The lining stands the temperature", source="Neale, Tribology Handbook, Table 7.4",
+    )  # fmt: skip
+    advise_frequent_switching(d, duty, size.heat_capacity, size.cooled_area)
+    mean_rise = heat.mean_temperature_rise(
+        start.friction_work, duty.switching_rate, duty.heat_transfer, size.cooled_area
+    )
+    d.advise(
+        "mean_temperature",
+        mean_rise > pair.part.optional("temp_continuous") - duty.ambient_temperature,
+        "the mean temperature of the pack is above what the lining stands continuously; choose a stronger cooling",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )
+
+
+def declare_pack_remarks(d: Declaration, options: PackOptions, lubrication: str) -> None:
+    """Declare the remarks that depend on options only."""
+    if options.shaft_position == "vertical":
+        d.advise(
+            "vertical_shaft",
+            True,
+            "on a vertical shaft the plates sink on each other by their weight: every plate needs a stop of its own "
+            "(stepped rings on the shaft, inserts in the drum, lift springs)",
+            source=f"{S0}, vertical shafts",
+        )
+    if lubrication == "oil" and options.release_aid == "none":
+        d.advise(
+            "no_release_aid",
+            True,
+            "without a release aid oil adhesion drags the plates along after release; drag_torque is for plates "
+            "that stand apart by plate_gap",
+            source=f"{S0}, after-running",
+        )
+    if options.release_aid == "sine_plates":
+        d.advise(
+            "release_aid_sine_plates",
+            True,
+            "waved plates touch on small areas when released and cannot stand fully apart; part of the force flattens "
+            "them",
+            source=f"{S0}, release of the plates",
+        )
+    if options.release_aid == "wavy_rings":
+        d.advise(
+            "release_aid_wavy_rings",
+            True,
+            "rings between neighbouring inner plates surely separate half the plates; they cost friction surface",
+            source=f"{S0}, release of the plates",
+        )
+    if options.release_aid == "cone_springs":
+        d.advise(
+            "release_aid_cone_springs",
+            True,
+            "conical springs in the spline grooves need room in the grooves",
+            source=f"{S0}, release of the plates",
+        )

@@ -1,0 +1,1 @@
+"""Roller coupling: its declaration, curves, own formulas and motion."""

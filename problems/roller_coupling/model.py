@@ -1,0 +1,853 @@
+"""Roller coupling: a float with two crossing guides in which the rollers of two arms roll."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.mechanics import contact as hertz
+from problems.roller_coupling import formulas
+from problems.roller_coupling import motion as roller_motion
+from synth import DesignProblem
+from synth.declaration import Declaration
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.declaration import Choice, Part
+
+S3 = "S3 (Szoke 1967)"
+DRIVE = "requirement of the drive"
+TYPICAL = "engineering-typical value"
+EXT = "extension of S3"
+
+# Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
+ARM_RADIUS_MIN, ARM_RADIUS_MAX = 15.0, 200.0
+CONTACT_LENGTH_MIN = 3.0
+# Remarks only: below this modulus a float material counts as plastic, and above this pressure plastic creeps [Pa].
+PLASTIC_MODULUS, PLASTIC_PRESSURE = 20e9, 100e6
+# Remark only: from this amplitude of the roller's turning on, its rating life is worth a calculation [rad].
+LONG_OSCILLATION = 0.5
+
+# What the source says of the two predecessors (chapter X); what it does not say is said to be missing or assumed.
+GUIDES = {
+    "roller": "rollers in the guides of the float; the only guide that the source gives formulas for",
+    "piston": (
+        "piston guide: two pairs of pistons turn and slide in two crossing bores of the float, the pins of the arms "
+        "engage the bores of the pistons. Stated: it tolerates mounting inaccuracy; its drawback is sliding friction, "
+        "the pistons need lubrication of their own; it was used on several machines, in 1954 a 51 hp diesel at "
+        "1500/min with a generator on one concrete base shook 100 um at the engine and 10 um at the generator. Not "
+        "stated: coefficient of friction and largest offset. Assumed: it moves as the roller coupling does, so that "
+        "the pistons slide 4 times the offset per turn"
+    ),
+    "linkage": (
+        "linkage guide: the arms hang on a frame by equal links (parallelograms) with turning joints. Stated: angle "
+        "and, with turning joints at both ends, axial shift are free; all in one plane, short, no tilting moment, pure "
+        "torque; one sample ran day and night in a mill from spring 1956 at about 30 mkp (294 N*m) and 10 mm set "
+        "offset, its wear was never inspected. Not stated: friction, lubrication and largest offset. Assumed: its "
+        "joints need grease as any pin joint"
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Wants:
+    """Requirements, all in SI; None where an optional one is not given."""
+
+    torque: Any
+    speed: Any
+    offset: Any
+    shaft_angle: Any
+    float_distance: Any
+    diameter_limit: Any
+    mass_limit: Any
+    vibration_limit: Any
+    guide_angle: Any
+    roller_gap_min: Any
+    run_in_min: Any
+    run_out_min: Any
+    removal_min: Any
+    pin_gap: Any
+    axial_play: Any
+    rim_min: Any
+    pin_shear_limit: Any
+    pin_stress_limit: Any
+    static_safety: Any
+    oscillation_factor: Any
+    retention_margin: Any
+    ligament_factor: Any
+    roller_modulus: Any
+    roller_poisson: Any
+    crown_radius: Any
+    rolling_friction: Any
+    steel_density: Any
+    effective_offset: Any
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """What the search decides."""
+
+    arm_radius: Any
+    guide_half_length: Any
+    contact_length: Any
+    rim: Any
+    offset_capacity: Any
+    balance: Choice
+    roller: Part
+    material: Part
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Forces of a design."""
+
+    tangential: Any
+    centrifugal: Any
+    normal: Any
+    pin: Any
+    vibration: Any
+
+
+class RollerCoupling(DesignProblem):
+    """Roller-type mobile coupling for offset and angled shafts, without sliding parts.
+
+    A plate with two crossing guides, the float, joins two arms whose pins carry rolling bearings as rollers (S3).
+    """
+
+    name = "roller_coupling"
+    title = "Roller coupling"
+    sources = (
+        "S3: B. Szoke, MTA VI. Osztaly Kozlemenyei 39 (1967), part II, chapters X to XIV, equations (14) to (29)",
+        "K. L. Johnson, Contact Mechanics (1985)",
+        "B. J. Hamrock, D. Brewe, Journal of Lubrication Technology 105 (1983) 171-177",
+        "ISO 76, static load ratings of rolling bearings",
+    )
+    understands = (
+        "required_torque",
+        "driver_speed",
+        "offset",
+        "shaft_angle",
+        "outer_diameter_limit",
+        "mass_limit",
+        "vibration_limit",
+        "steel_density",
+    )
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        guide = d.option(
+            "guide", tuple(GUIDES), "roller", symbol="gd",
+text="How the arms are joined to the float: by rollers, or as in the predecessors that the source describes "
+            "(advice only, they are not sized)",
+            source=f"{S3}, chapters X and XI",
+        )  # fmt: skip
+        removable = d.option(
+            "sideways_removable", ("no", "yes"), "no", symbol="sw",
+            text="yes: an arm can be pulled out sideways through the other guide, shafts staying in place",
+            source=f"{S3}, eq. (21)",
+        )  # fmt: skip
+        contact = d.option(
+            "roller_contact", ("line", "crowned"), "line", symbol="rc",
+            text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact",
+            source=f"{S3}, XIV.3",
+        )  # fmt: skip
+        wants = self._declare_requirements(d)
+        unknowns = self._declare_unknowns(d, contact)
+        self._refuse_impossible(d, wants, unknowns, guide, removable, contact)
+        loads = self._declare_loads(d, wants, unknowns)
+        self._declare_clearances(d, wants, unknowns, removable)
+        self._declare_strength(d, wants, unknowns, loads, contact)
+        self._declare_remarks(d, wants, unknowns, guide)
+        for name in ("outer_diameter", "mass"):
+            d.objective(name)
+        d.objective("pin_force", default=False)
+        d.objective("offset_capacity", "max", default=False)
+        d.objective("vibration_force", default=False)
+
+    def _declare_requirements(self, d: Declaration) -> Wants:
+        torque = d.requirement(
+            "required_torque", "N*m", lower=0.1, upper=1e6, symbol="M",
+            text="Torque to transmit", source=f"{S3}, M",
+        )  # fmt: skip
+        speed = d.requirement(
+            "driver_speed", "1/min", lower=0, upper=60000, symbol="omega",
+            text="Speed of the driving shaft", source=f"{S3}, n",
+        )  # fmt: skip
+        offset = d.requirement(
+            "offset", "mm", lower=0, upper=200, symbol="e",
+            text="Parallel offset of the shafts; of skew shafts the length of their common normal", source=f"{S3}, e",
+        )  # fmt: skip
+        angle = d.requirement(
+            "shaft_angle", "deg", 0, lower=0, upper=10, symbol="alpha",
+            text="Angle between the shafts; the source's example has 2.5 degrees, beyond 10 the tilt of the rollers in "
+            "the guides would have to be modelled", source=f"{S3}, chapter XII",
+        )  # fmt: skip
+        distance = d.requirement(
+            "float_distance", "mm", 0, lower=0, upper=10000, symbol="h",
+            text="Distance of the float plane from the intersection or the common normal of the shafts",
+            source=f"{S3}, chapter XII, h",
+        )  # fmt: skip
+        effective = formulas.effective_offset(offset, distance, angle)
+        return Wants(
+            torque=torque,
+            speed=speed,
+            offset=offset,
+            shaft_angle=angle,
+            float_distance=distance,
+            effective_offset=effective,
+            diameter_limit=d.requirement(
+                "outer_diameter_limit", "mm", lower=20, upper=5000, optional=True, symbol="D_max",
+                text="Largest diameter that the float sweeps", source=DRIVE,
+            ),
+            mass_limit=d.requirement(
+                "mass_limit", "kg", lower=0.01, upper=1e5, optional=True, symbol="mass_max",
+                text="Largest mass", source=DRIVE,
+            ),
+            vibration_limit=d.requirement(
+                "vibration_limit", "N", lower=1e-3, upper=1e9, optional=True, symbol="vib_max",
+                text="Largest amplitude of the force on each shaft at twice the speed", source=DRIVE,
+            ),
+            guide_angle=d.requirement(
+                "guide_angle", "deg", 90, lower=60, upper=90, symbol="chi",
+                text="Acute angle between the guides; forces are checked down to 60 degrees",
+                source=f"{S3}, chapter XI; forces: {EXT}",
+            ),
+            roller_gap_min=d.requirement(
+                "roller_gap_min", "mm", 2, lower=0.01, upper=50, symbol="s_min",
+                text="Least gap between neighbouring rollers", source=f"{S3}, s in eq. (18a)",
+            ),
+            run_in_min=d.requirement(
+                "run_in_min", "mm", 3, lower=0.01, upper=50, symbol="s1_min",
+                text="Least distance of a roller from the mouth of the crossing guide", source=f"{S3}, s1",
+            ),
+            run_out_min=d.requirement(
+                "run_out_min", "mm", 3, lower=0.01, upper=50, symbol="s2_min",
+                text="Least distance of a roller centre from the end of its guide", source=f"{S3}, s2 in eq. (19a)",
+            ),
+            removal_min=d.requirement(
+                "removal_min", "mm", 2, lower=0.01, upper=50, symbol="s3_min",
+                text="Least clearance for pulling apart; counts with sideways_removable yes",
+                source=f"{S3}, s3 in eq. (21)",
+            ),
+            pin_gap=d.requirement(
+                "pin_gap", "mm", 2, lower=0, upper=50, symbol="g_pin",
+                text=f"Gap between arm face and roller ({TYPICAL})", source=TYPICAL,
+            ),
+            axial_play=d.requirement(
+                "axial_play", "mm", 0.5, lower=0, upper=20, symbol="g_ax",
+                text=f"The guide is wider than the contact by this, each side ({TYPICAL})", source=TYPICAL,
+            ),
+            rim_min=d.requirement(
+                "rim_min", "mm", 3, lower=0.5, upper=100, symbol="t_min",
+                text=f"Least rim of the float at the guide ends ({TYPICAL})", source=TYPICAL,
+            ),
+            pin_shear_limit=d.requirement(
+                "pin_shear_limit", "N/mm2", 40, lower=1, upper=1000, symbol="sigma_c",
+                text="Allowed stress sigma_c of the pins, twice the shear stress", source=f"{S3}, eq. (16), 400 kp/cm2",
+            ),
+            pin_stress_limit=d.requirement(
+                "pin_stress_limit", "N/mm2", 160, lower=1, upper=2000, symbol="sigma_pin",
+                text=f"Allowed equivalent stress of the pins in bending ({TYPICAL})", source=TYPICAL,
+            ),
+            static_safety=d.requirement(
+                "static_safety", "-", 1.0, lower=0.5, upper=10, symbol="S_0",
+                text="Static safety of the rolling bearings", source="ISO 76, s0",
+            ),
+            oscillation_factor=d.requirement(
+                "oscillation_factor", "-", np.where(effective > 0, 2.0, 1.0), lower=1, upper=4, symbol="f_osc",
+                text="Oscillating bearings may carry this multiple of C0; 1 without offset, because then the same "
+                "balls stay loaded", source=f"{S3}, chapter XI: up to 4 times, the lower figure is illegible",
+            ),
+            retention_margin=d.requirement(
+                "retention_margin", "-", 1.5, lower=1, upper=10, symbol="k_ret",
+                text=f"Margin against the lighter loaded roller losing contact ({TYPICAL})", source=EXT,
+            ),
+            ligament_factor=d.requirement(
+                "ligament_factor", "-", 2.5, lower=1, upper=10, symbol="k_lig",
+                text="Bending and notch in the bridges at the guide ends (estimate)", source=EXT,
+            ),
+            roller_modulus=d.requirement(
+                "roller_modulus", "N/mm2", 206000, lower=1e3, upper=1e6, symbol="E_r",
+                text="Young's modulus of the rollers", source="material constant of bearing steel",
+            ),
+            roller_poisson=d.requirement(
+                "roller_poisson", "-", 0.3, lower=0, upper=0.49, symbol="nu_r",
+                text="Poisson's ratio of the rollers", source="material constant of bearing steel",
+            ),
+            crown_radius=d.requirement(
+                "crown_radius", "mm", 500, lower=1, upper=1e5, symbol="R_cr",
+                text="Radius of a crowned tread; counts with roller_contact crowned",
+                source="track rollers NUTR, NATV, NATR",
+            ),
+            rolling_friction=d.requirement(
+                "rolling_friction", "-", 0.002, lower=0, upper=0.1, symbol="mu_roll",
+                text=f"Rolling friction in the guides, for the efficiency ({TYPICAL})", source=TYPICAL,
+            ),
+            steel_density=d.requirement(
+                "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_s",
+                text="Density of pins and arms", source="material constant",
+            ),
+        )  # fmt: skip
+
+    def _declare_unknowns(self, d: Declaration, contact: str) -> Unknowns:
+        crowned = contact == "crowned"
+        return Unknowns(
+            arm_radius=d.variable(
+                "arm_radius", "mm", ARM_RADIUS_MIN, ARM_RADIUS_MAX, grid=0.5, symbol="r",
+                text="Radius of the pins", source=f"{S3}, r",
+            ),
+            guide_half_length=d.variable(
+                "guide_half_length", "mm", 15, 400, grid=0.5, symbol="K",
+                text="From the centre of the float to the end of a guide", source=f"{S3}, K",
+            ),
+            contact_length=d.variable(
+                "contact_length", "mm", CONTACT_LENGTH_MIN, 30, grid=0.5, symbol="l",
+                text="Length on which a roller bears on the guide", source=f"{S3}, l",
+            ),
+            rim=d.variable(
+                "rim", "mm", 3, 60, grid=0.5, symbol="t",
+                text="Rim of the float around the corners of the guide ends", source=EXT,
+            ),
+            offset_capacity=d.variable(
+                "offset_capacity", "mm", 0.1, 80, symbol="e_cap",
+                text="Offset up to which all clearances are kept", source=f"{S3}, e_max in eq. (18b)",
+            ),
+            balance=d.choice(
+                "balance", ("no", "yes"), symbol="bal",
+                text="yes: a second float of equal mass runs opposite (self-balancing chain)",
+                source=f"{S3}, XIV.1",
+                refused={
+                    "floating_masses": "masses that float in the guides at rest have no acceleration and balance "
+                    "nothing: equation (29) of the source is refuted"
+                },
+            ),
+            roller=d.part(
+                "roller", "guide_rolling_bearings",
+                where="crowned == 1" if crowned else ("crowned == 0", "kind != 'spherical_roller_bearing'"),
+                symbol="rol", text="Rolling bearing on each pin whose outer ring rolls in the guide",
+                source="table guide_rolling_bearings",
+            ),
+            material=d.part(
+                "float_material", "float_materials", symbol="mat",
+                text="Material of the float", source="table float_materials",
+            ),
+        )  # fmt: skip
+
+    def _refuse_impossible(
+        self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str, removable: str, contact: str
+    ) -> None:
+        """Refuse what no design can meet, whatever the unknowns, and what the model does not cover."""
+        roller, offset = unknowns.roller, wants.effective_offset
+        if guide != "roller":
+            d.refuse(
+                "guide_not_sized",
+                True,
+                "guide = roller; the source gives neither dimensions nor friction nor strength of the predecessors, so "
+                f"that they cannot be sized. {GUIDES[guide]}",
+            )
+        d.refuse(
+            "bad_roller",
+            np.logical_or(roller.bore >= roller.outer_diameter, roller.contact_width > roller.width),
+            "a bearing with a bore below its outer_diameter and a contact_width of at most its width",
+        )
+        d.refuse(
+            "no_oscillation",
+            np.logical_and(wants.oscillation_factor > 1, offset <= 0),
+            "an oscillation_factor of 1: without offset the bearings do not oscillate, and the raised static rating "
+            "does not apply",
+        )
+        if contact == "crowned":
+            d.refuse(
+                "crown_too_round",
+                wants.crown_radius < roller.outer_diameter / 2,
+                "a crown_radius of at least the radius of the roller; the formula for the contact ellipse ends there",
+            )
+        if removable == "yes":
+            d.refuse(
+                "oblique_removal",
+                wants.guide_angle < math.pi / 2 * (1 - 1e-9),
+                "a guide_angle of 90 deg with sideways_removable: pulling apart is not derived for other angles",
+            )
+        largest = ARM_RADIUS_MAX / 1000
+        d.refuse(
+            "no_roller_clears",
+            offset + roller.outer_diameter + wants.roller_gap_min > 2 * largest * np.sin(wants.guide_angle / 2),
+            "a roller for which effective offset + outer diameter + roller_gap_min is at most 2 sin(guide_angle/2) "
+            "times the largest arm radius, 200 mm; no roller in the catalogue clears the other guide at this offset",
+        )
+        least = _least_arm_radius(wants, roller.outer_diameter)
+        if wants.diameter_limit is not None:
+            d.refuse(
+                "envelope_too_small",
+                _least_diameter(wants, roller.outer_diameter, least) > wants.diameter_limit,
+                "an outer_diameter_limit that holds the smallest coupling with the smallest roller at this offset; the "
+                "envelope is smaller than that",
+            )
+        if removable == "yes":
+            apart = roller.outer_diameter + wants.removal_min
+            wide = apart > largest
+            if wants.diameter_limit is not None:
+                beyond = _least_diameter(wants, roller.outer_diameter, np.maximum(least, apart)) > wants.diameter_limit
+                wide = np.logical_or(wide, beyond)
+            d.refuse(
+                "not_removable",
+                wide,
+                "a roller whose outer diameter and removal_min fit into the arm radius; with sideways_removable the "
+                "coupling cannot be pulled apart sideways in this envelope",
+            )
+        if wants.vibration_limit is not None:
+            d.refuse(
+                "vibration_contradictory",
+                unknowns.balance.select({"no": _least_vibration(d, wants) > wants.vibration_limit, "yes": 0.0}),
+                "balance = yes, or a larger vibration_limit: it is contradictory without balance, the lightest float "
+                "that fits the offset shakes more",
+            )
+
+    def _declare_loads(self, d: Declaration, wants: Wants, unknowns: Unknowns) -> Loads:
+        roller, offset = unknowns.roller, wants.effective_offset
+        diameter, radius = roller.outer_diameter, unknowns.arm_radius
+        d.derive(
+            "effective_offset", "mm", offset, symbol="e_eff",
+            text="Offset seen in the plane of the float", source=f"{EXT}, sqrt(e**2 + h**2 tan(alpha)**2)",
+        )  # fmt: skip
+        slide = d.derive(
+            "axial_slide", "mm",
+            formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle),
+            symbol="z_ax", text="Slide of the rollers along shaft 2 per turn, peak to peak",
+            source=f"{EXT}; generalises {S3}, eq. (25)",
+        )  # fmt: skip
+        width = d.derive(
+            "float_width", "mm", formulas.float_width(unknowns.contact_length, slide, wants.axial_play), symbol="b_f",
+            text="Width of the float: contact, slide and play", source=f"{S3}, chapter XII",
+        )  # fmt: skip
+        section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
+        float_mass = d.derive(
+            "float_mass", "kg", formulas.float_mass(unknowns.material.density, width, section), symbol="m_fl",
+            text="Mass of the float", source="geometry",
+        )  # fmt: skip
+        tangential = d.derive(
+            "tangential_force", "N", formulas.tangential_force(wants.torque, radius, radius), symbol="F",
+            text="Force of each pin from the torque", source=f"{S3}, F = M/(2 r)",
+        )  # fmt: skip
+        centrifugal = d.derive(
+            "centrifugal_force", "N",
+            formulas.pin_centrifugal_force(float_mass, offset, wants.speed, wants.guide_angle), symbol="Q",
+            text="Greatest share of one pin in the centrifugal force of the float", source=f"{S3}, eq. (14), C/2",
+        )  # fmt: skip
+        roller_mass = formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap)
+        normal = tangential + centrifugal
+        pin = d.derive(
+            "pin_force", "N",
+            formulas.resultant_pin_force(
+                normal, formulas.roller_centrifugal_force(roller_mass, radius, wants.speed)
+            ),
+            symbol="F_pin", text="Greatest force on a pin, with the centrifugal force of its roller",
+            source=f"{S3}, E",
+        )  # fmt: skip
+        counter = unknowns.balance.select({"no": 0.0, "yes": 1.0})
+        d.derive(
+            "steady_force", "N", centrifugal * (1 + counter), symbol="F_st",
+            text="Steady push on each shaft, away from the other; balance doubles it", source=f"{EXT} to {S3}, XIV.1",
+        )  # fmt: skip
+        vibration = d.derive(
+            "vibration_force", "N", centrifugal * (1 - counter), symbol="F_vib",
+            text="Amplitude of the force on each shaft, twice per turn", source=f"{S3}, XIV.1",
+        )  # fmt: skip
+        d.derive(
+            "speed_fluctuation", "-", formulas.speed_fluctuation(wants.shaft_angle), symbol="eps",
+            text="Greatest excess of the driven speed, 1/cos(alpha) - 1", source=f"{S3}, eq. (24a)",
+        )  # fmt: skip
+        d.derive(
+            "efficiency", "-", formulas.rolling_efficiency(wants.rolling_friction, offset, radius), symbol="eta",
+            text="Efficiency with rolling friction in the guides", source=f"{EXT}, guides at right angles",
+        )  # fmt: skip
+        float_radius = formulas.float_radius(unknowns.guide_half_length, diameter, unknowns.rim)
+        outer = d.derive(
+            "outer_diameter", "mm", 2 * (float_radius + offset / np.sin(wants.guide_angle)), symbol="D_o",
+            text="Diameter that the float sweeps about a shaft", source="geometry, 2 (R_f + e_eff/sin(chi))",
+        )  # fmt: skip
+        arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
+        mass = d.derive(
+            "mass", "kg", float_mass * (1 + counter) + 4 * roller_mass + arms, symbol="m",
+            text="Float, counter float, rollers with pins, and arms; without hubs", source="geometry",
+        )  # fmt: skip
+        if wants.diameter_limit is not None:
+            d.at_most(
+                "outer_diameter", outer, wants.diameter_limit, "mm", text="The coupling fits the room", source=DRIVE
+            )
+        if wants.mass_limit is not None:
+            d.at_most("mass", mass, wants.mass_limit, "kg", text="The coupling is not too heavy", source=DRIVE)
+        if wants.vibration_limit is not None:
+            d.at_most(
+                "vibration",
+                vibration,
+                wants.vibration_limit,
+                "N",
+                text="The shafts do not shake too much",
+                source=DRIVE,
+            )
+        return Loads(tangential, centrifugal, normal, pin, vibration)
+
+    def _declare_clearances(self, d: Declaration, wants: Wants, unknowns: Unknowns, removable: str) -> None:
+        radius, capacity = unknowns.arm_radius, unknowns.offset_capacity
+        diameter, angle = unknowns.roller.outer_diameter, wants.guide_angle
+        d.at_least(
+            "offset", capacity, wants.effective_offset, "mm",
+            text="The coupling takes the offset of the shafts", source=DRIVE,
+        )  # fmt: skip
+        d.at_least(
+            "roller_gap", formulas.least_roller_distance(radius, capacity, angle) - diameter, wants.roller_gap_min,
+            "mm", text="Neighbouring rollers do not touch", source=f"{S3}, eq. (18a)",
+        )  # fmt: skip
+        d.at_least(
+            "run_in", formulas.run_in(radius, capacity, diameter, angle), wants.run_in_min, "mm",
+            text="Rollers stay clear of the crossing guide", source=f"{S3}, chapter XI, s1",
+        )  # fmt: skip
+        d.at_least(
+            "run_out", formulas.run_out(unknowns.guide_half_length, radius, capacity, angle), wants.run_out_min, "mm",
+            text="Rollers stay inside their guide", source=f"{S3}, eq. (19a)",
+        )  # fmt: skip
+        if removable == "yes":
+            d.at_least(
+                "sideways", formulas.removal_clearance(radius, diameter), wants.removal_min, "mm",
+                text="An arm passes the other guide sideways", source=f"{S3}, eq. (21)",
+            )  # fmt: skip
+
+    def _declare_strength(self, d: Declaration, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str) -> None:
+        roller, material = unknowns.roller, unknowns.material
+        length, radius = unknowns.contact_length, roller.outer_diameter / 2
+        modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
+        if contact == "crowned":
+            pressure = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
+            source = "Hamrock and Brewe (1983)"
+        else:
+            pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
+            source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
+        pressure = d.derive(
+            "hertz_pressure", "N/mm2", pressure, symbol="p_H", ceiling=formulas.STATIC_CONTACT_LIMIT / 1e6,
+            text="Greatest Hertz pressure between roller and guide", source=source,
+        )  # fmt: skip
+        d.at_most(
+            "contact_length", length, roller.contact_width, "mm",
+            text="The roller is wide enough", source="geometry",
+        )  # fmt: skip
+        d.at_most(
+            "hertz", pressure, np.minimum(material.hertz_allow, formulas.STATIC_CONTACT_LIMIT), "N/mm2",
+            text="The guide is not dented", source=source,
+        )  # fmt: skip
+        if contact == "crowned":
+            d.at_most(
+                "contact_ellipse",
+                2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius), length,
+                "mm", text="The contact ellipse lies on the tread", source=source,
+            )  # fmt: skip
+        d.at_most(
+            "outer_ring_bending", loads.normal, roller.optional("outer_ring_load_limit"), "N",
+            text="The unsupported outer ring does not bend too much", source="makers' F0r of track rollers",
+        )  # fmt: skip
+        d.at_most(
+            "pin_shear", formulas.pin_shear_measure(wants.torque, unknowns.arm_radius, roller.bore),
+            wants.pin_shear_limit, "N/mm2", text="The pins stand the shear", source=f"{S3}, eq. (16)",
+        )  # fmt: skip
+        stress = d.derive(
+            "pin_stress", "N/mm2",
+            formulas.pin_equivalent_stress(loads.pin, roller.width, wants.pin_gap, roller.bore), symbol="sigma_v",
+            text="Equivalent stress at the root of a pin", source=EXT,
+        )  # fmt: skip
+        d.at_most("pin_stress", stress, wants.pin_stress_limit, "N/mm2", text="The pins stand the bending", source=EXT)
+        d.at_most(
+            "bearing_static", loads.pin,
+            formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety), "N",
+            text="The rolling bearing stands the force at rest or oscillating", source=f"{S3}, chapter XI",
+        )  # fmt: skip
+        width = d.derived["float_width"].sx
+        d.at_most(
+            "ligament",
+            formulas.ligament_stress(wants.ligament_factor, loads.normal, unknowns.rim, width),
+            material.strength_allow, "N/mm2", text="The bridges at the guide ends hold", source=EXT,
+        )  # fmt: skip
+        d.at_least("rim", unknowns.rim, wants.rim_min, "mm", text="The rim is not too thin", source=TYPICAL)
+        d.at_least(
+            "contact_retention", loads.tangential, wants.retention_margin * loads.centrifugal, "N",
+            text="The lighter loaded rollers keep contact, the float does not hammer", source=EXT,
+        )  # fmt: skip
+
+    def _declare_remarks(self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str) -> None:
+        offset, material = wants.effective_offset, unknowns.material
+        if guide != "roller":
+            d.advise(f"{guide}_guide", True, GUIDES[guide], source=f"{S3}, chapter X")
+        d.advise(
+            "distance_ignored",
+            np.logical_and(wants.float_distance > 0, wants.shaft_angle <= 0),
+            "float_distance does nothing without a shaft_angle",
+            source=f"{S3}, chapter XII",
+        )
+        d.advise(
+            "no_optimum_arm",
+            wants.speed <= 0,
+            "at standstill the pin force falls with the arm radius without end: there is no optimum arm",
+            source=f"{S3}, eq. (15)",
+        )
+        d.advise(
+            "same_balls_loaded",
+            offset <= 0,
+            "without offset the same balls stay loaded (false brinelling); a slight offset does the bearings good",
+            source=f"{S3}, chapter XI",
+        )
+        d.advise(
+            "plastic_creeps",
+            np.logical_and(material.E < PLASTIC_MODULUS, d.derived["hertz_pressure"].sx > PLASTIC_PRESSURE),
+            "a plastic float above 100 N/mm2 creeps; 40 to 80 N/mm2 are usual, less when warm",
+            source=TYPICAL,
+        )
+        d.advise(
+            "hertz_capped",
+            material.hertz_allow > formulas.STATIC_CONTACT_LIMIT,
+            "hertz_allow of this material is capped at 4000 N/mm2, the static limit of ISO 76",
+            source="ISO 76",
+        )
+        d.advise(
+            "rating_life",
+            2 * offset / unknowns.roller.outer_diameter > LONG_OSCILLATION,
+            "the rollers turn far to and fro: check the rating life L10 with the equivalent speed as well",
+            source=TYPICAL,
+        )
+        d.advise(
+            "rollers_tilt",
+            wants.shaft_angle > 0,
+            "with angled shafts the rollers must follow the tilt (self-aligning or crowned); closed forms of forces "
+            "and gaps are then good to about 1/cos(alpha) - 1, simulate shows the exact ones",
+            source=f"{S3}, chapter XII",
+        )
+        d.advise(
+            "push_doubled",
+            unknowns.balance.select({"no": 0.0, "yes": offset > 0}),
+            "the counter float removes the vibration and doubles the steady push on the bearings of both shafts",
+            source=f"{EXT} to {S3}, XIV.1",
+        )
+
+    # -- curves and motion -------------------------------------------------------------------------
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
+        """Return the force on a pin over the arm radius, of the torque alone or of a design, and of angled shafts."""
+        found: dict[str, pd.DataFrame] = {}
+        if design is not None:
+            found["pin_force"] = _pin_force_curve(spec, design)
+        else:
+            found["torque_force"] = _torque_force_curve(spec)
+        if spec["shaft_angle"] > 0:
+            found["angled_shafts"] = _angled_shafts_curve(spec)
+        return found
+
+    def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
+        """Return positions of the float, roller gaps and forces over one turn, from exact kinematics."""
+        return {"motion": _motion(spec, design)}
+
+
+# -- bounds for refusals ---------------------------------------------------------------------------
+
+
+def _least_arm_radius(wants: Wants, roller_diameter: Any) -> Any:
+    """Least arm radius at which a roller keeps the clearances at the offset asked for."""
+    offset, half = wants.effective_offset, wants.guide_angle / 2
+    apart = (offset + roller_diameter + wants.roller_gap_min) / (2 * np.sin(half))
+    inward = offset / np.sin(wants.guide_angle) + roller_diameter / (2 * np.tan(half)) + wants.run_in_min
+    return np.maximum(ARM_RADIUS_MIN / 1000, np.maximum(apart, inward))
+
+
+def _least_half_length(wants: Wants, arm_radius: Any) -> Any:
+    return arm_radius + wants.effective_offset / np.sin(wants.guide_angle) + wants.run_out_min
+
+
+def _least_diameter(wants: Wants, roller_diameter: Any, arm_radius: Any) -> Any:
+    radius = formulas.float_radius(_least_half_length(wants, arm_radius), roller_diameter, wants.rim_min)
+    return 2 * (radius + wants.effective_offset / np.sin(wants.guide_angle))
+
+
+def _least_vibration(d: Declaration, wants: Wants) -> Any:
+    """Vibration force of the lightest material around the smallest roller: section and offset only grow from there."""
+    density = float(np.nanmin(d.catalogs.table("float_materials").number("density")))
+    diameter = float(np.nanmin(d.catalogs.table("guide_rolling_bearings").number("outer_diameter")))
+    half_length = _least_half_length(wants, _least_arm_radius(wants, diameter))
+    slide = formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle)
+    width = formulas.float_width(CONTACT_LENGTH_MIN / 1000, slide, wants.axial_play)
+    section = formulas.float_section(half_length, diameter, wants.rim_min, wants.guide_angle)
+    mass = formulas.float_mass(density, width, section)
+    return formulas.pin_centrifugal_force(mass, wants.effective_offset, wants.speed, wants.guide_angle)
+
+
+# -- frames ----------------------------------------------------------------------------------------
+
+
+def _roller_mass(spec: Mapping[str, Any], design: Any) -> float:
+    roller = design.parts["roller"]
+    return float(
+        formulas.roller_mass(roller["mass"], spec["steel_density"], roller["bore"], roller["width"], spec["pin_gap"])
+    )
+
+
+def _pin_force_curve(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Return forces on a pin over the arm radius; the float and its centrifugal force are those of the design."""
+    import pandas as pd
+
+    torque, speed, roller_mass = spec["required_torque"], spec["driver_speed"], _roller_mass(spec, design)
+    centrifugal, chosen = design.values["centrifugal_force"], design.values["arm_radius"]
+    radius = np.geomspace(chosen / 3, 3 * chosen, 241)
+    tangential = formulas.tangential_force(torque, radius, radius)
+    own = formulas.roller_centrifugal_force(roller_mass, radius, speed)
+    frame = pd.DataFrame(
+        {
+            "arm radius [mm]": 1000 * radius,
+            "from the torque [N]": tangential,
+            "from the float [N]": np.full_like(radius, centrifugal),
+            "from the roller itself [N]": own,
+            "resultant [N]": formulas.resultant_pin_force(tangential + centrifugal, own),
+        }
+    )
+    marks = [{"x": 1000 * chosen, "label": "design"}]
+    if speed > 0:
+        best = float(formulas.optimum_arm_radius_with_float(torque, roller_mass, speed, centrifugal))
+        if radius[0] <= best <= radius[-1]:
+            marks.append({"x": 1000 * best, "label": "least pin force"})
+    frame.attrs = {
+        "title": "Pin force over the arm radius",
+        "panels": [{"label": "force [N]", "columns": list(frame.columns[1:])}],
+        "marks": marks,
+        "source": f"{S3}, eq. (15), with the float: {EXT}",
+    }
+    return frame
+
+
+def _torque_force_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Return what the torque alone puts on a pin over the arm radius; float and rollers add to it."""
+    import pandas as pd
+
+    radius = np.geomspace(ARM_RADIUS_MIN / 1000, ARM_RADIUS_MAX / 1000, 241)
+    tangential = formulas.tangential_force(spec["required_torque"], radius, radius)
+    frame = pd.DataFrame({"arm radius [mm]": 1000 * radius, "from the torque [N]": tangential})
+    frame.attrs = {
+        "title": f"Pin force of {spec['required_torque']:.4g} N*m over the arm radius",
+        "panels": [{"label": "force [N]", "columns": ["from the torque [N]"], "log": True}],
+        "source": f"{S3}, eq. (15)",
+    }
+    return frame
+
+
+def _angled_shafts_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
+    import pandas as pd
+
+    motion = _turn(spec)
+    frame = pd.DataFrame(
+        {
+            "driving angle [deg]": np.degrees(motion.driving_angle),
+            "lead of the driven shaft [deg]": np.degrees(motion.lead),
+            "driven speed [1/min]": motion.speed_ratio * spec["driver_speed"] * 30 / math.pi,
+            "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
+        }
+    )
+    frame.attrs = {
+        "title": f"One turn with shafts at {math.degrees(spec['shaft_angle']):.3g} deg",
+        "panels": [
+            {"label": label, "columns": [column]}
+            for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)
+        ],
+        "source": f"{S3}, eq. (23) to (25), generalised",
+    }
+    return frame
+
+
+def _turn(spec: Mapping[str, Any], offset: float | None = None) -> roller_motion.Turn:
+    """Motion of the question's shafts, or of parallel shafts at another offset."""
+    if offset is not None:
+        return roller_motion.turn(offset, guide_angle=spec["guide_angle"])
+    return roller_motion.turn(spec["offset"], spec["float_distance"], spec["shaft_angle"], spec["guide_angle"])
+
+
+def _motion(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    import pandas as pd
+
+    values, angle = design.values, spec["guide_angle"]
+    diameter = design.parts["roller"]["outer_diameter"]
+    sizes = (values["arm_radius"], values["guide_half_length"], diameter)
+    motion = _turn(spec)
+    found = roller_motion.clearances(motion, *sizes)
+    widest = roller_motion.clearances(_turn(spec, values["offset_capacity"]), *sizes)
+    balanced = design.choices["balance"] == "yes"
+    roller_mass = _roller_mass(spec, design)
+    force = roller_motion.forces(
+        motion,
+        values["arm_radius"],
+        spec["required_torque"],
+        spec["driver_speed"],
+        values["float_mass"],
+        roller_mass,
+        values["float_mass"] if balanced else 0.0,
+    )
+    gaps = [f"gap {pair} [mm]" for pair in ("1a-2a", "1a-2b", "1b-2a", "1b-2b")]
+    widest_names = ["least roller gap", "least run-in", "least run-out"]
+    at_capacity = [f"{name} at offset capacity [mm]" for name in widest_names]
+    rollers = ("1a", "1b", "2a", "2b")
+    columns: dict[str, Any] = {
+        "driving angle [deg]": np.degrees(motion.driving_angle),
+        "float centre x [mm]": 1000 * motion.centre[:, 0],
+        "float centre y [mm]": 1000 * motion.centre[:, 1],
+        "lead of the driven shaft [deg]": np.degrees(motion.lead),
+        "speed ratio [-]": motion.speed_ratio,
+        "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
+    }
+    columns |= {name: 1000 * found.gaps[:, k] for k, name in enumerate(gaps)}
+    for k, guide in enumerate(("I", "II")):
+        columns[f"run-in, guide {guide} [mm]"] = 1000 * found.run_in[:, k]
+        columns[f"run-out, guide {guide} [mm]"] = 1000 * found.run_out[:, k]
+    nearest = (widest.gaps, widest.run_in, widest.run_out)
+    columns |= {name: 1000 * x.min(axis=1) for name, x in zip(at_capacity, nearest, strict=True)}
+    columns |= {f"contact force {name} [N]": force.contact[:, k] for k, name in enumerate(rollers)}
+    columns |= {f"pin force {name} [N]": force.pins[:, k] for k, name in enumerate(rollers)}
+    columns["force on shaft 1, x [N]"] = force.first_shaft[:, 0]
+    columns["force on shaft 1, y [N]"] = force.first_shaft[:, 1]
+    columns["driven torque [N*m]"] = force.driven_torque
+    frame = pd.DataFrame(columns)
+
+    steady, vibration = roller_motion.steady_and_vibrating(force.first_shaft)
+    normal = values["tangential_force"] + values["centrifugal_force"]
+    least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], angle) - diameter
+    panels = [
+        {"label": "roller gap [mm]", "columns": gaps},
+        {"label": "at offset capacity [mm]", "columns": at_capacity},
+        {"label": "contact force [N]", "columns": [c for c in frame.columns if c.startswith("contact force")]},
+        {"label": "pin force [N]", "columns": [c for c in frame.columns if c.startswith("pin force")]},
+        {"label": "force on shaft 1 [N]", "columns": [c for c in frame.columns if c.startswith("force on shaft 1")]},
+        {"label": "float centre [mm]", "columns": ["float centre x [mm]", "float centre y [mm]"]},
+    ]
+    if spec["shaft_angle"] > 0:
+        panels += [
+            {"label": "lead [deg]", "columns": ["lead of the driven shaft [deg]"]},
+            {"label": "slide [mm]", "columns": ["slide along shaft 2 [mm]"]},
+        ]
+    frame.attrs = {
+        "title": "One turn of the roller coupling",
+        "x": "driving angle [deg]",
+        "panels": panels,
+        "lines": [
+            {"panel": 0, "y": 1000 * spec["roller_gap_min"], "label": "roller_gap_min"},
+            {"panel": 1, "y": 1000 * float(least), "label": "least gap, eq. (18)"},
+            {"panel": 2, "y": normal, "label": "F + Q"},
+            {"panel": 2, "y": values["tangential_force"] - values["centrifugal_force"], "label": "F - Q"},
+            {"panel": 3, "y": values["pin_force"], "label": "pin_force"},
+        ],
+        "source": f"exact kinematics; closed forms: {S3}, eq. (14), (18) to (25)",
+        "quantities": {
+            "axial_slide": float(np.ptp(motion.slide)),
+            "speed_fluctuation": float(motion.speed_ratio.max() - 1),
+            "centrifugal_force": float(np.ptp(force.contact[:, 0]) / 2),
+            "pin_force": float(force.pins.max()),
+            "steady_force": float(steady),
+            "vibration_force": float(vibration),
+        },
+    }
+    return frame

@@ -1,0 +1,1 @@
+"""Wrap-spring clutches: self-wrapping with interference, and actuated with clearance."""

@@ -1,0 +1,158 @@
+"""Wrap spring clutch with clearance fit: an energising torque on the free end closes the spring on its hub."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from problems.wrap_spring import blocks, curves, formulas
+from problems.wrap_spring.blocks import DERIVED, DRIVE, TYPICAL
+from synth import DesignProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from synth.declaration import Declaration
+
+
+@dataclass(frozen=True)
+class Wants:
+    """Requirements of the clearance fit alone, all in SI; None where an optional one is not given."""
+
+    clearance_min: Any
+    relative_speed: Any
+    actuator_torque_limit: Any
+    wrap_angle_limit: Any
+    fixed_coils: Any
+    hub_wall_min: Any
+
+
+class ActuatedWrapSpringClutch(DesignProblem):
+    """Wrap spring clutch, clearance fit, engaged by a torque on the free end of the spring (tang, control collar).
+
+    One end is anchored on the second hub; released, the coils stand clear of the first.
+    """
+
+    name = "wrap_spring_actuated"
+    title = "Wrap spring clutch, clearance fit"
+    sources = blocks.SOURCES
+    understands = blocks.COMMON
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        options = blocks.declare_options(d)
+        duty = blocks.declare_duty(d, "Tolerance of the clearance, +- of wire, bore and hub together")
+        wants = self._declare_wants(d)
+        clearance = d.variable(
+            "clearance", "mm", 0.005, 5, symbol="c",
+            text="By how much the mean radius of the free coils is larger than that of the closed ones", source=DERIVED,
+        )  # fmt: skip
+        actuator = d.variable(
+            "actuator_torque", "N*m", 1e-4, 1e4, symbol="T0",
+            text="Energising torque at the free end of the spring", source=DERIVED,
+        )  # fmt: skip
+        wire = blocks.declare_wire(d, options)
+        coils = blocks.declare_coils(d, options, duty, wire)
+        friction = blocks.declare_friction(d, self.name, duty, coils)
+
+        tolerance = duty.interference_tolerance
+        widest, narrowest = clearance + tolerance, clearance - tolerance
+
+        def moment(fit: Any) -> Any:
+            free = formulas.free_radius(-fit, coils.mean_radius, options.model)
+            return blocks.fitted_moment(wire, coils, -fit, free)
+
+        loose, tight = moment(widest), moment(narrowest)
+        effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
+        d.at_least(
+            "grip", actuator, -effective, "N*m", guard=True,
+            text="The energising torque closes the widest clearance; otherwise nothing grips", source=DERIVED,
+        )  # fmt: skip
+        blocks.declare_closing(
+            d, duty, formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
+        )
+        d.at_least(
+            "clearance_kept", narrowest, wants.clearance_min, "mm",
+            text="Released, the coils stand clear of the hub", source=DERIVED,
+        )  # fmt: skip
+        load = d.derive(
+            "wire_torque", "N*m", duty.peak_torque, symbol="T_load",
+            text="Torque that the wire sees at overload: peak_torque", source=DERIVED,
+        )  # fmt: skip
+        bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
+        stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight, load)
+        self._declare_actuation(d, duty, wants, coils, widest, actuator)
+        d.at_least(
+            "hub_bore", coils.hub_diameter, duty.bore_diameter + 2 * wants.hub_wall_min, "mm",
+            text="The hub has a wall around its bore", source="geometry",
+        )  # fmt: skip
+        blocks.declare_size(d, duty, wire, coils, wants.fixed_coils)
+        tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
+        d.advise(
+            "fatigue_of_the_wire",
+            tired > 1,
+            "engaged again and again up to wire_torque the wire tires: its stress swings between 0 and wire_stress and "
+            "lies above Goodman's line",
+            source=f"Goodman; {DERIVED}",
+        )
+        d.objective("mass")
+        d.objective("actuator_torque")
+        for name in ("wrap_angle", "outer_diameter"):
+            d.objective(name, default=False)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
+        if design is None:
+            return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
+        return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def _declare_wants(self, d: Declaration) -> Wants:
+        return Wants(
+            clearance_min=d.requirement(
+                "clearance_min", "mm", 0.05, lower=0.001, upper=5, symbol="c_r",
+                text=f"Least clearance that must be left after tolerance, run-out and heat ({TYPICAL})", source=TYPICAL,
+            ),
+            relative_speed=d.requirement(
+                "relative_speed", "1/min", lower=0.1, upper=60000, symbol="omega_rel",
+                text="Speed between the hub and the held free end; gives engagement_time only", source=DRIVE,
+            ),
+            actuator_torque_limit=d.requirement(
+                "actuator_torque_limit", "N*m", lower=1e-4, upper=1e4, optional=True, symbol="T0_max",
+                text="Largest energising torque", source=DRIVE,
+            ),
+            wrap_angle_limit=d.requirement(
+                "wrap_angle_limit", "rad", lower=0.01, upper=50, optional=True, symbol="phi_max",
+                text="Largest angle until the coils are closed; 3 rad is usual", source=DRIVE,
+            ),
+            fixed_coils=d.requirement(
+                "fixed_coils", "-", 1, lower=0.5, upper=10, symbol="n_fix",
+                text=f"Coils anchored on the second hub ({TYPICAL})", source=TYPICAL,
+            ),
+            hub_wall_min=d.requirement(
+                "hub_wall_min", "mm", 3, lower=0.2, upper=100, symbol="t_hub",
+                text=f"Least wall of the hub around its bore ({TYPICAL})", source=TYPICAL,
+            ),
+        )  # fmt: skip
+
+    def _declare_actuation(
+        self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any
+    ) -> None:
+        closing = coils.per_hub + duty.gap_coils
+        angle = d.derive(
+            "wrap_angle", "rad", formulas.wrap_angle(closing, widest, coils.mean_radius), symbol="phi",
+            text="Angle until the coils are closed, at the widest clearance", source=DERIVED,
+        )  # fmt: skip
+        d.derive(
+            "engagement_time", "s", angle / wants.relative_speed, symbol="t_e",
+            text="Time until the coils are closed when the free end is held", source=DERIVED,
+        )  # fmt: skip
+        if wants.wrap_angle_limit is not None:
+            d.at_most(
+                "wrap_angle", angle, wants.wrap_angle_limit, "rad",
+                text="The clutch closes soon enough", source=DRIVE,
+            )  # fmt: skip
+        if wants.actuator_torque_limit is not None:
+            d.at_most(
+                "actuator_torque", actuator, wants.actuator_torque_limit, "N*m",
+                text="The actuator can apply the energising torque", source=DRIVE,
+            )  # fmt: skip

@@ -1,0 +1,593 @@
+"""Blocks of declarations that the two wrap spring clutches share: duty, wire, hub, friction and size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.wrap_spring import formulas
+from synth.errors import InputError
+
+if TYPE_CHECKING:
+    from synth.declaration import Declaration, Part
+
+S2 = "S2 (Kozma et al.)"
+DERIVED = f"derived; not in {S2}"
+TYPICAL = "engineering-typical value"
+DRIVE = "requirement of the drive"
+SOURCES = (
+    "S2: M. Kozma, G. Molnar, K. Varadi, R. Oroszvary, Preloaded force-locking clutch with a helical spring "
+    "(wrap spring clutch, in Hungarian)",
+    "A. M. Wahl, Mechanical Springs",
+)
+
+# What a sheet for several families may state.
+COMMON = (
+    "required_torque",
+    "slip_safety",
+    "peak_torque",
+    "spring_speed",
+    "bore_diameter",
+    "outer_diameter_limit",
+    "length_limit",
+    "gap_coils",
+    "coil_gap",
+    "spring_index_min",
+    "hub_density",
+    "belt_exponent_limit",
+)
+
+WIRE_CHOICES = ("catalogue", "custom")
+HUB_LADDERS = ("hub_diameters", "R20", "R40")
+HUB_TABLE = "hub_diameters"
+# Range of the hub diameter and of the coils offered to the search; refusals reason with their upper ends.
+HUB_DIAMETER_RANGE = (6.0, 200.0)
+COILS_RANGE = (2, 12)
+
+
+# -- options and duty ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options that both fits have."""
+
+    model: str
+    wire_choice: str
+    hub_ladder: str
+
+
+def declare_options(d: Declaration) -> Options:
+    """Declare the options that both fits have."""
+    return Options(
+        model=d.option(
+            "model",
+            formulas.MODELS,
+            "refined",
+            symbol="mdl",
+            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source, "
+            "which counts all torques at rest",
+            source=f"{S2}; refined: derived",
+        ),
+        wire_choice=d.option(
+            "wire_choice",
+            WIRE_CHOICES,
+            "catalogue",
+            symbol="wc",
+            text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, the material "
+            "is given by wire_modulus, wire_density and so on",
+            source="supply of the wire",
+        ),
+        hub_ladder=d.option(
+            "hub_ladder",
+            HUB_LADDERS,
+            "hub_diameters",
+            symbol="lad",
+            text="Makeable hub diameters: of table hub_diameters, or a series of preferred numbers",
+            source="table hub_diameters; ISO 3",
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class Duty:
+    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+
+    required_torque: Any
+    slip_safety: Any
+    peak_torque: Any
+    spring_speed: Any
+    interference_tolerance: Any
+    bore_diameter: Any
+    outer_diameter_limit: Any
+    length_limit: Any
+    gap_coils: Any
+    coil_gap: Any
+    spring_index_min: Any
+    hub_density: Any
+    belt_exponent_limit: Any
+
+
+def declare_duty(d: Declaration, tolerance_text: str) -> Duty:
+    """Declare the requirements that both fits have, and the refusals that concern them alone.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    tolerance_text : str
+        What interference_tolerance means in this family.
+
+    Returns
+    -------
+    Duty
+        Symbols of the block.
+    """
+    required_torque = d.requirement(
+        "required_torque", "N*m", lower=0.01, upper=1e5, symbol="T_req",
+        text="Torque to hold without slip", source=DRIVE,
+    )  # fmt: skip
+    duty = Duty(
+        required_torque=required_torque,
+        slip_safety=d.requirement(
+            "slip_safety", "-", 1.3, lower=1, upper=4, symbol="S_T",
+            text="Safety of the least closing torque over required_torque", source=f"{TYPICAL} of the reference model",
+        ),
+        peak_torque=d.requirement(
+            "peak_torque", "N*m", 2.5 * required_torque, lower=0.01, upper=1e12, symbol="T_peak",
+            text="Highest torque that the drive can apply; by default 2.5 required_torque", source=DRIVE,
+        ),
+        spring_speed=d.requirement(
+            "spring_speed", "1/min", 0, lower=0, upper=60000, symbol="omega_s",
+            text="Speed of the spring when driving", source=DRIVE,
+        ),
+        interference_tolerance=d.requirement(
+            "interference_tolerance", "mm", 0.03, lower=0.001, upper=1, symbol="tol",
+            text=tolerance_text, source=f"{TYPICAL} of the reference model",
+        ),
+        bore_diameter=d.requirement(
+            "bore_diameter", "mm", lower=1, upper=500, symbol="d_bore",
+            text="Shaft bore of the hubs", source=DRIVE,
+        ),
+        outer_diameter_limit=d.requirement(
+            "outer_diameter_limit", "mm", lower=3, upper=1000, optional=True, symbol="D_max",
+            text="Largest outside diameter", source=DRIVE,
+        ),
+        length_limit=d.requirement(
+            "length_limit", "mm", lower=2, upper=2000, optional=True, symbol="L_max",
+            text="Largest length of the spring", source=DRIVE,
+        ),
+        gap_coils=d.requirement(
+            "gap_coils", "-", 0.5, lower=0, upper=4, symbol="n_gap",
+            text="Coils over the gap between the hubs", source=f"{TYPICAL} of the reference model",
+        ),
+        coil_gap=d.requirement(
+            "coil_gap", "mm", 0.2, lower=0, upper=5, symbol="g_c",
+            text="Axial gap between coils", source=f"{TYPICAL} of the reference model",
+        ),
+        spring_index_min=d.requirement(
+            "spring_index_min", "-", 6, lower=2, upper=30, symbol="index_min",
+            text="Least mean coil diameter over wire thickness", source="coiling practice",
+        ),
+        hub_density=d.requirement(
+            "hub_density", "kg/m3", 7850, lower=0, upper=20000, symbol="rho_hub",
+            text="Density of the hubs; 0 counts the spring only", source="material constant",
+        ),
+        belt_exponent_limit=d.requirement(
+            "belt_exponent_limit", "-", lower=1, upper=50, optional=True, symbol="beta_max",
+            text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
+            "means little",
+            source=DERIVED,
+        ),
+    )  # fmt: skip
+    d.refuse(
+        "peak_below_required",
+        duty.peak_torque < duty.required_torque,
+        "a peak_torque of at least required_torque; the drive must be able to apply what the clutch has to hold",
+    )
+    largest_hub = HUB_DIAMETER_RANGE[1]
+    d.refuse(
+        "hub_thinner_than_bore",
+        duty.bore_diameter >= largest_hub / 1000,
+        f"a bore_diameter below {largest_hub:g} mm, the largest hub there is; a hub is not thinner than its bore",
+    )
+    if duty.outer_diameter_limit is not None:
+        d.refuse(
+            "no_room_for_hub",
+            duty.outer_diameter_limit <= duty.bore_diameter,
+            "an outer_diameter_limit above bore_diameter; hub and wire go between them",
+        )
+    return duty
+
+
+# -- wire ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Wire:
+    """Wire of the spring, all in SI."""
+
+    thickness: Any
+    width: Any
+    modulus: Any
+    density: Any
+    bending_allow: Any
+    tensile_strength: Any
+    endurance_amplitude: Any
+
+
+def declare_wire(d: Declaration, options: Options) -> Wire:
+    """Declare the wire: a slot, or two variables and requirements for its material.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    options : Options
+        Options of the family.
+
+    Returns
+    -------
+    Wire
+        Symbols of the block.
+    """
+    catalogue = options.wire_choice == "catalogue"
+
+    def material(name: str, unit: str, lower: float, upper: float, symbol: str, text: str) -> Any:
+        return d.requirement(
+            name, unit, lower=lower, upper=upper, optional=catalogue, symbol=symbol,
+            text=f"{text}; for wire_choice custom, where it must be given", source="data sheet of the wire",
+        )  # fmt: skip
+
+    given = {
+        "modulus": material("wire_modulus", "N/mm2", 1e3, 1e6, "E_u", "Young's modulus of the wire"),
+        "density": material("wire_density", "kg/m3", 500, 20000, "rho_u", "Density of the wire"),
+        "bending_allow": material("wire_bending_allow", "N/mm2", 1, 1e4, "sigma_u", "Allowed static bending stress"),
+        "tensile_strength": material("wire_tensile_strength", "N/mm2", 1, 1e4, "R_u", "Least tensile strength"),
+        "endurance_amplitude": material(
+            "wire_endurance_amplitude", "N/mm2", 1, 1e4, "S_u", "Endurance amplitude in bending"
+        ),
+    }
+    if not catalogue:
+        thickness = d.variable(
+            "wire_thickness", "mm", 0.3, 15, grid=0.1, symbol="a", text="Radial wire thickness", source=f"{S2}, a"
+        )
+        width = d.variable(
+            "wire_width", "mm", 0.3, 30, grid=0.1, symbol="b", text="Axial wire width", source=f"{S2}, b"
+        )
+        return Wire(thickness, width, **given)
+    if any(value is not None for value in given.values()):
+        d.advise(
+            "wire_material_unused",
+            True,
+            "the wire comes from the catalogue: wire_modulus and the other figures of a wire of one's own are not "
+            "used; they belong to wire_choice custom",
+        )
+    part = d.part(
+        "wire",
+        "spring_wire_flat",
+        symbol="wire",
+        text="Square or rectangular wire of the spring",
+        source="table spring_wire_flat",
+    )
+    return Wire(
+        thickness=part.radial_thickness_a,
+        width=part.axial_width_b,
+        modulus=part.E,
+        density=part.density,
+        bending_allow=part.bending_allow_static,
+        tensile_strength=part.Rm_min,
+        endurance_amplitude=part.endurance_amplitude,
+    )
+
+
+# -- hub and coils ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Coils:
+    """Hub and coils as they are when fitted."""
+
+    hub_diameter: Any
+    hub_radius: Any
+    mean_radius: Any
+    radius_ratio: Any
+    per_hub: Any
+
+
+def hub_grid(d: Declaration, ladder: str) -> Any:
+    """Return the makeable hub diameters: a series, or the values of table hub_diameters in mm.
+
+    Raises
+    ------
+    InputError
+        When a table of the user's own has no diameter in the range of the variable.
+    """
+    if ladder != "hub_diameters":
+        return ladder
+    low, high = HUB_DIAMETER_RANGE
+    diameters = 1000 * d.catalogs.table(HUB_TABLE).number("diameter")
+    # Rounding to a nanometre undoes what the conversion to metres adds.
+    inside = sorted({round(float(x), 6) for x in diameters if low <= x <= high})
+    if not inside:
+        raise InputError(f"table {HUB_TABLE}, column diameter", None, f"a diameter from {low:g} to {high:g} mm")
+    return inside
+
+
+def declare_coils(d: Declaration, options: Options, duty: Duty, wire: Wire) -> Coils:
+    """Declare hub diameter, coils and mean radius, and the remarks on their shape.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    options : Options
+        Options of the family.
+    duty : Duty
+        Requirements.
+    wire : Wire
+        Wire of the spring.
+
+    Returns
+    -------
+    Coils
+        Symbols of the block.
+    """
+    diameter = d.variable(
+        "hub_diameter", "mm", *HUB_DIAMETER_RANGE, grid=hub_grid(d, options.hub_ladder), symbol="d_h",
+        text="Outer diameter of both hubs", source=f"{S2}, 2 r",
+    )  # fmt: skip
+    per_hub = d.count(
+        "coils_per_hub", *COILS_RANGE, step=0.5, symbol="n",
+        text="Coils on one hub", source=f"{S2}, n",
+    )  # fmt: skip
+    mean = d.derive(
+        "mean_coil_radius", "mm", formulas.mean_radius(diameter, wire.thickness, options.model), symbol="r_m",
+        text="Mean radius of the fitted coils; model seed: the hub radius", source=f"{S2}, r",
+    )  # fmt: skip
+    d.at_least(
+        "spring_index", 2 * mean / wire.thickness, duty.spring_index_min, "-",
+        text="The wire can be coiled", source="coiling practice",
+    )  # fmt: skip
+    d.advise(
+        "unwound_shape",
+        np.logical_or(wire.thickness > 4 * wire.width, wire.width > 6 * wire.thickness),
+        "wire thicker than 4 times its width, or wider than 6 times its thickness, is hard to coil flat",
+        source="coiling practice",
+    )
+    d.advise(
+        "keystoning",
+        formulas.keystone_growth(0.3, wire.width, wire.thickness, mean) > duty.coil_gap,
+        "coiling widens the inner edge of the wire by more than coil_gap: neighbouring coils would rub on each other",
+        source="anticlastic bending",
+    )
+    return Coils(
+        hub_diameter=diameter,
+        hub_radius=diameter / 2,
+        mean_radius=mean,
+        radius_ratio=formulas.radius_ratio(diameter, wire.thickness, options.model),
+        per_hub=per_hub,
+    )
+
+
+# -- friction --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Slot friction_pair, and the belt exponent at both ends of its friction."""
+
+    part: Part
+    exponent_low: Any
+    exponent_high: Any
+
+
+def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> Friction:
+    """Declare the slot friction_pair and the belt exponent with its limit.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    family : str
+        Name that the column family_hint must contain.
+    duty : Duty
+        Requirements.
+    coils : Coils
+        Hub and coils.
+
+    Returns
+    -------
+    Friction
+        Symbols of the block.
+    """
+    part = d.part(
+        "friction_pair",
+        "friction_materials",
+        where=f"'{family}' in family_hint",
+        symbol="pair",
+        text="Wire and the hub surface it grips",
+        source="table friction_materials",
+    )
+    d.refuse(
+        "friction_range_reversed",
+        part.mu_min > part.mu_max,
+        "a friction pair whose mu_min is at most its mu_max",
+    )
+    low = formulas.belt_exponent(part.mu_min, coils.per_hub, coils.radius_ratio)
+    high = d.derive(
+        "belt_exponent", "-", formulas.belt_exponent(part.mu_max, coils.per_hub, coils.radius_ratio), symbol="beta_hi",
+        text="Belt exponent of one hub at the highest friction", source=f"{S2}, mu alpha in eq. (18)",
+    )  # fmt: skip
+    if duty.belt_exponent_limit is not None:
+        d.at_most(
+            "belt_exponent", high, duty.belt_exponent_limit, "-",
+            text="The clutch still slips before everything else breaks", source=DERIVED,
+        )  # fmt: skip
+    d.advise(
+        "locks_at_any_peak",
+        high > 6,
+        "at the highest friction the belt exponent is above 6: any peak is locked instead of slipping through; "
+        "belt_exponent_limit 6 keeps the search to clutches that can slip",
+        source=DERIVED,
+    )
+    d.advise(
+        "locked",
+        high > formulas.LOCKED_BELT_EXPONENT,
+        "at the highest friction the clutch is locked; the belt exponent counts up to 50 only",
+        source=DERIVED,
+    )
+    return Friction(part, low, high)
+
+
+# -- torque and stress -----------------------------------------------------------------------------
+
+
+def fitted_moment(wire: Wire, coils: Coils, interference: Any, free_radius: Any) -> Any:
+    """Return the bending moment of the fitted wire for one end of the tolerance [N m]."""
+    curvature = formulas.curvature_change(interference, coils.mean_radius, free_radius)
+    return formulas.bending_moment(wire.modulus, wire.width, wire.thickness, curvature)
+
+
+def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -> Any:
+    """Return what the spinning wire carries of its bending moment itself [N m]; 0 in the model of the source."""
+    if options.model == "seed":
+        return 0.0
+    return formulas.centrifugal_moment(wire.density, wire.width, wire.thickness, coils.mean_radius, duty.spring_speed)
+
+
+def declare_closing(d: Declaration, duty: Duty, torque: Any, needs: str | tuple[str, ...] = ()) -> None:
+    """Declare the least closing torque and its limit."""
+    torque = d.derive(
+        "closing_torque", "N*m", torque, symbol="T_c", needs=needs,
+        text="Least torque at which the closing clutch slips: least friction, loosest fit, at spring_speed",
+        source=f"{S2}, eq. (18)-(20)",
+    )  # fmt: skip
+    d.at_least(
+        "closing_torque", torque, duty.slip_safety * duty.required_torque, "N*m",
+        text="The clutch holds the required torque", source=f"{S2}, eq. (20)",
+    )  # fmt: skip
+
+
+def declare_load(
+    d: Declaration,
+    wire: Wire,
+    coils: Coils,
+    friction: Friction,
+    bending_stress: Any,
+    moment: Any,
+    load: Any,
+    needs: str | tuple[str, ...] = (),
+) -> tuple[Any, Any]:
+    """Declare moment, stress and pressure of the loaded wire with their limits.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    wire : Wire
+        Wire of the spring.
+    coils : Coils
+        Hub and coils.
+    friction : Friction
+        Slot friction_pair, whose allowed pressure applies.
+    bending_stress : symbol
+        Largest size of the bending stress [Pa].
+    moment : symbol
+        Largest bending moment of the fitted wire [N m].
+    load : symbol
+        Torque that the wire sees [N m].
+    needs : str or tuple of str
+        Guards without which the moment does not exist.
+
+    Returns
+    -------
+    tuple
+        Stress of the wire and peak pressure [Pa].
+    """
+    d.derive(
+        "bending_moment", "N*m", moment, symbol="M_b", needs=needs,
+        text="Bending moment of the fitted wire, at the tightest fit; below 0 for a clearance", source=f"{S2}, eq. (4)",
+    )  # fmt: skip
+    stress = d.derive(
+        "wire_stress", "N/mm2",
+        formulas.wire_stress(
+            bending_stress, formulas.wire_tension(moment + load, coils.mean_radius), wire.width, wire.thickness
+        ),
+        symbol="sigma",
+        text="Largest stress of the loaded wire", source=f"{S2}, eq. (8), with the tension of the loaded coil",
+    )  # fmt: skip
+    pressure = d.derive(
+        "contact_pressure", "N/mm2",
+        formulas.contact_pressure(moment + load, wire.width, coils.hub_radius, coils.mean_radius),
+        symbol="p_max",
+        text="Largest pressure of the wire on the hub, at the gap", source=f"{S2}, eq. (22), corrected",
+    )  # fmt: skip
+    d.at_most(
+        "wire_stress", stress, wire.bending_allow, "N/mm2",
+        text="The wire does not yield", source=f"{S2}, eq. (8) and (18)",
+    )  # fmt: skip
+    d.at_most(
+        "contact_pressure", pressure, friction.part.p_allow, "N/mm2",
+        text="Wire and hub stand the pressure", source=f"{S2}, eq. (22), corrected",
+    )  # fmt: skip
+    return stress, pressure
+
+
+# -- size ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Size:
+    """Outside of the clutch."""
+
+    length: Any
+    diameter: Any
+
+
+def declare_size(d: Declaration, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
+    """Declare coils, length, diameter and mass, and the limits of the room there is.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    wire : Wire
+        Wire of the spring.
+    coils : Coils
+        Hub and coils.
+    fixed_coils : symbol, optional
+        Coils anchored on the second hub; without it both hubs have coils_per_hub [-].
+
+    Returns
+    -------
+    Size
+        Symbols of the block.
+    """
+    total = d.derive(
+        "total_coils", "-", formulas.total_coils(coils.per_hub, duty.gap_coils, fixed_coils), symbol="n_tot",
+        text="Coils of the whole spring", source="geometry",
+    )  # fmt: skip
+    length = d.derive(
+        "length", "mm", formulas.spring_length(total, wire.width, duty.coil_gap), symbol="L",
+        text="Length of the spring", source="geometry",
+    )  # fmt: skip
+    diameter = d.derive(
+        "outer_diameter", "mm", coils.hub_diameter + 2 * wire.thickness, symbol="D_o",
+        text="Outside of the coils", source="geometry, 2 (r_h + a)",
+    )  # fmt: skip
+    spring = formulas.spring_mass(wire.density, wire.width, wire.thickness, coils.mean_radius, total)
+    hubs = formulas.hub_mass(duty.hub_density, coils.hub_diameter, duty.bore_diameter, length)
+    d.derive("mass", "kg", spring + hubs, symbol="m", text="Spring and both hubs under it", source="geometry")
+    if duty.outer_diameter_limit is not None:
+        d.at_most(
+            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
+            text="The clutch fits the room across", source=DRIVE,
+        )  # fmt: skip
+    if duty.length_limit is not None:
+        d.at_most("length", length, duty.length_limit, "mm", text="The clutch fits the room along", source=DRIVE)
+    return Size(length, diameter)

@@ -1,0 +1,419 @@
+"""Wrap spring clutch with interference fit: a preloaded spring grips two hubs in one sense and slips in the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.wrap_spring import blocks, curves, formulas
+from problems.wrap_spring.blocks import DERIVED, DRIVE, S2, TYPICAL
+from synth import DesignProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from synth.declaration import Declaration
+
+OVERLOADS = ("slip_limited", "torque_limited")
+
+
+@dataclass(frozen=True)
+class Wants:
+    """Requirements of the interference fit alone, all in SI; None where an optional one is not given."""
+
+    service_factor: Any
+    overrun_speed: Any
+    overrun_duty: Any
+    drag_torque_limit: Any
+    hub_shear_limit: Any
+    interference_ratio_max: Any
+    liftoff_margin: Any
+    fatigue_safety: Any
+    heat_transfer: Any
+    temperature_rise_limit: Any
+
+
+class WrapSpringClutch(DesignProblem):
+    """Wrap spring clutch, interference fit; also a freewheel.
+
+    Torque in one sense winds the spring down on both hubs (belt friction), in the other it loosens it and overruns.
+    """
+
+    name = "wrap_spring"
+    title = "Wrap spring clutch, interference fit"
+    sources = blocks.SOURCES
+    understands = (*blocks.COMMON, "drag_torque_limit")
+
+    def declare(self, d: Declaration) -> None:
+        """Declare requirements, unknowns, limits and objectives."""
+        options = blocks.declare_options(d)
+        overload = d.option(
+            "overload",
+            OVERLOADS,
+            "slip_limited",
+            symbol="pol",
+            text="slip_limited: the wire sees peak_torque or the largest slip torque, whichever is smaller; "
+            "torque_limited: it sees peak_torque",
+            source=DERIVED,
+        )
+        duty = blocks.declare_duty(d, "Tolerance of the interference, +- of wire, bore and hub together")
+        wants = self._declare_wants(d)
+        interference = d.variable(
+            "interference", "mm", 0.005, 10, symbol="dr",
+            text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
+            source=f"{S2}, Delta r",
+        )  # fmt: skip
+        wire = blocks.declare_wire(d, options)
+        coils = blocks.declare_coils(d, options, duty, wire)
+        friction = blocks.declare_friction(d, self.name, duty, coils)
+        if wants.drag_torque_limit is not None:
+            self._refuse_drag(d, duty, wants, friction)
+
+        self._declare_fit(d, duty, wants, coils, interference)
+        low, high = self._fitted_moments(options, duty, wire, coils, interference)
+        effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
+        guards = self._declare_grip(d, options, duty, wire, coils, low)
+        blocks.declare_closing(d, duty, formulas.closing_torque(effective, friction.exponent_low), needs=guards)
+        self._declare_liftoff(d, duty, wants, wire, coils, low)
+        load = self._declare_overload(d, duty, overload, friction, high)
+        bending = formulas.bending_stress(high, wire.width, wire.thickness)
+        stress, pressure = blocks.declare_load(
+            d, wire, coils, friction, bending, high, load, needs="interference_positive"
+        )
+        self._declare_fatigue(d, duty, wants, wire, coils, bending, high)
+        self._declare_hub(d, duty, wants, coils, load)
+        size = blocks.declare_size(d, duty, wire, coils)
+        self._declare_overrun(d, wants, wire, coils, friction, size, high)
+        self._declare_windup(d, duty, wire, coils, friction, low)
+        self._declare_utilisation(d, wire, friction, stress, pressure)
+        self._declare_remarks(d, duty, wants, wire, coils, friction, effective, bending, stress)
+        d.objective("mass")
+        d.objective("drag_torque")
+        for name in ("stress_utilisation", "pressure_utilisation", "outer_diameter"):
+            d.objective(name, default=False)
+
+    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
+        """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
+        if design is None:
+            return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
+        return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def _declare_wants(self, d: Declaration) -> Wants:
+        model_value = f"{TYPICAL} of the reference model"
+        return Wants(
+            service_factor=d.requirement(
+                "service_factor", "-", 1.5, lower=1, upper=5, symbol="K_A",
+                text="The wire must stand service_factor required_torque again and again", source=model_value,
+            ),
+            overrun_speed=d.requirement(
+                "overrun_speed", "1/min", 0, lower=0, upper=60000, symbol="omega_over",
+                text="Speed between spring and hub when overrunning", source=DRIVE,
+            ),
+            overrun_duty=d.requirement(
+                "overrun_duty", "-", 1, lower=0, upper=1, symbol="duty",
+                text="Part of the time spent overrunning", source=DRIVE,
+            ),
+            drag_torque_limit=d.requirement(
+                "drag_torque_limit", "N*m", lower=1e-4, upper=1e4, optional=True, symbol="drag_max",
+                text="Largest drag when overrunning; a twentieth of required_torque is usual", source=DRIVE,
+            ),
+            hub_shear_limit=d.requirement(
+                "hub_shear_limit", "N/mm2", 80, lower=1, upper=1000, symbol="tau_hub",
+                text="Allowed shear stress of the hub", source=model_value,
+            ),
+            interference_ratio_max=d.requirement(
+                "interference_ratio_max", "-", 0.1, lower=0.005, upper=0.3, symbol="dr_rel_max",
+                text="Largest interference, with its tolerance, over mean coil radius", source="small strains",
+            ),
+            liftoff_margin=d.requirement(
+                "liftoff_margin", "-", 0.7, lower=0.1, upper=1, symbol="k_lift",
+                text="Largest spring_speed over the speed at which the spring lifts off", source=model_value,
+            ),
+            fatigue_safety=d.requirement(
+                "fatigue_safety", "-", 1.2, lower=1, upper=4, symbol="S_F",
+                text="Safety on Goodman's line", source=model_value,
+            ),
+            heat_transfer=d.requirement(
+                "heat_transfer", "W/(m2*K)", 25, lower=1, upper=1000, symbol="h_cool",
+                text="Surface coefficient of the spring's outside", source=model_value,
+            ),
+            temperature_rise_limit=d.requirement(
+                "temperature_rise_limit", "K", 60, lower=1, upper=1e9, symbol="dT_max",
+                text="Allowed rise over ambient when overrunning", source=model_value,
+            ),
+        )  # fmt: skip
+
+    def _refuse_drag(self, d: Declaration, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
+        """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""
+        coils = blocks.COILS_RANGE[1]
+        low = formulas.belt_exponent(friction.part.mu_min, coils, 1.0)
+        high = formulas.belt_exponent(friction.part.mu_max, coils, 1.0)
+        moment = duty.slip_safety * duty.required_torque / formulas.closing_torque(1.0, low)
+        d.refuse(
+            "drag_limit_unreachable",
+            wants.drag_torque_limit < formulas.opening_torque(moment, high),
+            f"a drag_torque_limit that can be reached with the friction range of the pair and {coils} coils per hub, "
+            "at least slip_safety required_torque (1 - exp(-beta_max))/(exp(beta_min) - 1): raise it or choose a pair "
+            "with more friction",
+        )
+
+    def _fitted_moments(
+        self, options: blocks.Options, duty: blocks.Duty, wire: blocks.Wire, coils: blocks.Coils, interference: Any
+    ) -> tuple[Any, Any]:
+        """Return the bending moments of the loosest and the tightest fit [N m]."""
+        tolerance, mean = duty.interference_tolerance, coils.mean_radius
+        loosest = interference - tolerance
+        # The tightest fit is bounded by interference_range; what is built on it is known to be positive.
+        small = formulas.free_radius(interference + tolerance, mean, options.model)
+        large = small if options.model == "seed" else small + 2 * tolerance
+        low = blocks.fitted_moment(wire, coils, loosest, large)
+        return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
+
+    def _declare_fit(
+        self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
+    ) -> None:
+        d.at_least(
+            "interference_positive", interference, duty.interference_tolerance, "mm", guard=True,
+            text="The preload survives the tolerance", source=DERIVED,
+        )  # fmt: skip
+        most = interference + duty.interference_tolerance
+        d.at_most(
+            "interference_range", most / coils.mean_radius, wants.interference_ratio_max, "-",
+            text="The strains stay small; interference with its tolerance over mean coil radius",
+            source=f"{S2}, small Delta r",
+        )  # fmt: skip
+        d.advise(
+            "no_free_radius",
+            most >= coils.mean_radius,
+            "the interference is not below the mean coil radius: there is no such spring, and its other figures mean "
+            "nothing",
+            source=S2,
+        )
+
+    def _declare_grip(
+        self,
+        d: Declaration,
+        options: blocks.Options,
+        duty: blocks.Duty,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        low: Any,
+    ) -> tuple[str, ...]:
+        """Declare that something grips at all, and return the guards without which there is no closing torque.
+
+        Model ``seed`` counts the torque at rest, as its source does: there the preload alone decides, and what the
+        speed does is told by the limit ``liftoff`` in both models.
+        """
+        if options.model == "seed":
+            return ("interference_positive",)
+        d.at_least(
+            "grip", low, blocks.centrifugal_moment(options, duty, wire, coils), "N*m", guard=True,
+            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips", source=DERIVED,
+        )  # fmt: skip
+        return ("grip",)  # without interference there is no preload either
+
+    def _declare_liftoff(
+        self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
+    ) -> None:
+        speed = d.derive(
+            "liftoff_speed", "1/min",
+            formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, coils.mean_radius),
+            symbol="omega_lift", needs="interference_positive",
+            text="Speed at which the loosest spring lifts off its hub", source=DERIVED,
+        )  # fmt: skip
+        d.at_most(
+            "liftoff", duty.spring_speed, wants.liftoff_margin * speed, "1/min",
+            text="The spring stays on its hub at spring_speed, also with model seed, which counts torques at rest",
+            source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_overload(
+        self, d: Declaration, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
+    ) -> Any:
+        """Declare the largest slip torque and return the torque that the wire sees."""
+        slip = d.derive(
+            "slip_torque", "N*m", formulas.closing_torque(high, friction.exponent_high), symbol="T_cap",
+            text="Largest torque at which the closing clutch slips: highest friction, tightest fit, at rest",
+            source=f"{S2}, eq. (18)-(20)",
+        )  # fmt: skip
+        limited = overload == "slip_limited"
+        if limited:
+            d.advise(
+                "slips_below_peak",
+                slip < duty.peak_torque,
+                "the clutch always slips below peak_torque: slip_torque loads the wire, not the drive",
+                source=DERIVED,
+            )
+        return d.derive(
+            "wire_torque", "N*m", np.minimum(duty.peak_torque, slip) if limited else duty.peak_torque,
+            symbol="T_load",
+            text="Torque that the wire sees at overload", source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_fatigue(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        wants: Wants,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        bending: Any,
+        high: Any,
+    ) -> None:
+        def stress(torque: Any) -> Any:
+            tension = formulas.wire_tension(high + torque, coils.mean_radius)
+            return formulas.wire_stress(bending, tension, wire.width, wire.thickness)
+
+        used = d.derive(
+            "fatigue_utilisation", "-",
+            formulas.goodman_utilisation(
+                wants.fatigue_safety,
+                stress(0.0),
+                stress(wants.service_factor * duty.required_torque),
+                wire.endurance_amplitude,
+                wire.tensile_strength,
+            ),
+            symbol="u_F",
+            text="Fatigue of the wire between no torque and service_factor required_torque",
+            source=f"Goodman; {DERIVED}",
+        )  # fmt: skip
+        d.at_most(
+            "fatigue", used, 1.0, "-",
+            text="The wire does not tire", source=f"Goodman; {DERIVED}",
+        )  # fmt: skip
+
+    def _declare_hub(self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
+        d.at_least(
+            "hub_bore", coils.hub_diameter, duty.bore_diameter, "mm", guard=True,
+            text="The hub is thicker than its bore", source="geometry",
+        )  # fmt: skip
+        shear = d.derive(
+            "hub_shear", "N/mm2",
+            formulas.hub_shear_stress(load, coils.hub_diameter, duty.bore_diameter), symbol="tau", needs="hub_bore",
+            text="Shear stress of the hub under wire_torque", source="torsion of a tube",
+        )  # fmt: skip
+        d.at_most(
+            "hub_shear", shear, wants.hub_shear_limit, "N/mm2",
+            text="The hub does not twist off", source="torsion of a tube",
+        )  # fmt: skip
+
+    def _declare_overrun(
+        self,
+        d: Declaration,
+        wants: Wants,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        friction: blocks.Friction,
+        size: blocks.Size,
+        high: Any,
+    ) -> None:
+        drag = d.derive(
+            "drag_torque", "N*m", formulas.opening_torque(high, friction.exponent_high), symbol="T_open",
+            text="Drag when overrunning: highest friction, tightest fit", source=f"{S2}, eq. (15), (21)",
+        )  # fmt: skip
+        if wants.drag_torque_limit is not None:
+            d.at_most(
+                "drag_torque", drag, wants.drag_torque_limit, "N*m",
+                text="The clutch overruns freely", source=f"{S2}, eq. (21)",
+            )  # fmt: skip
+        preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
+        rubbing = d.derive(
+            "overrun_pv", "W/mm2", formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius), symbol="pv",
+            text="Pressure of the preload times sliding speed when overrunning", source=DERIVED,
+        )  # fmt: skip
+        d.at_most(
+            "overrun_pv", rubbing, friction.part.pv_allow, "W/mm2",
+            text="Wire and hub stand the rubbing", source=DERIVED,
+        )  # fmt: skip
+        rise = d.derive(
+            "temperature_rise", "K",
+            formulas.overrun_temperature_rise(
+                drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, size.diameter, size.length
+            ),
+            symbol="dT",
+            text="Steady rise over ambient when overrunning", source=f"lumped heat balance; {DERIVED}",
+        )  # fmt: skip
+        d.at_most(
+            "overrun_temperature", rise, wants.temperature_rise_limit, "K",
+            text="The clutch stays cool when overrunning", source=f"lumped heat balance; {DERIVED}",
+        )  # fmt: skip
+
+    def _declare_windup(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        friction: blocks.Friction,
+        low: Any,
+    ) -> None:
+        angle = formulas.windup_angle(
+            duty.required_torque,
+            low,
+            friction.part.mu_min * coils.radius_ratio,
+            coils.mean_radius,
+            wire.modulus * wire.thickness * wire.width,
+            duty.gap_coils,
+        )
+        d.derive(
+            "windup_angle", "deg", angle, symbol="theta", needs="interference_positive",
+            text="Angle between the hubs until required_torque is carried: least friction, loosest fit, at rest",
+            source=DERIVED,
+        )  # fmt: skip
+
+    def _declare_utilisation(
+        self, d: Declaration, wire: blocks.Wire, friction: blocks.Friction, stress: Any, pressure: Any
+    ) -> None:
+        d.derive(
+            "stress_utilisation", "-", stress / wire.bending_allow, symbol="u_s",
+            text="wire_stress over its limit", source=f"{S2}, eq. (8) and (18)",
+        )  # fmt: skip
+        d.derive(
+            "pressure_utilisation", "-", pressure / friction.part.p_allow, symbol="u_p",
+            text="contact_pressure over its limit", source=f"{S2}, eq. (22), corrected",
+        )  # fmt: skip
+
+    def _declare_remarks(
+        self,
+        d: Declaration,
+        duty: blocks.Duty,
+        wants: Wants,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        friction: blocks.Friction,
+        effective: Any,
+        bending: Any,
+        stress: Any,
+    ) -> None:
+        d.advise(
+            "weak_belt",
+            friction.exponent_low < 2,
+            "at the least friction the belt exponent is below 2: the drag when overrunning is above some 15 % of the "
+            "torque held",
+            source=DERIVED,
+        )
+        factor = formulas.curved_bar_factor(2 * coils.mean_radius / wire.thickness)
+        d.advise(
+            "curved_wire",
+            stress + (factor - 1) * bending > wire.bending_allow,
+            "counting the curvature of the wire (Wahl's factor on bending) its inner fibre is above the allowed stress",
+            source="Wahl, Mechanical Springs",
+        )
+        tips = formulas.belt_exponent(
+            friction.part.mu_min, coils.per_hub - formulas.tip_coil_loss(), coils.radius_ratio
+        )
+        d.advise(
+            "tip_lifts_off",
+            formulas.closing_torque(effective, tips) < duty.required_torque,
+            "the tip of a free end lifts off and about 0.05 coils there do not grip; counting that, the least closing "
+            "torque is below required_torque: raise slip_safety",
+            source=DERIVED,
+        )
+        d.advise(
+            "overrun_sliding_speed",
+            wants.overrun_speed * coils.hub_radius > friction.part.optional("v_allow"),
+            "the sliding speed when overrunning is above what the friction pair stands",
+            source="table friction_materials, v_allow",
+        )
