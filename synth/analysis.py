@@ -12,8 +12,9 @@ from synth.count_domain import stated
 from synth.declaration import Variable
 from synth.errors import InputError, RefusedError, at
 from synth.feasibility import Status, utilisation
+from synth.inputs import inputs_of_design, part_value
 from synth.instance import Instance, as_mapping, catalogs_for
-from synth.model import Evaluation, Model, part_column_value
+from synth.model import DataInput, Evaluation, Model
 from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
 from synth.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
@@ -116,7 +117,7 @@ def found_designs(
     known: dict[tuple[str, int], PartRow] = {}
     designs = []
     for frame, candidate, own, details in zip(frames, candidates, told, more, strict=True):
-        parts, _, choices = form.instance.describe(candidate.combination)
+        parts, _, choices = form.instance.combinations.describe(candidate.combination)
         for slot, (table, number) in parts.items():
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
@@ -199,7 +200,7 @@ def offered(instance: Instance) -> dict[str, Any]:
     """Return what a question leaves to choose from, for the statistics of a front."""
     selection = instance.selection
     return {
-        "combinations": instance.combinations,
+        "combinations": instance.combinations.count,
         "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
         "rows_used": {s.slot: len(s.rows) for s in selection.slots},
         "counts": {n: len(v) for n, v in selection.counts.items()},
@@ -411,27 +412,15 @@ def _read_values(
 def _data(
     instance: Instance, rows: Mapping[str, tuple[Any, int]], known: Mapping[str, float], choices: Mapping[str, str]
 ) -> list[float]:
-    labels = instance.model.declaration.choices
-    result = []
-    for entry in instance.model.data_inputs:
-        if entry.kind == "requirement":
-            value = instance.requirements[entry.name]
-        elif entry.kind == "row":
-            value = instance.row_values[str(entry.sx)]
-        elif entry.kind == "part":
-            table, index = rows[entry.name]
-            numbers = {c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in entry.columns}
-            value = float(part_column_value(entry, numbers)[0])
-            if np.isnan(value) and entry.required:
-                designation = table.designations[index]
-                right = f"a row with a value in {' or '.join(entry.columns)}"
-                raise InputError(f"parts: {entry.name}", designation, right, ("parts", entry.name))
-        elif entry.kind == "count":
-            value = known[entry.name]
-        else:
-            value = float(labels[entry.name].labels.index(choices[entry.name]))
-        result.append(float(value))
-    return result
+    def part(entry: DataInput) -> float:
+        table, index = rows[entry.name]
+        value = float(part_value(table, [index], entry.columns)[0])
+        if np.isnan(value) and entry.required:
+            right = f"a row with a value in {' or '.join(entry.columns)}"
+            raise InputError(f"parts: {entry.name}", table.designations[index], right, ("parts", entry.name))
+        return value
+
+    return inputs_of_design(instance.model, instance.requirements, instance.row_values, known, choices, part)
 
 
 def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[str, tuple[Any, int]]) -> tuple[str, ...]:

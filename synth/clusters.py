@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from synth.combinations import MixedRadix
+
 
 @dataclass(frozen=True)
 class Factor:
@@ -149,7 +151,7 @@ class Cells:
 
     def __init__(self, trees: Sequence[ClusterTree], radix: Sequence[int]) -> None:
         self.trees = list(trees)
-        self.radix = list(radix)
+        self.numbers = MixedRadix(radix)
 
     def whole(self) -> np.ndarray:
         """Return the cell of all combinations (1, factors)."""
@@ -171,7 +173,7 @@ class Cells:
 
     def combination(self, cells: np.ndarray) -> np.ndarray:
         """Return a combination of each cell."""
-        return self.number([tree.first[cells[:, f]] for f, tree in enumerate(self.trees)], len(cells))
+        return self.numbers.composed([tree.first[cells[:, f]] for f, tree in enumerate(self.trees)], len(cells))
 
     def random_leaves(self, cells: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return cells of one random combination each; single cells stay what they are."""
@@ -182,18 +184,12 @@ class Cells:
             result[:, f] = tree.leaf_of_row[rows]
         return result
 
-    def number(self, digits: Sequence[np.ndarray], count: int) -> np.ndarray:
-        """Return combination numbers from a row per factor."""
-        result = np.zeros(count, dtype=np.int64)
-        for digit, base in zip(digits, self.radix, strict=True):
-            result = result * base + digit
-        return result
-
     def members(self, cell: np.ndarray, most: int) -> np.ndarray:
         """Return the combinations of one cell, at most so many."""
         result = np.zeros(1, dtype=np.int64)
         for f, tree in enumerate(self.trees):
-            result = (result[:, None] * self.radix[f] + np.sort(tree.rows(int(cell[f])))[None, :]).ravel()
+            rows = np.sort(tree.rows(int(cell[f])))
+            result = self.numbers.extended(result[:, None], f, rows[None, :]).ravel()
             result = result[: most * 4]
         return result[:most]
 

@@ -24,7 +24,7 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
     """
     instance = form.instance
-    total = instance.combinations
+    total = instance.combinations.count
     numbers = rng.choice(total, size=TRIES, replace=False) if total > TRIES else np.arange(total)
     tried = np.empty(0, dtype=np.int64)
     found: list[tuple[float, int, np.ndarray]] = []
@@ -34,7 +34,7 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
             break
         tried = np.concatenate([tried, numbers])
         found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[:PARENTS]
-        near = [instance.neighbours(combination) for _, combination, _ in found]
+        near = [instance.combinations.neighbours(combination) for _, combination, _ in found]
         numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
         numbers = numbers if len(numbers) <= TRIES else rng.choice(numbers, size=TRIES, replace=False)
     if not found:
@@ -84,7 +84,7 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping
         value, bound = (float(x[0]) for x in result.limits[limit.name])
         if not bool(result.holds[limit.name][0]):
             conflicts.append(_conflict(limit.name, limit.sense, value, bound, limit.unit))
-    parts, counts, choices = form.instance.describe(combination)
+    parts, counts, choices = form.instance.combinations.describe(combination)
     model = form.model
     nearest = {v.name: format_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
     nearest |= {n: f"{v:g}" for n, v in counts.items()} | dict(choices)

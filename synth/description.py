@@ -10,8 +10,9 @@ import casadi as ca
 import numpy as np
 
 from synth.declaration import Declaration, Part, Requirement, Variable
+from synth.inputs import fixed_designation, fixed_row_values, part_value
 from synth.instance import Instance, as_catalogs, number
-from synth.model import DataInput, Model, part_column_value
+from synth.model import DataInput, Model
 from synth.problem import DesignProblem, load
 from synth.structure import classify
 from synth.tables import Catalogs
@@ -79,7 +80,7 @@ def described(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None
     d = problem.model(everything, tables).declaration
     kinds = _classifications(problem, everything, tables)
     rows = [_row("option", o, default=o.default, choices=", ".join(o.choices)) for o in d.options.values()]
-    fixed_rows = _row_values(d, tables)
+    fixed_rows = fixed_row_values(d, tables)
     rows += [_requirement(r, fixed_rows) for r in d.requirements.values()]
     rows += [_variable(v) for v in d.variables.values()]
     rows += [
@@ -156,13 +157,12 @@ def _data_range(entry: DataInput, d: Declaration, tables: Catalogs) -> tuple[flo
     if entry.kind == "row":
         part = d.rows[entry.name]
         table = tables.table(part.table)
-        rows = np.array([table.row_index(part.slot.split(":", 1)[1])])
+        rows = np.array([table.row_index(fixed_designation(part.slot))])
     else:
         part = d.slots[entry.name]
         table = tables.table(part.table)
         rows = np.flatnonzero(Instance.offers(part, table))
-    numbers = {c: table.number(c)[rows] if table.has(c) else np.full(len(rows), np.nan) for c in entry.columns}
-    values = part_column_value(entry, numbers)
+    values = part_value(table, rows, entry.columns)
     present = values[~np.isnan(values)]
     return (float(present.min()), float(present.max())) if len(present) else (math.nan, math.nan)
 
@@ -189,18 +189,6 @@ def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:
     row |= {"kind": kind, "default": None, "lower": math.nan, "upper": math.nan}
     row |= {"choices": "", "optional": False, "sense": "", "classification": ""}
     return row | known
-
-
-def _row_values(d: Declaration, tables: Catalogs) -> dict[str, float]:
-    """Return the SI values of the columns of fixed rows, which defaults may be made of."""
-    values: dict[str, float] = {}
-    for row in d.rows.values():
-        table = tables.table(row.table)
-        index = table.row_index(row.slot.split(":", 1)[1])
-        for column in row.columns.values():
-            numbers = {c: table.number(c)[[index]] for c in column.columns}
-            values[str(column.sx)] = float(part_column_value(column, numbers)[0])
-    return values
 
 
 def _requirement(r: Requirement, fixed_rows: Mapping[str, float]) -> dict[str, Any]:

@@ -79,13 +79,13 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
 
 def _two_parts_away(form: Formulation, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return random combinations that differ from a design known in at most two parts, with its variables."""
-    archive, radix = form.archive, np.array(form.instance.radix)
+    archive, radix = form.archive, np.array(form.instance.combinations.radix)
     parents = rng.integers(len(archive), size=SOLVED)
-    digits = np.stack(form.instance.digits(archive.combination[parents]), axis=1)
+    digits = np.stack(form.instance.combinations.digits(archive.combination[parents]), axis=1)
     for _ in range(2):
         part = rng.choice(np.flatnonzero(radix > 1), SOLVED)
         digits[np.arange(SOLVED), part] = rng.integers(radix[part])
-    numbers = form.cells.number(list(digits.T), SOLVED)
+    numbers = form.instance.combinations.composed(list(digits.T), SOLVED)
     combinations, first = np.unique(numbers, return_index=True)
     keep = form.not_refused(combinations)
     return combinations[keep], archive.variables[parents[first[keep]]]

@@ -24,7 +24,6 @@ from synth.instance import Instance, as_mapping, catalogs_for
 from synth.output_folder import EXPLANATION, save_result
 from synth.posed import nominal, posed
 from synth.problem import DesignProblem, load
-from synth.question import combination_of
 from synth.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
 from synth.results import Design
 from synth.search import check_settings, one_best
@@ -512,7 +511,7 @@ class _Question:
                 continue
             marked = model.program.dependence(self._followers(k))
             if any(marked[node] for node in nodes):
-                names.append(entry.name if kind == REQUIREMENT else f"{entry.name}.{'|'.join(entry.columns)}")
+                names.append(entry.name if kind == REQUIREMENT else entry.label)
         return names
 
     def _followers(self, position: int) -> list[int]:
@@ -750,7 +749,7 @@ class _Question:
             if self._requirement_of(limit) == name:
                 return self.sign(limit)
         model = self.instance.model
-        position = next(k for k, e in enumerate(model.data_inputs) if e.kind == "requirement" and e.name == name)
+        position = model.input_number["requirement", name, ""] - len(model.variables)
         shapes = self._shapes()
         for some in (self.limits, conflict):
             ends = [shapes.limits[x] for x in some if x in shapes.limits]
@@ -870,7 +869,7 @@ class _Question:
                 problem, spec["requirements"], self.catalogs, spec["parts"], spec["limits"], spec["fix"], self.grid
             )
             design = self._as_asked(found, patch)
-            combination_of(instance, design)
+            instance.combinations.number(design)
         except InputError:
             return False
         values = [design.values[v.name] for v in instance.model.variables]
@@ -883,10 +882,10 @@ class _Question:
     def _missing(self, found: Design) -> Design:
         """Return a design of the relaxed question as it stands in the question, also where it is refused there."""
         instance = self.instance
-        number = combination_of(instance, found)
+        number = instance.combinations.number(found)
         variables = np.array([[found.values[v.name] for v in instance.model.variables]])
         result = instance.evaluate(variables, instance.data(np.array([number])))
-        rows = {slot: part_row(table, row) for slot, (table, row) in instance.describe(number)[0].items()}
+        rows = {slot: part_row(table, row) for slot, (table, row) in instance.combinations.describe(number)[0].items()}
         return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, found.choices)
 
     def _as_asked(self, found: Design, patch: Mapping[str, Any] | None = None) -> Design:

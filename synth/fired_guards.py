@@ -105,7 +105,7 @@ def columns_of(instance: Instance, code: str) -> list[str]:
     model = instance.model
     refusal = next(r for r in model.declaration.refusals if r.code == code)
     used = {str(s) for s in ca.symvar(expanded(refusal.when, model.calls))}
-    return [f"{e.name}.{'|'.join(e.columns)}" for e in model.data_inputs if e.kind == "part" and str(e.sx) in used]
+    return [e.label for e in model.data_inputs if e.kind == "part" and str(e.sx) in used]
 
 
 class _Refused:

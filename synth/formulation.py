@@ -290,7 +290,7 @@ class Formulation:
     def root(self, passes: int = 3) -> Boxes:
         """Return the box of everything, tightened; no box where nothing is feasible."""
         boxes = self._boxes(self.cells.whole())
-        if self.propagation.empty or not self.instance.combinations:
+        if self.propagation.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
         if self.propagation.compiled_at_once:
             # The code that all other boxes are tightened with: caps of infinity say nothing.
@@ -317,13 +317,13 @@ class Formulation:
 
     def cell_of(self, combinations: np.ndarray) -> np.ndarray:
         """Return the cell of each combination (combinations, factors)."""
-        digits = self.instance.digits(combinations)
+        digits = self.instance.combinations.digits(combinations)
         leaves = [tree.leaf_of_row[d] for tree, d in zip(self.cells.trees, digits, strict=True)]
         return np.stack(leaves, axis=1) if leaves else np.zeros((len(combinations), 0), dtype=np.int32)
 
     def whole(self, combination: int) -> Boxes:
         """Return the box of one combination over the whole range of the variables."""
-        digits = [int(x[0]) for x in self.instance.digits(np.array([combination]))]
+        digits = [int(x[0]) for x in self.instance.combinations.digits(np.array([combination]))]
         return self._boxes(self.cells.leaf_of(digits))
 
     def _boxes(self, cell: np.ndarray) -> Boxes:
@@ -723,7 +723,7 @@ class Formulation:
 
     def _batch_nlp(self) -> BatchNlp | KinkedNlp:
         rows, kinks, model = self.rows(), self._kinks, self.model
-        large = self.instance.combinations * self.alike >= COMPILED_FROM
+        large = self.instance.combinations.count * self.alike >= COMPILED_FROM
         long = self.work > COMPILE_NLP_AFTER
         code: Code = "arrays" if not switched_on() else "own" if self.compiled and (large or long) else "general"
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.

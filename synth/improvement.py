@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from synth.errors import InputError
-from synth.question import combination_of, problem_of
+from synth.question import problem_of
 
 if TYPE_CHECKING:
     from synth.results import ParetoFront
@@ -165,7 +165,7 @@ def difference(front: ParetoFront, question: Question) -> str:
             return f"{key}: {front.settings[key]} there, {question.settings[key]} here"
     for design in front.designs:
         try:
-            combination_of(instance, design)
+            instance.combinations.number(design)
         except InputError as error:
             return f"what it offers ({error})"
         for slot in instance.selection.slots:

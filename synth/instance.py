@@ -6,7 +6,6 @@ import copy
 import difflib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,13 +13,15 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.combinations import Combinations, Selection, SlotRows
 from synth.conditions import may_be_condition, parse_condition
 from synth.constraint import SIGNS, Constraint
 from synth.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.declaration import Origin, Part, Refusal
 from synth.errors import InputError, RefusedError, at
+from synth.inputs import fixed_designation, fixed_row_values, inputs_of_combination, part_value
 from synth.margins import within
-from synth.model import Evaluation, Model, part_column_value
+from synth.model import Evaluation, Model
 from synth.problem import DesignProblem
 from synth.slot_comparison import SlotComparison, comparisons_of
 from synth.special import expanded
@@ -67,27 +68,6 @@ def as_catalogs(spec: Any) -> Catalogs:
             _shipped["shipped"] = Catalogs()
         return _shipped["shipped"]
     return Catalogs(spec)
-
-
-@dataclass(frozen=True)
-class SlotRows:
-    """The rows of a table that may fill a slot, and their numbers for the model."""
-
-    slot: str
-    table: Table
-    rows: np.ndarray
-    columns: dict[str, np.ndarray]
-
-
-@dataclass
-class Selection:
-    """What remains of the discrete unknowns, and why the rest was left out."""
-
-    slots: list[SlotRows] = field(default_factory=list)
-    counts: dict[str, np.ndarray] = field(default_factory=dict)
-    choices: dict[str, np.ndarray] = field(default_factory=dict)
-    left_out: list[dict[str, str]] = field(default_factory=list)
-    offered: dict[str, int] = field(default_factory=dict)
 
 
 def _present(table: Table, names: Sequence[str]) -> np.ndarray:
@@ -217,10 +197,7 @@ class Instance:
             self._refuse_rows()
             self._refuse_without_partner()
         self.apart = 0  # factors, from the first, that tell questions apart and are not for the search to choose
-        self.radix = [len(s.rows) for s in self.selection.slots]
-        self.radix += [len(v) for v in self.selection.counts.values()]
-        self.radix += [len(v) for v in self.selection.choices.values()]
-        self.combinations = math.prod(self.radix)
+        self.combinations = Combinations(self.selection, {c.name: c.labels for c in d.choices.values()})
 
     def _traced(self, given: frozenset[str], rules: Mapping[str, Any]) -> tuple[tuple[SlotComparison, ...], Model]:
         """Return the conditions that compare slots, and the model that refuses what they exclude."""
@@ -273,20 +250,15 @@ class Instance:
             raise InputError(f"requirement {name}", typed, expected)
 
     def _row_values(self) -> dict[str, float]:
-        values: dict[str, float] = {}
-        for row in self.model.declaration.rows.values():
-            table = self.catalogs.table(row.table)
-            designation = row.slot.split(":", 1)[1]
-            index = table.row_index(designation)
+        d = self.model.declaration
+        self.row_values = fixed_row_values(d, self.catalogs)
+        for row in d.rows.values():
             for key, column in row.columns.items():
-                numbers = {c: table.number(c)[[index]] if table.has(c) else np.array([np.nan]) for c in column.columns}
-                value = float(part_column_value(column, numbers)[0])
-                if math.isnan(value) and column.required:
+                if column.required and math.isnan(self.row_values[str(column.sx)]):
+                    designation = fixed_designation(row.slot)
                     where = f"table {row.table}, row {designation}, column {key}"
                     raise InputError(where, None, "a number", ("catalogs", row.table, designation, key))
-                values[str(column.sx)] = value
-        self.row_values = values
-        return values
+        return self.row_values
 
     def _refuse_requirements(self) -> None:
         model = self.model
@@ -482,14 +454,7 @@ class Instance:
                 asked = [wanted[part.slot]] if part.slot in wanted else []
                 asked += [[self._fixed_discrete[part.slot]]] if part.slot in self._fixed_discrete else []
                 self._refuse_empty(part, table, asked)
-            columns = {
-                key: part_column_value(
-                    column,
-                    {c: table.number(c)[rows] for c in column.columns if table.has(c)}
-                    | {c: np.full(len(rows), np.nan) for c in column.columns if not table.has(c)},
-                )
-                for key, column in part.columns.items()
-            }
+            columns = {key: part_value(table, rows, column.columns) for key, column in part.columns.items()}
             self.selection.slots.append(SlotRows(part.slot, table, rows, columns))
 
     def _refuse_empty(self, part: Part, table: Table, asked: list[Any]) -> None:
@@ -688,14 +653,9 @@ class Instance:
 
     # -- combinations --------------------------------------------------------------------------
 
-    def factors(self) -> list[str]:
-        """Return the names of slots, counts and choices, in the order of the digits of a combination."""
-        selection = self.selection
-        return [*(s.slot for s in selection.slots), *selection.counts, *selection.choices]
-
     def owners(self) -> tuple[int, ...]:
         """Return, per data input of the model, the number of the factor it belongs to; -1: the question fixes it."""
-        names = self.factors()
+        names = self.combinations.names
         return tuple(names.index(e.name) if e.name in names else -1 for e in self.model.data_inputs)
 
     def caps(self, f: int) -> dict[int, np.ndarray]:
@@ -706,66 +666,16 @@ class Instance:
         """Return the question that a combination belongs to."""
         return self
 
-    def digits(self, combinations: np.ndarray) -> list[np.ndarray]:
-        """Return, per slot, count and choice, the position of each combination in what remains of it."""
-        result, rest = [], np.asarray(combinations, dtype=np.int64)
-        for size in reversed(self.radix):
-            result.append(rest % size)
-            rest = rest // size
-        return result[::-1]
-
-    def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
-        """Return the numbers of all combinations that differ in one part, count or choice (..., neighbours)."""
-        number, weight = np.asarray(combination, dtype=np.int64)[..., None], 1
-        found = [np.empty((*number.shape[:-1], 0), dtype=np.int64)]
-        for size in reversed(self.radix):
-            own, others = number // weight % size, np.arange(size - 1)
-            found.append(number + weight * (others + (others >= own) - own))
-            weight *= size
-        return np.concatenate(found, axis=-1)
-
     def data(self, combinations: np.ndarray) -> list[Any]:
         """Return the data inputs of the model for combinations given by number."""
-        digits = self.digits(combinations)
-        slots = {s.slot: (s, digits[k]) for k, s in enumerate(self.selection.slots)}
-        rest = digits[len(slots) :]
-        stepped = {**self.selection.counts, **self.selection.choices}
-        values = {name: v[rest[k]] for k, (name, v) in enumerate(stepped.items())}
-        result: list[Any] = []
-        for entry in self.model.data_inputs:
-            if entry.kind == "requirement":
-                result.append(self.requirements[entry.name])
-            elif entry.kind == "row":
-                result.append(self.row_values[str(entry.sx)])
-            elif entry.kind == "part":
-                slot, position = slots[entry.name]
-                result.append(slot.columns["|".join(entry.columns)][position])
-            else:
-                result.append(values[entry.name])
-        return result
+        return inputs_of_combination(
+            self.model, self.requirements, self.row_values, self.combinations, np.asarray(combinations, dtype=np.int64)
+        )
 
     def column(self, position: int) -> np.ndarray:
         """Return data input number ``position`` for every alternative of the slot, count or choice it belongs to."""
         entry = self.model.data_inputs[position]
-        for slot in self.selection.slots:
-            if slot.slot == entry.name:
-                return slot.columns["|".join(entry.columns)]
-        return (self.selection.counts | self.selection.choices)[entry.name]
-
-    def describe(self, combination: int) -> tuple[dict[str, tuple[Table, int]], dict[str, float], dict[str, str]]:
-        """Return parts (table and row), counts and choices of one combination."""
-        digits, left = list[int](), int(combination)
-        for size in reversed(self.radix):
-            left, digit = divmod(left, size)
-            digits.insert(0, digit)
-        slots = self.selection.slots
-        parts = {s.slot: (s.table, int(s.rows[digits[k]])) for k, s in enumerate(slots)}
-        rest = digits[len(slots) :]
-        counts = {n: float(v[rest[k]]) for k, (n, v) in enumerate(self.selection.counts.items())}
-        rest = rest[len(counts) :]
-        labels = self.model.declaration.choices
-        choices = {n: labels[n].labels[int(v[rest[k]])] for k, (n, v) in enumerate(self.selection.choices.items())}
-        return parts, counts, choices
+        return self.combinations.column(entry.name, entry.column)
 
     def grids(self) -> list[np.ndarray]:
         """Return, per variable, the makeable values in force; empty where it is continuous."""

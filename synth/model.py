@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from synth.constraint import SIGNS, Constraint
-from synth.declaration import Declaration, DeclarationError, Limit, Origin, Part, PartColumn, Refusal
+from synth.declaration import Declaration, DeclarationError, Limit, Origin, Part, Refusal
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
@@ -31,9 +31,19 @@ class DataInput:
     sx: Any
 
     @property
+    def column(self) -> str:
+        """Return the key of the column in its part or row; empty for what is no column."""
+        return "|".join(self.columns)
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Return what tells it from all other inputs."""
+        return self.kind, self.name, self.column
+
+    @property
     def label(self) -> str:
         """Return a readable name, ``slot.column`` for parts."""
-        return f"{self.name}.{'|'.join(self.columns)}" if self.columns else self.name
+        return f"{self.name}.{self.column}" if self.columns else self.name
 
 
 @dataclass(frozen=True)
@@ -106,6 +116,8 @@ class Model:
         self.requirement_symbols = {r.name: str(r.sx) for r in requirements if r.sx is not None}
         self.data_inputs = self._data_inputs(declaration)
         self.inputs = [v.sx for v in self.variables] + [i.sx for i in self.data_inputs]
+        keys = [("variable", v.name, "") for v in self.variables] + [i.key for i in self.data_inputs]
+        self.input_number = {key: number for number, key in enumerate(keys)}
         self.units = {name: unit for name, unit, _ in declaration.quantities()}
         self._check_symbols()
         named: dict[str, Any] = {v.name: v.sx for v in self.variables}
@@ -335,14 +347,6 @@ def _column(x: Any, count: int) -> np.ndarray:
     if isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == float:
         return x
     return np.broadcast_to(np.asarray(x, dtype=float), (count,))
-
-
-def part_column_value(column: DataInput | PartColumn, numbers: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return the column of a table, or the first of several that has a value, row by row."""
-    result = numbers[column.columns[0]]
-    for name in column.columns[1:]:
-        result = np.where(np.isnan(result), numbers[name], result)
-    return result
 
 
 def limit_direction(limit: Limit) -> int:

@@ -30,7 +30,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance
 from synth.output_folder import NEAR_EQUALS, save_result
 from synth.purposes import Cover
-from synth.question import combination_of, question_of
+from synth.question import question_of
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.seeker import EDGE, Seeker, roundings
 from synth.settle import settle_discrete, settle_variables
@@ -264,7 +264,7 @@ class _Enumeration:
         self.instance, self.reference, self.share = instance, reference, share
         self.chosen = dict(front.frame.objectives)
         self.m = len(self.chosen)
-        self.own = combination_of(instance, reference)
+        self.own = instance.combinations.number(reference)
         self.form = Formulation(instance, with_ties(instance.model, self.chosen), self.m)
         self.rng = np.random.default_rng(seed)
         self.progress, self.stage = progress, "enumerate"
@@ -295,7 +295,7 @@ class _Enumeration:
             self.progress({
                 "stage": self.stage,
                 "done": 0.0 if self.stage == "enumerate" else 1.0,
-                "combinations": self.instance.combinations,
+                "combinations": self.instance.combinations.count,
                 "incumbents": len(self.near.found),
                 "message": f"{open_boxes} boxes open" if open_boxes else "",
             })  # fmt: skip
@@ -426,8 +426,9 @@ class _Enumeration:
     def _spread(self, members: Mapping[int, tuple[float, Candidate]], count: int) -> list[int]:
         """Return combinations as different as possible: always the one that differs in most from those taken."""
         numbers = np.array(list(members), dtype=np.int64)
-        digits = np.stack(self.instance.digits(numbers), axis=1) if self.instance.radix else np.zeros((len(numbers), 0))
-        own = np.array([int(d[0]) for d in self.instance.digits(np.array([self.own]))])
+        codec = self.instance.combinations
+        digits = np.stack(codec.digits(numbers), axis=1) if codec.radix else np.zeros((len(numbers), 0))
+        own = np.array([int(d[0]) for d in codec.digits(np.array([self.own]))])
         worse = np.array([w for w, _ in members.values()])
         least = np.sum(digits != own, axis=1)
         total = np.zeros(len(numbers), dtype=np.int64)
@@ -466,7 +467,7 @@ class _Enumeration:
         result = form.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
         designs, changes, differences = [], [], []
         for k, c in enumerate(candidates):
-            parts, _, choices = self.instance.describe(c.combination)
+            parts, _, choices = self.instance.combinations.describe(c.combination)
             rows = {slot: part_row(table, row) for slot, (table, row) in parts.items()}
             design = make_design(
                 self.instance, self.reference.frame, c.variables, result, k, rows, choices,
@@ -479,7 +480,7 @@ class _Enumeration:
             None if self.looked > EFFORT or found > MOST or interrupted else len(self.undecided - set(self.near.found))
         )
         statistics = {
-            "combinations": self.instance.combinations,
+            "combinations": self.instance.combinations.count,
             "boxes": form.contracted,
             "nlp_solves": form.nlp_solves,
             "seconds": time.monotonic() - self.started,
@@ -490,7 +491,7 @@ class _Enumeration:
 
     def _differences(self, combination: int) -> tuple[str, ...]:
         """Return what is other than in the chosen design."""
-        own, its = self.instance.describe(self.own), self.instance.describe(combination)
+        own, its = self.instance.combinations.describe(self.own), self.instance.combinations.describe(combination)
         words = []
         for slot, (table, row) in its[0].items():
             if own[0][slot][1] != row:

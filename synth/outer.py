@@ -101,7 +101,7 @@ def _searched(
             places = [[t.suggest_int(f"factor_{f}", 0, len(r) - 1) for f, r in enumerate(rows)] for t in asked]
             towards = [t.suggest_int("direction", 0, DIRECTIONS - 1) if len(columns) > 1 else 0 for t in asked]
             digits = [rows[f][np.array([p[f] for p in places])] for f in range(len(rows))]
-            combinations = form.cells.number(digits, len(asked))
+            combinations = form.instance.combinations.composed(digits, len(asked))
             values, missed = _inner(form, purpose, combinations, np.array(towards))
             for trial, phi, violation in zip(asked, values, missed, strict=True):
                 trial.set_constraint("limits", float(violation))

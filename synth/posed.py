@@ -126,10 +126,7 @@ class _Corners:
         given = frozenset(name for name, r in d.requirements.items() if r.given)
         self.model: Model = problem.base.model(given, d.catalogs)
         self.shapes = classify(self.model, *declared_ranges(self.model, d.catalogs))
-        first = len(self.model.variables)
-        number = {("variable", v.name, ""): k for k, v in enumerate(self.model.variables)}
-        for k, entry in enumerate(self.model.data_inputs, start=first):
-            number[entry.kind, entry.name, "|".join(entry.columns)] = k
+        number = self.model.input_number
         self.inputs = [[number[m.key] for m in x.members if m.key in number] for x in things]
         self.marked = [self.model.program.dependence(k) for k in self.inputs]
         self.own = self._of_the_user(problem.own_limits)

@@ -28,7 +28,7 @@ from synth.formulation import TIE, Formulation
 from synth.instance import Instance
 from synth.output_folder import claimed
 from synth.price_list import CHANGE, CONFIRMED, FIXED, FORMAT, NOTHING, WITHHELD, Price, Prices, Store, percent, told
-from synth.question import combination_of, question_of
+from synth.question import question_of
 from synth.resolve import ALL, FINE, Move, Resolver
 from synth.results import Design, ParetoFront
 from synth.units import parse_quantity
@@ -155,7 +155,7 @@ class _Pricing:
         except KeyboardInterrupt:
             interrupted = "interrupted"
         statistics = {
-            "combinations": self.instance.combinations,
+            "combinations": self.instance.combinations.count,
             "nlp_solves": self.again.form.nlp_solves,
             "kept": kept,
             "seconds": time.monotonic() - self.started,
@@ -170,7 +170,7 @@ class _Pricing:
             self.progress({
                 "stage": f"design {number + 1} of {of}",
                 "done": (number + share) / of,
-                "combinations": self.instance.combinations,
+                "combinations": self.instance.combinations.count,
                 "message": "",
             })  # fmt: skip
         if time.monotonic() > self.deadline:
@@ -178,7 +178,7 @@ class _Pricing:
 
     def _design(self, design: Design, number: int, of: int) -> list[Price]:
         again, form = self.again, self.again.form
-        own = combination_of(self.instance, design)
+        own = self.instance.combinations.number(design)
         point = np.array([[design.values[v.name] for v in self.instance.model.variables]]).reshape(1, form.n)
         _, phi = form.feasible_rows(point, np.array([own]))
         others = again.others(own)
@@ -233,7 +233,7 @@ class _Case:
     def _elsewhere(self, own: tuple[Solutions, np.ndarray, np.ndarray]) -> list[tuple[float, int] | None]:
         """Return, per move, how good the best of the other parts become there, if they overtake; and which."""
         best: list[tuple[float, int] | None] = [None] * self.again.count
-        total = self.again.instance.combinations
+        total = self.again.instance.combinations.count
         if total == 1:
             self.compared = "no other parts are offered"
         if not len(self.others):

@@ -95,7 +95,7 @@ class Propagation:
         self.n = len(self.model.variables)
         self.bounds = [cut.bound for cut in cuts]
         model = self.model
-        names, owner = instance.factors(), instance.owners()
+        names, owner = instance.combinations.names, instance.owners()
         layout = Layout(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
         plain = tuple(replace(c, bound=0.0) for c in cuts)
 
@@ -142,7 +142,7 @@ class Propagation:
         self._codes: dict[tuple[bool, bool], Code] = {}
         self._bits = bounded if bounded <= MOST_BITS else 0
         self._anywhere = self._influences()
-        self.cells = Cells([self._tree(f) for f in self.factors], instance.radix)
+        self.cells = Cells([self._tree(f) for f in self.factors], instance.combinations.radix)
         self._ends_of = {
             every: [self._tables_of(c, f, per_row[every][f]) for f in places] for every, c in self._contractors.items()
         }
@@ -165,12 +165,12 @@ class Propagation:
         own.instance = instance
         if owner != self.instance.owners() or not np.array_equal(own._fixed(owner), self._fixed(owner), equal_nan=True):
             return None
-        first = own._factor(0, instance.factors()[0], owner)
+        first = own._factor(0, instance.combinations.names[0], owner)
         read, known = first.columns[:, : len(first.inputs)], self.factors[0].columns
         if not np.all((read >= known.min(axis=0)) & (read <= known.max(axis=0))):
             return None
         own.factors = [first, *self.factors[1:]]
-        own.cells = Cells([own._tree(first), *self.cells.trees[1:]], instance.radix)
+        own.cells = Cells([own._tree(first), *self.cells.trees[1:]], instance.combinations.radix)
         own._ends_of = {
             every: [own._tables_of(c, 0, own._values_of_tables(c, 0)), *self._ends_of[every][1:]]
             for every, c in own._contractors.items()
@@ -252,7 +252,7 @@ class Propagation:
         """Return a factor with the numbers of its rows that anything depends on."""
         instance = self.instance
         inputs, caps = tuple(k for k, own in enumerate(owner) if own == f and k in self._read), instance.caps(f)
-        columns = np.empty((instance.radix[f], len(inputs) + len(caps)))
+        columns = np.empty((instance.combinations.radix[f], len(inputs) + len(caps)))
         for position, column in enumerate([*(instance.column(k) for k in inputs), *caps.values()]):
             columns[:, position] = column
         return Factor(name, inputs, columns, tuple(caps))
@@ -266,7 +266,7 @@ class Propagation:
         with np.errstate(all="ignore"):
             values = contractor.tabulate(inputs)
         return {
-            node: np.broadcast_to(np.asarray(v, dtype=float), (self.instance.radix[f],))
+            node: np.broadcast_to(np.asarray(v, dtype=float), (self.instance.combinations.radix[f],))
             for node, v in zip(contractor.tables, values, strict=True)
             if contractor.factor[node] == f
         }
@@ -318,7 +318,7 @@ class Propagation:
         with np.errstate(all="ignore"):
             ratio = low * (high / low) ** share
         points = np.where(self.positive[:n], ratio, low + share * (high - low))
-        numbers = [rng.integers(size, size=SAMPLES) for size in self.instance.radix]
+        numbers = [rng.integers(size, size=SAMPLES) for size in self.instance.combinations.radix]
         data = [np.full(SAMPLES, v) for v in self._one_data()]
         for digits, factor in zip(numbers, self.factors, strict=True):
             for position, k in enumerate(factor.inputs):
@@ -539,7 +539,7 @@ class Propagation:
     @property
     def compiled_at_once(self) -> bool:
         """Tell whether code for capped boxes is compiled from the first: by the question alone."""
-        return self._compiled and self.instance.combinations * self._alike >= COMPILED_FROM
+        return self._compiled and self.instance.combinations.count * self._alike >= COMPILED_FROM
 
     def _to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
         """Tell whether code is to be compiled for so many boxes more."""

@@ -11,7 +11,7 @@ from synth.problem import DesignProblem, load
 from synth.tables import Catalogs
 
 if TYPE_CHECKING:
-    from synth.results import Design, ParetoFront
+    from synth.results import ParetoFront
 
 
 def problem_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> tuple[DesignProblem, Catalogs]:
@@ -69,33 +69,3 @@ def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -
         if isinstance(error, InputError):
             raise
         raise InputError("front", front.frame.family, "a front whose record is complete") from error
-
-
-def combination_of(instance: Instance, design: Design) -> int:
-    """Return the number of the combination of a design.
-
-    Raises
-    ------
-    InputError
-        When it has a part, count or choice that the question does not offer.
-    """
-    number = 0
-    selection = instance.selection
-    for slot in selection.slots:
-        offered = [slot.table.designations[r] for r in slot.rows]
-        number = number * len(offered) + _place(slot.slot, str(design.parts.get(slot.slot)), offered)
-    for name, values in selection.counts.items():
-        offered = [f"{v:.12g}" for v in values]
-        number = number * len(offered) + _place(name, f"{design.values.get(name, float('nan')):.12g}", offered)
-    for name, indices in selection.choices.items():
-        labels = instance.model.declaration.choices[name].labels
-        offered = [labels[int(k)] for k in indices]
-        number = number * len(offered) + _place(name, str(design.choices.get(name)), offered)
-    return number
-
-
-def _place(name: str, value: str, offered: list[str]) -> int:
-    if value not in offered:
-        shown = ", ".join(offered[:5]) + (f" and {len(offered) - 5} more" if len(offered) > 5 else "")
-        raise InputError(f"design: {name}", value, f"what this question offers: {shown}")
-    return offered.index(value)

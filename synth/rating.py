@@ -19,8 +19,8 @@ import numpy as np
 
 from synth.enclosure import ZERO, Enclosed, Encloser, Pair, Slopes
 from synth.feasibility import TOLERANCE, holds, utilisation
+from synth.inputs import first_value, inputs_of_design
 from synth.instance import Instance
-from synth.model import part_column_value
 from synth.problem import DesignProblem
 from synth.program import OP_SELECT
 from synth.results import Design
@@ -68,7 +68,7 @@ class Rater:
         self.things = scattered(asked, d)
         check_values(self.things, d, self.instance.requirements)
         self.units = {x.name: x.unit for x in self.things}
-        known = self._known()
+        known = self.model.input_number
         moving = [(j, m, known[m.key]) for j, x in enumerate(self.things) for m in x.members if m.key in known]
         self.moving: list[tuple[int, Member, int]] = moving  # thing, member, number of the input
         self.limits = [x for x in self.instance.constraints if x.sense != "equal"]
@@ -80,14 +80,6 @@ class Rater:
         # What a limit depends on, per thing.
         marked = [program.dependence([k for i, _, k in self.moving if i == j]) for j in range(count)]
         self.matters = {x.name: [any(bool(m[k]) for k in x.nodes) for m in marked] for x in self.limits}
-
-    def _known(self) -> dict[tuple[str, str, str], int]:
-        """Return the numbers of the inputs of the program that may move."""
-        model = self.model
-        known = {("variable", v.name, ""): k for k, v in enumerate(model.variables)}
-        for k, entry in enumerate(model.data_inputs, start=len(known)):
-            known[entry.kind, entry.name, "|".join(entry.columns)] = k
-        return known
 
     # -- numbers -------------------------------------------------------------------------------
 
@@ -228,6 +220,9 @@ class Rater:
         cell = design.parts[slot].get(column)
         return math.nan if cell is None else float(cell)
 
+    def _cells(self, design: Design, slot: str, column: str) -> np.ndarray:
+        return np.array([self._cell(design, slot, column)])
+
     def _inputs(self, design: Design, positions: np.ndarray) -> tuple[np.ndarray, list[Any]]:
         model = self.model
         variables = np.tile([float(design.values[v.name]) for v in model.variables], (len(positions), 1))
@@ -241,21 +236,11 @@ class Rater:
         return variables, data
 
     def _data(self, design: Design) -> list[Any]:
-        result: list[Any] = []
-        for entry in self.model.data_inputs:
-            if entry.kind == "requirement":
-                result.append(self.instance.requirements[entry.name])
-            elif entry.kind == "row":
-                result.append(self.instance.row_values[str(entry.sx)])
-            elif entry.kind == "count":
-                result.append(float(design.values[entry.name]))
-            elif entry.kind == "choice":
-                labels = self.model.declaration.choices[entry.name].labels
-                result.append(float(labels.index(design.choices[entry.name])))
-            else:
-                cells = {c: np.array([self._cell(design, entry.name, c)]) for c in entry.columns}
-                result.append(float(part_column_value(entry, cells)[0]))
-        return result
+        instance = self.instance
+        return inputs_of_design(
+            self.model, instance.requirements, instance.row_values, design.values, design.choices,
+            lambda entry: float(first_value([self._cells(design, entry.name, c) for c in entry.columns])[0]),
+        )  # fmt: skip
 
     # -- proofs --------------------------------------------------------------------------------
 

@@ -7,35 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from synth.formulation import Formulation
-from synth.instance import Instance
 from synth.purposes import Purpose
 from synth.results import Design
 from synth.seeker import Seeker
-
-
-def combination_like(instance: Instance, design: Design) -> int | None:
-    """Return the combination with the parts, counts and choices of a design; None where one is not offered here.
-
-    Parameters
-    ----------
-    instance : Instance
-    design : Design
-        Of a question to the same family, whose tables may be others.
-    """
-    selection, number = instance.selection, 0
-    offered: list[tuple[object, list[object]]] = [
-        (str(design.parts.get(s.slot)), [s.table.designations[r] for r in s.rows]) for s in selection.slots
-    ]
-    offered += [(float(design.values.get(n, np.nan)), [float(v) for v in own]) for n, own in selection.counts.items()]
-    labels = instance.model.declaration.choices
-    offered += [
-        (design.choices.get(n), [labels[n].labels[int(k)] for k in own]) for n, own in selection.choices.items()
-    ]
-    for value, among in offered:
-        if value not in among:
-            return None
-        number = number * len(among) + among.index(value)
-    return number
 
 
 def recall(form: Formulation, purpose: Purpose, designs: Sequence[Design], rng: np.random.Generator) -> bool:
@@ -45,7 +19,7 @@ def recall(form: Formulation, purpose: Purpose, designs: Sequence[Design], rng: 
     gains in all objectives alike.
     """
     names = [v.name for v in form.model.variables]
-    rows = [(c, d) for d in designs if (c := combination_like(form.instance, d)) is not None]
+    rows = [(c, d) for d in designs if (c := form.instance.combinations.find(d)) is not None]
     combinations = np.array([c for c, _ in rows], dtype=np.int64)
     keep = form.not_refused(combinations) if len(rows) else np.zeros(0, dtype=bool)
     points = np.array([[d.values.get(n, np.nan) for n in names] for _, d in rows]).reshape(len(rows), form.n)

@@ -26,7 +26,7 @@ def _program(model: Model, refusal: Refusal) -> Program:
 def _pairs(instance: Instance, cells: Cells, refusal: Refusal, factors: Sequence[int]) -> np.ndarray:
     """Return which clusters of two factors hold a pair of rows that a refusal allows (clusters, clusters)."""
     model, owner = instance.model, instance.owners()
-    shape = tuple(instance.radix[f] for f in factors)
+    shape = tuple(instance.combinations.radix[f] for f in factors)
     data: list[Any] = instance.data(np.zeros(1, dtype=np.int64))
     for k, own in enumerate(owner):
         if own in factors:
@@ -77,7 +77,7 @@ class RefusedCells:
             if any(node.op not in EXACT for node in nodes) or min(read, default=0) < 0:
                 continue
             factors = sorted({owner[k] for k in read if owner[k] >= 0})
-            if len(factors) == 2 and np.prod([float(instance.radix[f]) for f in factors]) <= MOST_COMPARED:
+            if len(factors) == 2 and np.prod([float(instance.combinations.radix[f]) for f in factors]) <= MOST_COMPARED:
                 one, two = factors
                 self._tables.append((one, two, _pairs(instance, cells, refusal, factors)))
                 continue

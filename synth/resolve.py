@@ -16,7 +16,6 @@ from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.formulation import Formulation
 from synth.instance import Instance
-from synth.question import combination_of
 from synth.results import ParetoFront
 
 ALL = 512  # combinations that are all tried; of more, those that differ in one part and those on the front
@@ -58,7 +57,7 @@ class Resolver:
         self.limit_names = [x.name for x in instance.constraints]
         self.ranges = self._ranges()
         self.positions = requirement_positions(self.form)
-        self.known = np.unique([combination_of(instance, d) for d in front.designs])
+        self.known = np.unique([instance.combinations.number(d) for d in front.designs])
         # All that is moved by the step, then all by a fine step.
         self.moves = [*self._moves(step), *self._moves(FINE * step)]
         self.count = len(self.moves) // 2
@@ -116,16 +115,16 @@ class Resolver:
 
     def others(self, own: int) -> np.ndarray:
         """Return the combinations that are tried beside that of a design."""
-        total = self.instance.combinations
+        total = self.instance.combinations.count
         if total <= ALL:
             tried = np.arange(total, dtype=np.int64)
         else:
-            tried = np.concatenate([self.instance.neighbours(own), self.known])
+            tried = np.concatenate([self.instance.combinations.neighbours(own), self.known])
         return self._offered(tried, np.array([own]))
 
     def beside(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
         """Return the combinations that differ in one part from some, but for those known."""
-        near = [self.instance.neighbours(int(c)) for c in combinations]
+        near = [self.instance.combinations.neighbours(int(c)) for c in combinations]
         return self._offered(np.concatenate([np.empty(0, dtype=np.int64), *near]), known)
 
     def _offered(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
@@ -214,7 +213,7 @@ class Resolver:
 
     def difference(self, own: int, other: int) -> str:
         """Return in words what is other than in the own combination."""
-        mine, its = self.instance.describe(own), self.instance.describe(other)
+        mine, its = self.instance.combinations.describe(own), self.instance.combinations.describe(other)
         words = [
             f"{slot} {mine[0][slot][0].designations[mine[0][slot][1]]} -> {table.designations[row]}"
             for slot, (table, row) in its[0].items()

@@ -23,7 +23,7 @@ from synth.margins import within
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 if TYPE_CHECKING:
-    from synth.instance import SlotRows
+    from synth.combinations import SlotRows
 
 LIMITS, RATE = "limits", "rate"
 NONE = "none"  # in place of a range: does not scatter here

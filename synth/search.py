@@ -34,7 +34,6 @@ from synth.problem import DesignProblem, load
 from synth.propagation import Lessons
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover, Purpose, Staircase, Tabled
-from synth.question import combination_of
 from synth.rating import Rater
 from synth.recall import recall
 from synth.resolution import ROOM, ranges, rounded_up
@@ -325,8 +324,8 @@ def _effort(instance: Instance, objectives: int) -> int:
     not close soon, limits leave a sliver that they hardly ever close on.
     """
     if int(np.sum(instance.lower < instance.upper)) < MANY:
-        return EFFORT_WITH_MANY if objectives == 1 and instance.combinations <= EXHAUSTIVE_LIMIT else EFFORT
-    return EFFORT_WITH_FEW_PARTS if instance.combinations <= EXHAUSTIVE_LIMIT else EFFORT_WITH_MANY
+        return EFFORT_WITH_MANY if objectives == 1 and instance.combinations.count <= EXHAUSTIVE_LIMIT else EFFORT
+    return EFFORT_WITH_FEW_PARTS if instance.combinations.count <= EXHAUSTIVE_LIMIT else EFFORT_WITH_MANY
 
 
 class FrontSearch:
@@ -377,7 +376,7 @@ class FrontSearch:
         self.complete = False
         self.scalar_problems = 0
         self.solves_to_find: int | None = None  # of the designs listed; settling ties and prices come after
-        self.open_combinations = float(instance.combinations)
+        self.open_combinations = float(instance.combinations.count)
         self.purpose = self._purpose(None)
         self.covering: Cover | None = None  # the finest cover that is finished
         self.under_way: np.ndarray | None = None  # the slack of the tree that is under way, if it speaks of all designs
@@ -411,7 +410,7 @@ class FrontSearch:
         form = self.form
         points = np.array([[d.values[v.name] for v in form.model.variables] for d in front.designs])
         points = points.reshape(len(front.designs), form.n)
-        combinations = np.array([combination_of(self.instance, d) for d in front.designs], dtype=np.int64)
+        combinations = np.array([self.instance.combinations.number(d) for d in front.designs], dtype=np.int64)
         closely, phi = form.feasible_rows(points, combinations)
         edge, _ = form.edge_rows(points, combinations)
         phi[edge] += EDGE_WORTH
@@ -588,7 +587,7 @@ class FrontSearch:
             self.progress({
                 "stage": stage,
                 "done": float(min(max(done, 0.0), 1.0)),
-                "combinations": self.instance.combinations,
+                "combinations": self.instance.combinations.count,
                 "incumbents": len(self.form.archive),
                 "message": message,
             })  # fmt: skip
@@ -772,7 +771,7 @@ class FrontSearch:
 
     def _cover(self) -> None:
         """Cover everything as finely as the points asked for need, at most as the gap."""
-        scarce = self.m == 2 and self.instance.combinations > EXHAUSTIVE_LIMIT and self._dive()
+        scarce = self.m == 2 and self.instance.combinations.count > EXHAUSTIVE_LIMIT and self._dive()
         form = self.form
         fine = self._fine()
         together = QUICKLY if scarce else TOGETHER
@@ -1053,7 +1052,7 @@ class FrontSearch:
         explanation: Mapping[str, Any] | None,
         interrupted: str,
     ) -> ParetoFront:
-        total = self.instance.combinations
+        total = self.instance.combinations.count
         kind = "global" if self.closed else "exhaustive" if self.exhausted and not interrupted else "heuristic"
         gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
         solved = len(self.form.solved_combinations)

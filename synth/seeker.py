@@ -263,7 +263,7 @@ class Seeker:
         It proves nothing: the better the designs known, the less is left for boxes to cover.
         """
         form, archive = self.form, self.form.archive
-        if not form.n or form.instance.combinations == 1 or not len(archive):
+        if not form.n or form.instance.combinations.count == 1 or not len(archive):
             return
         expanded: set[int] = set()
         placed: set[tuple[int, bytes]] = set()
@@ -287,7 +287,7 @@ class Seeker:
     def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return combinations that differ from a parent in one part, with its variables and phi."""
         form = self.form
-        made = [form.instance.neighbours(c.combination) for c in parents]
+        made = [form.instance.combinations.neighbours(c.combination) for c in parents]
         combinations, rows = np.concatenate(made), np.repeat(np.arange(len(made)), [len(x) for x in made])
         _, first = np.unique(combinations, return_index=True)
         first = first[form.not_refused(combinations[first])]

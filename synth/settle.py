@@ -123,9 +123,9 @@ def _other_parts(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return designs with one other part that promise to be as good: whose, combination, variables."""
     own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    for part in _slices(len(combinations), len(form.instance.neighbours(combinations[0]))):
+    for part in _slices(len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
         deadline.check()
-        others = form.instance.neighbours(combinations[part])
+        others = form.instance.combinations.neighbours(combinations[part])
         keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
         own.append(part.start + np.nonzero(keep)[0])
         numbers.append(others[keep])
@@ -214,7 +214,7 @@ def settle_ties(
 
 def _difference(instance: Instance, combination: int, other: int) -> str:
     """Return in words in what another combination differs."""
-    own, its = instance.describe(combination), instance.describe(other)
+    own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
     words = []
     for slot in own[0]:
         if own[0][slot] != its[0][slot]:
@@ -237,7 +237,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
     cell[:, :apart] = form.cell_of(own)[:, :apart]
-    questions = form.instance.digits(own)[:apart]
+    questions = form.instance.combinations.digits(own)[:apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
@@ -250,7 +250,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     whose, every = np.concatenate(tags), np.concatenate(combinations)
     # A cell may hold questions that are the same in all that counts: theirs are no other designs.
     keep = np.ones(len(whose), dtype=bool)
-    for digit, its in zip(form.instance.digits(every)[:apart], questions, strict=True):
+    for digit, its in zip(form.instance.combinations.digits(every)[:apart], questions, strict=True):
         keep &= digit == its[whose]
     whose = whose[keep]
     same = _feasible(form, whose, every[keep], points[whose])

@@ -149,7 +149,7 @@ class Steps:
         self._learned: dict[tuple[str, ...], scatter.Asked] = {}
         self.raters: list[Rater | None] = []  # by step; None where nothing scatters
         self.questions = self._posed()
-        self.combinations = max(q.instance.combinations for q in self.questions)  # of the largest step
+        self.combinations = max(q.instance.combinations.count for q in self.questions)  # of the largest step
 
     def __len__(self) -> int:
         return len(self.values)
@@ -184,7 +184,7 @@ class Steps:
         question = self._pose(self._with_learned(asked))
         # The same code as for the whole question, however few combinations are left.
         whole = len(self) * self.combinations
-        return replace(question, alike=-(-whole // max(question.instance.combinations, 1)))
+        return replace(question, alike=-(-whole // max(question.instance.combinations.count, 1)))
 
     def question(self, position: int, robust: scatter.Asked) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""

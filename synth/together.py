@@ -13,7 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from synth.combinations import JointCombinations
 from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.inputs import inputs_of_combination
 from synth.instance import Instance
 from synth.native_tree import CapTables
 from synth.purposes import reaches_beyond
@@ -36,21 +38,17 @@ class Together(Instance):
         questions apart.
     """
 
+    combinations: JointCombinations
+
     def __init__(
         self, each: Sequence[Instance], moving: Collection[str] = (), caps: Mapping[int, np.ndarray] | None = None
     ) -> None:
         self.__dict__.update(each[0].__dict__)
         self.each, self._caps = list(each), dict(caps or {})
-        self.size = each[0].combinations
         names = {*moving, *different(each)}
         self.moving = {n: np.array([i.requirements[n] for i in each]) for n in self.requirements if n in names}
         self.apart = 1
-        self.radix = [len(each), *each[0].radix]
-        self.combinations = len(each) * self.size
-
-    def factors(self) -> list[str]:
-        """Return the names of the factors; the first one, the question, has no name of the model."""
-        return ["", *super().factors()]
+        self.combinations = JointCombinations([i.combinations for i in each])
 
     def owners(self) -> tuple[int, ...]:
         """Return, per data input of the model, the number of the factor it belongs to."""
@@ -63,36 +61,19 @@ class Together(Instance):
 
     def of(self, combination: int) -> Instance:
         """Return the question that a combination belongs to."""
-        return self.each[combination // self.size]
-
-    def question(self, combinations: np.ndarray) -> np.ndarray:
-        """Return the numbers of the questions that combinations belong to."""
-        return np.asarray(combinations, dtype=np.int64) // self.size
+        return self.each[self.combinations.question(combination)]
 
     def data(self, combinations: np.ndarray) -> list[Any]:
         """Return the data inputs of the model for combinations given by number."""
-        question, own = np.divmod(np.asarray(combinations, dtype=np.int64), self.size)
-        data = self.each[0].data(own)
-        for k, entry in enumerate(self.model.data_inputs):
-            if self._moves(entry):
-                data[k] = self.moving[entry.name][question]
-        return data
+        every = np.asarray(combinations, dtype=np.int64)
+        question = self.combinations.question(every)
+        requirements = {**self.requirements, **{name: values[question] for name, values in self.moving.items()}}
+        return inputs_of_combination(self.model, requirements, self.row_values, self.combinations, every)
 
     def column(self, position: int) -> np.ndarray:
         """Return data input number ``position`` for every alternative of the factor it belongs to."""
         entry = self.model.data_inputs[position]
         return self.moving[entry.name] if self._moves(entry) else super().column(position)
-
-    def neighbours(self, combination: int | np.ndarray) -> np.ndarray:
-        """Return the combinations of the same question that differ in one part, count or choice."""
-        question, own = np.divmod(np.asarray(combination, dtype=np.int64), self.size)
-        beside: np.ndarray = question[..., None] * self.size + self.each[0].neighbours(own)
-        return beside
-
-    def describe(self, combination: int) -> tuple[Any, dict[str, float], dict[str, str]]:
-        """Return parts, counts and choices of one combination."""
-        question, own = divmod(combination, self.size)
-        return self.each[question].describe(own)
 
     def _moves(self, entry: Any) -> bool:
         return entry.kind == "requirement" and entry.name in self.moving
@@ -147,13 +128,13 @@ class BestOfEach(Archive):
 
     def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
         """Take new designs and keep the best of each question; of equal ones that which was known first."""
-        keep = np.all(phi <= self.plain[self.together.question(combination)] + TIE, axis=1)
+        keep = np.all(phi <= self.plain[self.together.combinations.question(combination)] + TIE, axis=1)
         if combination is self.combination or not keep.any():
             return
         combination = np.concatenate([self.combination, combination[keep]])
         variables = np.concatenate([self.variables, variables[keep]])
         phi = np.concatenate([self.phi, phi[keep]])
-        question = self.together.question(combination)
+        question = self.together.combinations.question(combination)
         order = np.lexsort((phi[:, self.column], question))
         _, first = np.unique(question[order], return_index=True)
         best = order[first]
@@ -161,7 +142,7 @@ class BestOfEach(Archive):
 
     def questions(self) -> np.ndarray:
         """Return the questions of the designs."""
-        return self.together.question(self.combination)
+        return self.together.combinations.question(self.combination)
 
     def best(self) -> np.ndarray:
         """Return phi of the best design of each question, infinite where none is known."""
@@ -273,4 +254,4 @@ def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1
     for k, question in enumerate(questions):
         if len(question.chosen) == objectives:
             groups.setdefault(alike(question), []).append(k)
-    return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations]
+    return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations.count]

@@ -35,7 +35,7 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
         for k in group:
             sizes.setdefault(int(questions[k].settings["points"]), []).append(k)
         # Every level of every question has combinations of its own, which must be numbered.
-        most = LARGEST // (LEVELS * questions[group[0]].instance.combinations)
+        most = LARGEST // (LEVELS * questions[group[0]].instance.combinations.count)
         few = (own for points, own in sizes.items() if 2 <= points <= MOST_POINTS)
         groups += [own for own in few if len(own) > 1 and max(len(own), PLACES) <= most]
     return groups
@@ -101,12 +101,11 @@ class FrontsSearch:
         ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
         found = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
-            numbers = list(ends)
+            numbers, codec = list(ends), first.together.combinations
             level = self._at_levels(numbers, *self._levels(ends))
             for c in level.optima(level.told_apart()):
-                row, own = divmod(c.combination, first.together.size)
-                question = numbers[row // self.between]
-                found[question].append(Candidate(question * first.together.size + own, c.variables, c.phi))
+                question = numbers[codec.question(c.combination) // self.between]
+                found[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
         solves = self._work_counted()
         fronts = [distinct(first.form.as_they_are(own), 2) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
@@ -118,12 +117,12 @@ class FrontsSearch:
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
-        form, size = self.first.form, self.first.together.size
+        form, codec = self.first.form, self.first.together.combinations
         for search, positions in self.others:
             form.contracted += search.form.contracted
             form.nlp_solves += search.form.nlp_solves
-            row, own = np.divmod(np.array(list(search.form.solved_combinations), dtype=np.int64), size)
-            form.solved_combinations.update((positions[row] * size + own).tolist())
+            solved = np.array(list(search.form.solved_combinations), dtype=np.int64)
+            form.solved_combinations.update(codec.joined(positions[codec.question(solved)], codec.own(solved)).tolist())
         return form.nlp_solves
 
     # -- the ends ------------------------------------------------------------------------------
@@ -134,7 +133,8 @@ class FrontsSearch:
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
         """Return the designs that are best in the first and in the second objective, where they differ."""
-        first, second = ({c.combination // self.first.together.size: c for c in own} for own in (best, least))
+        codec = self.first.together.combinations
+        first, second = ({codec.question(c.combination): c for c in own} for own in (best, least))
         pairs = {q: (c, second[q]) for q, c in first.items() if q in second}
         return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2)) == 2}
 
@@ -156,7 +156,7 @@ class FrontsSearch:
         caps = {0: self.first.form.signed(0, levels.ravel())}
         search = self._search(positions, self.wider, sought=1, caps=caps)
         self.others.append((search, positions))
-        search.look.starts = {c.combination % self.first.together.size: c.variables for c in known}
+        search.look.starts = {self.first.together.combinations.own(c.combination): c.variables for c in known}
         return search
 
     def _levels(self, ends: Mapping[int, tuple[Candidate, Candidate]]) -> tuple[np.ndarray, list[Candidate]]:
@@ -170,7 +170,7 @@ class FrontsSearch:
         picture = self._at_levels([numbers[k] for k in places], at, known)
         drawn: dict[int, list[Candidate]] = {}
         for c in picture.glimpse():
-            drawn.setdefault(c.combination // picture.together.size // LEVELS, []).append(c)
+            drawn.setdefault(picture.together.combinations.question(c.combination) // LEVELS, []).append(c)
         shares, good = [], list[Candidate]()
         for row, k in enumerate(places):
             every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2)

@@ -36,6 +36,7 @@ class Lookout:
 
     def __init__(self, together: Together, clock: Clock, rng: np.random.Generator, thorough: bool) -> None:
         self.together, self.clock, self.rng, self.thorough = together, clock, rng, thorough
+        self.codec = together.combinations
         # Where to look first: variables, by the combination that they are of in any question.
         self.starts: dict[int, np.ndarray] = {}
 
@@ -60,13 +61,13 @@ class Lookout:
         questions = np.repeat(np.flatnonzero(purpose.asked), len(combinations))
         own = np.tile(np.arange(len(combinations)), len(questions) // max(len(combinations), 1))
         if len(combinations):
-            self.tried(purpose, questions * self.together.size + combinations[own], points[own])
+            self.tried(purpose, self.codec.joined(questions, combinations[own]), points[own])
 
     def _anywhere(self, purpose: Each) -> None:
         """Try combinations at random, some of each question: where designs are many, one is found soon."""
         questions = np.flatnonzero(purpose.asked)
-        every = questions[np.arange(ANYWHERE) % len(questions)] * self.together.size
-        every = np.unique(every + self.rng.integers(self.together.size, size=ANYWHERE))
+        every = questions[np.arange(ANYWHERE) % len(questions)]
+        every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=ANYWHERE)))
         self.tried(purpose, every, purpose.form.inside(purpose.form.leaves(every), 0.5))
 
     def improve(self, purpose: Each) -> None:
@@ -84,27 +85,27 @@ class Lookout:
 
         ``tried`` are those of earlier rounds. ``as_made``: with the makeable values that they have.
         """
-        questions, size, known = np.flatnonzero(purpose.asked), self.together.size, purpose.known
-        own = known.combination % size
+        questions, known = np.flatnonzero(purpose.asked), purpose.known
+        own = self.codec.own(known.combination)
         made = np.where(purpose.form.gridded & as_made, known.variables, 0.0)
         marks = [(int(c), x.tobytes()) for c, x in zip(own, made, strict=True)]
         first = {mark: k for k, mark in reversed(list(enumerate(marks))) if mark not in tried}
         place = np.array(sorted(first.values())[:MOST_KNOWN], dtype=np.int64)
         tried.update(marks[k] for k in place)
         rows = np.tile(place, len(questions))
-        every = np.repeat(questions, len(place)) * size + own[rows]
+        every = self.codec.joined(np.repeat(questions, len(place)), own[rows])
         return self.tried(purpose, every, known.variables[rows], as_made)
 
     def _beside(self, purpose: Each, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
         # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
-        questions, size = purpose.known.questions() * PLACES // len(self.together.each), self.together.size
-        own = {(int(q), c.combination % size): c for q, c in zip(questions, purpose.known, strict=True)}
+        questions = purpose.known.questions() * PLACES // len(self.together.each)
+        own = {(int(q), self.codec.own(c.combination)): c for q, c in zip(questions, purpose.known, strict=True)}
         parents = [c for place, c in own.items() if place not in expanded]
         expanded.update(own)
         if not parents:
             return 0
-        made = [self.together.neighbours(c.combination) for c in parents]
+        made = [self.codec.neighbours(c.combination) for c in parents]
         rows = np.repeat(np.arange(len(made)), [len(x) for x in made])
         every, start = np.concatenate(made), np.array([c.variables for c in parents])[rows]
         if len(every) > MOST_SOLVED:
@@ -116,9 +117,9 @@ class Lookout:
         """Exchange two parts at a time of the best design of a few questions; return how many designs are of use."""
         known, every, start = purpose.known, [np.empty(0, dtype=np.int64)], [np.empty((0, purpose.form.n))]
         for k in np.unique(np.linspace(0, len(known) - 1, FAR_PLACES).round().astype(int)) if len(known) else ():
-            beside = self.together.neighbours(known.combination[k])
+            beside = self.codec.neighbours(known.combination[k])
             some = self.rng.choice(beside, min(len(beside), MOST_DRAWN // max(len(beside), 1)), replace=False)
-            away = np.unique(self.together.neighbours(some))
+            away = np.unique(self.codec.neighbours(some))
             every.append(self.rng.choice(away, min(len(away), MOST_SOLVED // FAR_PLACES), replace=False))
             start.append(np.tile(known.variables[k], (len(every[-1]), 1)))
         return self.tried(purpose, np.concatenate(every), np.concatenate(start))
@@ -128,7 +129,7 @@ class Lookout:
 
         ``as_made``: makeable values stay what they are to begin with.
         """
-        form, size, k, known = purpose.form, self.together.size, purpose.columns[0], purpose.known
+        form, k, known = purpose.form, purpose.columns[0], purpose.known
         seeker = Seeker(form, purpose, self.rng, False)
         keep = form.not_refused(combinations)
         combinations, start = combinations[keep], start[keep]
@@ -139,14 +140,15 @@ class Lookout:
             return seeker.offer(start, combinations)
         weights = np.zeros((len(combinations), len(form.goals)))
         weights[:, k] = 1.0
-        caps = known.plain[combinations // size]
+        questions = self.codec.question(combinations)
+        caps = known.plain[questions]
         tasks = Tasks(weights, np.zeros_like(weights), caps, form.goal_scales, 0.0)
         found = form.solve_many(tasks, combinations, start, low, high)
         form.learn(tasks, found, np.ones(len(combinations)))
-        better = found.phi[:, k] < purpose.needed()[combinations // size]
+        better = found.phi[:, k] < purpose.needed()[questions]
         good = np.flatnonzero((found.violation <= MISSED) & better)
-        order = good[np.lexsort((found.phi[good, k], combinations[good] // size))]
-        question = combinations[order] // size
+        order = good[np.lexsort((found.phi[good, k], questions[good]))]
+        question = questions[order]
         best = order[np.arange(len(order)) - np.searchsorted(question, question) < ROUNDED_OFF]
         if not len(best):
             return 0
@@ -157,7 +159,7 @@ class Lookout:
         seeker.settle_best(k, range(k + 1))
         if self.thorough and not as_made:
             # What a combination leaves of the grid may lie far from where it is best without one.
-            left = best[found.phi[best, k] < purpose.needed()[combinations[best] // size]]
+            left = best[found.phi[best, k] < purpose.needed()[questions[best]]]
             if len(left):
                 cover(form, form.leaves(combinations[left]), purpose, self.clock, self.rng, SETTLING_EFFORT * len(left))
                 seeker.settle_best(k, range(k + 1))

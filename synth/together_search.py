@@ -17,7 +17,6 @@ from synth.elasticity import elasticities
 from synth.feasibility import Status
 from synth.formulation import TIE, Boxes, Candidate, Formulation, rows_of
 from synth.pareto import rank
-from synth.recall import combination_like
 from synth.resolution import rounded_up, slack
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.search import Question
@@ -227,11 +226,11 @@ class TogetherSearch:
         return found
 
     def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
-        form, together = self.form, self.together
+        form, codec = self.form, self.together.combinations
         form.archive = known = self._none_known()
-        like = [(q, combination_like(together.each[q], design), design) for q, design in wanted]
+        like = [(q, codec.each[q].find(design), design) for q, design in wanted]
         result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
-        rows = [(q, q * together.size + c, design) for q, c, design in like if c is not None]
+        rows = [(q, codec.joined(q, c), design) for q, c, design in like if c is not None]
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
         asked &= self.told_apart()
@@ -283,15 +282,15 @@ class TogetherSearch:
             self.progress({
                 "stage": "search",
                 "done": 0.0,
-                "combinations": self.together.size,
+                "combinations": self.together.combinations.size,
                 "incumbents": len(self.known),
                 "message": f"{open_boxes} boxes open",
             })  # fmt: skip
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
         """Return where to look first, from designs of similar questions."""
-        first = self.together.each[0]
-        like = [combination_like(first, d) for d in designs]
+        first = self.together.each[0].combinations
+        like = [first.find(d) for d in designs]
         return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}
 
     def _points(self, designs: Sequence[Design]) -> np.ndarray:
@@ -319,10 +318,10 @@ class TogetherSearch:
         fronts: list[ParetoFront | None] = [None] * len(together.each)
         found = settle_ties(form, self.pool, chosen, traded) if chosen else []
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
-        solved = np.bincount(together.question(every), minlength=len(together.each))
+        solved = np.bincount(together.combinations.question(every), minlength=len(together.each))
         for number, designs in self._designs(found, traded).items():
             question = self.questions[number]
-            total, own = question.instance.combinations, int(solved[number])
+            total, own = question.instance.combinations.count, int(solved[number])
             statistics = {
                 **offered(question.instance),
                 "excluded_by_bound": total - own,
@@ -369,7 +368,7 @@ class TogetherSearch:
         costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
         combinations, points, _ = rows_of(candidates)
         result = form.evaluate(points.reshape(len(candidates), form.n), combinations)
-        numbers = together.question(combinations).tolist()
+        numbers = together.combinations.question(combinations).tolist()
         frames: list[Frame] = []
         more: list[dict[str, Any]] = []
         for number, group in groupby(range(len(numbers)), key=numbers.__getitem__):
@@ -398,8 +397,8 @@ class TogetherSearch:
         # The objective may be positive in some questions although it is not in all.
         result = []
         for c in designs:
-            question, own = divmod(c.combination, self.together.size)
-            form, number = Formulation(self.together.each[question], self.goals, 1), np.array([own])
+            own = self.together.combinations.own(c.combination)
+            form, number = Formulation(self.together.of(c.combination), self.goals, 1), np.array([own])
             _, phi = form.feasible_rows(c.variables[None, :], number)
             result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
@@ -410,7 +409,7 @@ class TogetherSearch:
         if len(form.goals) < 2 or not chosen:
             return list(chosen)
         following = 1 if sought == 0 else 0
-        questions = self.together.question(np.array([c.combination for c in chosen]))
+        questions = self.together.combinations.question(np.array([c.combination for c in chosen]))
         plain = self.plain.copy()
         plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + TIE
         known = BestOfEach(self.together, following, form.n, len(form.goals), plain)

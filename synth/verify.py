@@ -24,6 +24,7 @@ from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.files import read_bytes
 from synth.front_record import changed
+from synth.inputs import inputs_of_design
 from synth.instance import Instance
 from synth.problem import DesignProblem
 from synth.prooftree import NO_SCALE, Outcome, Point, ProofTree
@@ -33,7 +34,6 @@ from synth.units import format_quantity
 from synth.verification import Verification, percent
 
 if TYPE_CHECKING:
-    from synth.model import DataInput
     from synth.results import Design, ParetoFront
 
 SAME = 1e-9  # relative; numbers that agree so far are the same
@@ -277,21 +277,12 @@ class Check:
                 self.find(f"{label}: {name} {design.choices.get(name)} is not a label that this question may use")
                 return None
         variables = np.array([design.values.get(v.name, math.nan) for v in self.model.variables], dtype=float)
-        data = [self._datum(entry, design, rows) for entry in self.model.data_inputs]
+        slots = {s.slot: s for s in selection.slots}
+        data = inputs_of_design(
+            self.model, self.instance.requirements, self.instance.row_values, design.values, design.choices,
+            lambda entry: float(slots[entry.name].columns[entry.column][rows[entry.name]]),
+        )  # fmt: skip
         return Point(variables, data, rows)
-
-    def _datum(self, entry: DataInput, design: Design, rows: Mapping[str, int]) -> float:
-        instance = self.instance
-        if entry.kind == "requirement":
-            return float(instance.requirements[entry.name])
-        if entry.kind == "row":
-            return float(instance.row_values[str(entry.sx)])
-        if entry.kind == "count":
-            return float(design.values[entry.name])
-        if entry.kind == "choice":
-            return float(self.model.declaration.choices[entry.name].labels.index(design.choices[entry.name]))
-        slot = next(s for s in instance.selection.slots if s.slot == entry.name)
-        return float(slot.columns["|".join(entry.columns)][rows[entry.name]])
 
     def _limits(
         self,
@@ -428,10 +419,10 @@ class Check:
             self.find("complete is claimed without a proof")
         if front.interrupted and proven:
             self.find("the search was stopped, so that it cannot have proven anything")
-        if front.certificate.combinations != self.instance.combinations:
+        if front.certificate.combinations != self.instance.combinations.count:
             self.find(
                 f"the certificate speaks of {front.certificate.combinations} combinations, "
-                f"the question has {self.instance.combinations}"
+                f"the question has {self.instance.combinations.count}"
             )
         if not front.designs and front.status not in (Status.INFEASIBLE, Status.NOT_SOLVED):
             self.find(f"status {front.status.value} without a design")

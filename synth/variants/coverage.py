@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.inputs import inputs_of, part_value
 from synth.instance import Instance, numeric
-from synth.model import Evaluation, Model, part_column_value
+from synth.model import DataInput, Evaluation, Model
 from synth.problem import DesignProblem
 from synth.special import expanded
 from synth.tables import Catalogs
@@ -139,11 +140,16 @@ class _VariantColumns:
             self.rows[slot] = rows
             self.complete &= rows >= 0
             for key, column in part.columns.items():
-                numbers = {c: table.number(c) if table.has(c) else np.full(len(table), np.nan) for c in column.columns}
-                values = part_column_value(column, numbers)
-                self.columns[slot, key] = np.where(rows >= 0, values[rows], np.nan)
+                values = part_value(table, rows, column.columns)
+                self.columns[slot, key] = np.where(rows >= 0, values, np.nan)
                 if column.required:
                     self.complete &= ~np.isnan(self.columns[slot, key])
+
+    def column(self, entry: DataInput) -> FloatArray:
+        """Return what the variants have for an input that belongs to a slot, count or choice."""
+        if entry.columns:
+            return self.columns[entry.name, entry.column]
+        return self.counts[entry.name] if entry.kind == "count" else self.choices[entry.name]
 
     def of(self, model: Model) -> _VariantColumns:
         """Return the columns of the same variants for another model: a question may compare slots by more of them."""
@@ -168,19 +174,11 @@ def _inputs(
     for k, variable in enumerate(model.variables):
         if variable.name in used:
             variables[:, k] = np.repeat([i.lower[k] for i in instances], count)
-    data: list[Any] = []
-    for entry in model.data_inputs:
-        if entry.kind == "requirement":
-            data.append(np.repeat([i.requirements[entry.name] for i in instances], count))
-        elif entry.kind == "row":
-            data.append(np.repeat([i.row_values[str(entry.sx)] for i in instances], count))
-        elif entry.kind == "count":
-            data.append(np.tile(columns.counts[entry.name], questions))
-        elif entry.kind == "choice":
-            data.append(np.tile(columns.choices[entry.name], questions))
-        else:
-            data.append(np.tile(columns.columns[entry.name, "|".join(entry.columns)], questions))
-    return variables, data
+    requirements = {
+        name: np.repeat([i.requirements[name] for i in instances], count) for name in instances[0].requirements
+    }
+    rows = {name: np.repeat([i.row_values[name] for i in instances], count) for name in instances[0].row_values}
+    return variables, inputs_of(model, requirements, rows, lambda entry: np.tile(columns.column(entry), questions))
 
 
 def _serves(

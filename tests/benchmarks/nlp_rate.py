@@ -53,7 +53,7 @@ class Workload:
         outer = rng.uniform(0.15, 0.45, SAMPLES)
         force, ramp = np.exp(rng.uniform(np.log([[4e3], [0.1]]), np.log([[6e4], [4.0]]), (2, SAMPLES)))
         points = np.stack([outer, outer * rng.uniform(0.65, 0.78, SAMPLES), force, ramp], axis=1)
-        combinations = rng.integers(0, instance.combinations, SAMPLES)
+        combinations = rng.integers(0, instance.combinations.count, SAMPLES)
         feasible = np.flatnonzero(model.evaluate(points, instance.data(combinations)).feasible)
         chosen = rng.choice(feasible, count)
         point = points[chosen]

@@ -44,12 +44,12 @@ class Vectorised:
 
     def __init__(self, instance: Instance, objectives: Sequence[str], checkpoints: Sequence[float]) -> None:
         self.instance, self.objectives, self.checkpoints = instance, list(objectives), list(checkpoints)
-        self.discrete = len(instance.radix)
+        self.discrete = len(instance.combinations.radix)
         self._orders = [np.argsort(next(iter(s.columns.values())), kind="stable") for s in instance.selection.slots]
         self.logs = instance.lower > 0
         low, high = (np.where(self.logs, np.log(np.maximum(b, 1e-300)), b) for b in (instance.lower, instance.upper))
         self.low = np.concatenate([np.zeros(self.discrete), low])
-        self.high = np.concatenate([np.array(instance.radix) - 1.0, high])
+        self.high = np.concatenate([np.array(instance.combinations.radix) - 1.0, high])
         self.limits = len(instance.model.limits)
         self.evaluations = 0
         self.snapshots: dict[float, np.ndarray] = {}
@@ -66,7 +66,7 @@ class Vectorised:
         for k, order in enumerate(self._orders):
             digits[:, k] = order[digits[:, k]]
         numbers = np.zeros(len(x), dtype=np.int64)
-        for k, size in enumerate(self.instance.radix):
+        for k, size in enumerate(self.instance.combinations.radix):
             numbers = numbers * size + digits[:, k]
         raw = x[:, self.discrete :]
         variables = np.where(self.logs, np.exp(np.where(self.logs, raw, 0.0)), raw)
@@ -118,7 +118,7 @@ def run(case: Mapping[str, Any]) -> dict[str, Any]:
         pass
     return {
         "evaluations": model.evaluations,
-        "combinations": instance.combinations,
+        "combinations": instance.combinations.count,
         "fronts": [model.snapshots.get(c, np.empty((0, 2))).tolist() for c in case["checkpoints"]],
     }
 
@@ -233,7 +233,7 @@ def ipopt(
     model = instance.model
     n = len(model.variables)
     rng = np.random.default_rng(seed)
-    numbers = rng.integers(instance.combinations, size=sample)
+    numbers = rng.integers(instance.combinations.count, size=sample)
     data = instance.data(numbers)
     low, high = np.log(instance.lower), np.log(instance.upper)
     spread = np.exp(low + (high - low) * rng.random((sample, n)))
@@ -267,7 +267,7 @@ def ipopt(
         seconds.append(time.perf_counter() - begin)
         solved += bool(solver.stats()["success"])
     return {
-        "combinations": instance.combinations,
+        "combinations": instance.combinations.count,
         "build": build,
         "seconds": float(np.mean(seconds)),
         "median": float(np.median(seconds)),

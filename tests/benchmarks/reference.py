@@ -65,7 +65,7 @@ class Enumeration:
     def _positive(self) -> tuple[bool, ...]:
         """Return which limits have positive sides, as far as samples tell."""
         rng = np.random.default_rng(0)
-        numbers = rng.integers(self.instance.combinations, size=SAMPLE)
+        numbers = rng.integers(self.instance.combinations.count, size=SAMPLE)
         result = self._evaluate(numbers, self._between(rng.random((SAMPLE, self.n))))
         return tuple(
             bool(limit_direction(x)) and all(not np.any(side <= 0) for side in result.limits[x.name])
@@ -140,7 +140,7 @@ class Enumeration:
 
     def front(self) -> np.ndarray:
         """Return the best designs for the least of each objective and for each bound on the second."""
-        numbers = np.arange(self.instance.combinations)
+        numbers = np.arange(self.instance.combinations.count)
         light, ends = self._least(numbers, (1.0, SMALL_WEIGHT))
         soft, _ = self._least(numbers, (SMALL_WEIGHT, 1.0))
         # A design found for one objective is known for the other as well.
@@ -283,7 +283,7 @@ def enumerate_all(size: str, grid: bool) -> tuple[np.ndarray, str]:
     enumeration = Enumeration(instance, cases.OBJECTIVES)
     points = enumeration.front()
     how = (
-        f"Every one of {instance.combinations} combinations solved for least mass, for least force and at "
+        f"Every one of {instance.combinations.count} combinations solved for least mass, for least force and at "
         f"{BOUNDS} bounds on the force"
     )
     if grid:

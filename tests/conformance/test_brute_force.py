@@ -47,7 +47,7 @@ class Enumeration:
         self.instance = instance = Instance(
             FAMILY, requirements, as_catalogs(None), parts=SETTINGS["parts"], limits=limits
         )
-        assert 50 <= instance.combinations <= 500
+        assert 50 <= instance.combinations.count <= 500
         outer, inner = instance.grids()[:2]
         least, most = 0.099, 0.251  # a little beyond the range of the ring ratio
         pairs = [(a, b) for a in outer for b in inner if least <= (a - b) / (a + b) <= most]
@@ -56,7 +56,7 @@ class Enumeration:
         which, t_r = (x.ravel() for x in np.meshgrid(np.arange(len(rings)), ladder, indexing="ij"))
         self.found = []
         names = ("mass", "actuation_force", "friction_work", "outer_diameter")
-        for combination in range(instance.combinations):
+        for combination in range(instance.combinations.count):
             data = instance.data(np.array([combination]))
             x = np.stack([*rings[which].T, np.full(len(which), 1e4), t_r], axis=1)
             base = instance.model.evaluate(x, data)

@@ -118,11 +118,11 @@ def enumerate_all(case):
             axes.append(np.asarray(grid))
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     found = []
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         result = instance.evaluate(points, instance.data(np.array([combination])))
         feasible = result.feasible
         found.append(np.stack([np.broadcast_to(result.values[n], len(points))[feasible] for n in QUANTITIES], axis=1))
-    return dict(zip(QUANTITIES, np.concatenate(found).T, strict=True)), len(points) * instance.combinations
+    return dict(zip(QUANTITIES, np.concatenate(found).T, strict=True)), len(points) * instance.combinations.count
 
 
 @pytest.mark.parametrize("case", CASES)

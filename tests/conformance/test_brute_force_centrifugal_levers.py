@@ -56,7 +56,7 @@ def enumerate_all(family):
     ]
     points = np.stack([x.ravel() for x in np.meshgrid(*grids, indexing="ij")], axis=1)
     mass, asked, found = names.index("flyweight_mass"), instance.requirements, []
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         data = instance.data(np.array([combination]))
         unit = instance.model.evaluate(points, data).values
         least = np.maximum(

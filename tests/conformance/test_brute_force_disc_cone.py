@@ -90,7 +90,7 @@ def enumerated(request):
     names, points = dimensions(instance)
     force = names.index("actuation_force")
     found = []
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         data = instance.data(np.array([combination]))
         trial = points.copy()
         trial[:, force] = 1e3

@@ -38,8 +38,8 @@ def enumerated():
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     radius, pole = points[:, names.index("gap_radius")], points[:, names.index("pole_length")]
     found = []
-    for combination in range(instance.combinations):
-        table, row = instance.describe(combination)[0]["powder"]
+    for combination in range(instance.combinations.count):
+        table, row = instance.combinations.describe(combination)[0]["powder"]
         needed = 1.2 * 30 / (4 * math.pi * pole * radius**2) * (1 + 1e-9)
         most, half = (float(table.number(c)[row]) for c in ("tau_sat", "half_flux_density"))
         points[:, names.index("flux_density")] = half / np.sqrt(most / needed - 1)
@@ -125,7 +125,7 @@ def test_no_makeable_magnet_beats_the_front():
     ]
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     found = []
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         result = least_flux_density(instance, points, names.index("flux_density"), combination)
         found.append(np.stack([result.values[n][result.feasible] for n in ("coil_power", "mass")], axis=1))
     values = np.concatenate(found)

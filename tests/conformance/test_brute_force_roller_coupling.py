@@ -60,9 +60,9 @@ def enumerate_all(case):
     grid = np.meshgrid(arms, halves, lengths, rims, indexing="ij")
     arm, half, length, rim = (x.ravel() for x in grid)
     found = []
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         data = instance.data(np.array([combination]))
-        parts_of, _, _ = instance.describe(combination)
+        parts_of, _, _ = instance.combinations.describe(combination)
         table, row = parts_of["roller"]
         diameter = table.number("outer_diameter")[row]
         most = np.minimum(

@@ -127,7 +127,7 @@ def traced(request):
     model = instance.model
     low, high = declared_ranges(model, as_catalogs(None))
     variables = CASES[family].sound(rng, instance, 4 * POINTS)
-    data = instance.data(rng.integers(0, instance.combinations, len(variables)))
+    data = instance.data(rng.integers(0, instance.combinations.count, len(variables)))
     columns = [np.broadcast_to(np.asarray(x, dtype=float), len(variables)) for x in data]
     known = known_design(family, options, optional)
     if known is not None:

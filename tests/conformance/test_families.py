@@ -31,7 +31,7 @@ def traced(request):
     instance = question(family, CASES[family].option_sets[structure], optional=True)
     rng = np.random.default_rng(3)
     variables = CASES[family].sound(rng, instance, POINTS)
-    combinations = rng.integers(0, instance.combinations, POINTS)
+    combinations = rng.integers(0, instance.combinations.count, POINTS)
     data = [np.broadcast_to(np.asarray(x, dtype=float), (POINTS,)) for x in instance.data(combinations)]
     return instance, variables, data
 
@@ -235,7 +235,7 @@ def test_the_search_calls_feasible_what_the_evaluation_does(example):
     # On and near the designs, where some limit is just kept or just missed.
     variables *= np.exp(rng.normal(0, 1e-3, variables.shape) * (rng.random(variables.shape) < 0.2))
     variables = np.clip(variables, instance.lower, instance.upper)
-    combinations = rng.integers(0, instance.combinations, len(variables))
+    combinations = rng.integers(0, instance.combinations.count, len(variables))
     close, edge = form.feasible_rows(variables, combinations)[0], form.edge_rows(variables, combinations)[0]
     assert not set(close) & set(edge)
     rows = np.union1d(close, edge)
@@ -321,7 +321,7 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
     task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), form.goal_scales, t_weight=0.0)
     rng = np.random.default_rng(4)
     reached = []
-    for combination in rng.permutation(instance.combinations)[:12]:
+    for combination in rng.permutation(instance.combinations.count)[:12]:
         box = form.contract(form.whole(int(combination)), None)
         for _ in range(2 * len(box)):
             low, high = box.low[0, : form.n], box.high[0, : form.n]  # a box may carry inner nodes too

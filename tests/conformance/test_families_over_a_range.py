@@ -35,12 +35,12 @@ def designs_of(family, case, instance):
     """Return a few designs at random: not feasible ones, but where the guards hold."""
     rng = np.random.default_rng(0)
     variables = CASES[family].sound(rng, instance, 400)
-    combinations = rng.integers(0, instance.combinations, 400)
+    combinations = rng.integers(0, instance.combinations.count, 400)
     result = instance.model.evaluate(variables, instance.data(combinations))
     guards = [result.holds[x.name] for x in instance.model.limits if x.guard]
     rows = np.flatnonzero(np.logical_and.reduce(guards)) if guards else np.arange(400)
     for k in rows[:POINTS]:
-        parts, counts, choices = instance.describe(int(combinations[k]))
+        parts, counts, choices = instance.combinations.describe(int(combinations[k]))
         sizes = {
             v.name: format_quantity(float(x), v.unit, None)
             for v, x in zip(instance.model.variables, variables[k], strict=True)

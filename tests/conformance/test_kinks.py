@@ -56,7 +56,7 @@ class Question:
         instance = Instance(
             problem, case.requirements, as_catalogs(None), parts=pinned.parts, fix=pinned.fix, grid=False
         )
-        assert instance.combinations == 1
+        assert instance.combinations.count == 1
         model = instance.model
         asked = chosen_objectives(model, case.settings.get("objectives")) | chosen_objectives(model, None)
         names = model.declaration.objectives

@@ -47,8 +47,8 @@ def test_limits_are_kept_closely_wherever_something_can_move(front):
 
 def combination_of(instance, design):
     """Return the number of the combination that a design is made of."""
-    for number in range(instance.combinations):
-        parts, counts, choices = instance.describe(number)
+    for number in range(instance.combinations.count):
+        parts, counts, choices = instance.combinations.describe(number)
         same = all(table.designations[row] == str(design.parts[slot]) for slot, (table, row) in parts.items())
         same = same and all(design.values[name] == value for name, value in counts.items())
         if same and all(design.choices[name] == label for name, label in choices.items()):
@@ -80,7 +80,7 @@ def test_no_design_is_dominated_by_another_combination_that_keeps_the_limits_clo
     for own, x, target in zip(made, points, phi, strict=True):
         # The design itself loses nothing where it keeps the limits closely.
         assert reached(form, own, x, target) == pytest.approx(0.0, abs=SURE)
-        beside = instance.neighbours(own)
+        beside = instance.combinations.neighbours(own)
         rivals = [(c, y) for c, y in zip(made, points, strict=True) if c != own]
         rivals = [rivals[k] for k in rng.permutation(len(rivals))[:OTHERS]]
         rivals += [(int(c), x) for c in rng.permutation(beside[form.not_refused(beside)])[:OTHERS]]

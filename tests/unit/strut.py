@@ -60,6 +60,6 @@ def designs_of(form, rng, count):
     """Return random feasible makeable designs of random combinations, and phi."""
     share = rng.random((count, form.n))
     points = form.makeable(form.lower + share * (form.upper - form.lower))
-    combinations = rng.integers(form.instance.combinations, size=count)
+    combinations = rng.integers(form.instance.combinations.count, size=count)
     rows, phi = form.feasible_rows(points, combinations)
     return points[rows], combinations[rows], phi[rows]

@@ -453,7 +453,7 @@ class Clutch:
         outer = rng.uniform(0.15, 0.45, count)
         force, ramp = np.exp(rng.uniform(np.log([[4e3], [0.1]]), np.log([[6e4], [4.0]]), (2, count)))
         point = np.stack([outer, outer * rng.uniform(0.65, 0.78, count), force, ramp], axis=1)
-        return rng.integers(0, self.instance.combinations, count), point
+        return rng.integers(0, self.instance.combinations.count, count), point
 
     def solve(self, code: Code, workers: int = 1) -> Solutions:
         solver = BatchNlp(self.model.program, self.n, self.rows, code)

@@ -140,7 +140,7 @@ def test_members_are_the_combinations_of_the_rows(cells):
 
 def test_numbers_and_leaves_go_round(cells):
     digits = [np.repeat(np.arange(5), 12), np.tile(np.repeat(np.arange(3), 4), 5), np.tile(np.arange(4), 15)]
-    numbers = cells.number(digits, 60)
+    numbers = cells.numbers.composed(digits, 60)
     np.testing.assert_array_equal(numbers, np.arange(60))
     for k in range(60):
         leaf = cells.leaf_of([int(d[k]) for d in digits])

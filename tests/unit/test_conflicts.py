@@ -64,7 +64,7 @@ def test_no_design_that_chance_finds_is_nearer() -> None:
     missed, _ = nearest("900 kN*m")
     question = pose(load("multi_plate_clutch"), {**DUTY, "load_torque": "900 kN*m"}, **FEW)
     form, rng = Formulation(question.instance, dict(question.chosen), 2), np.random.default_rng(5)
-    combinations = rng.integers(question.instance.combinations, size=200)
+    combinations = rng.integers(question.instance.combinations.count, size=200)
     points = form.lower + rng.random((200, form.n)) * (form.upper - form.lower)
     result = form.evaluate(points, combinations)
     capacity, needed = (np.asarray(x, dtype=float) for x in result.limits["torque_capacity"])

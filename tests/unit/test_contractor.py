@@ -385,7 +385,7 @@ def around(form, rng, points, combinations, scale):
     low = np.maximum(points - scale * rng.exponential(1.0, points.shape) * (form.upper - form.lower), form.lower)
     high = np.minimum(points + scale * rng.exponential(1.0, points.shape) * (form.upper - form.lower), form.upper)
     boxes = form.leaves(combinations, low, high)
-    digits = form.instance.digits(combinations)
+    digits = form.instance.combinations.digits(combinations)
     cell = [clusters_of(rng, t, d) for t, d in zip(form.cells.trees, digits, strict=True)]
     return replace(boxes, cell=np.stack(cell, axis=1).astype(np.int32), tag=np.arange(len(points), dtype=np.int32))
 
@@ -414,7 +414,7 @@ def test_boxes_of_clusters_around_designs_of_a_small_problem_survive(grid, passe
 def test_halves_of_boxes_hold_what_the_box_held():
     form, rng = strut_form(), np.random.default_rng(1)
     points, combinations, _ = designs_of(form, rng, 1000)
-    digits = form.instance.digits(combinations)
+    digits = form.instance.combinations.digits(combinations)
     boxes = form.root()
     for _ in range(12):
         halves, rest = form.split(boxes)
@@ -486,7 +486,7 @@ class Family:
         found_x, found_c = [], []
         for _ in range(12):
             n = 40000
-            combinations = rng.integers(0, self.instance.combinations, n)
+            combinations = rng.integers(0, self.instance.combinations.count, n)
             data = self.instance.data(combinations)
             outer = rng.uniform(0.1, 0.5, n)
             ratio = rng.uniform(0.1, 0.25, n)

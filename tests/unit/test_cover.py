@@ -190,7 +190,7 @@ def form():
 def sampled(form, rng, count=20000):
     share = rng.random((count, form.n))
     points = form.makeable(form.lower + share * (form.upper - form.lower))
-    return form.feasible_points(points, rng.integers(form.instance.combinations, size=count))
+    return form.feasible_points(points, rng.integers(form.instance.combinations.count, size=count))
 
 
 def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):

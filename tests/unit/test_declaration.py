@@ -355,7 +355,7 @@ def test_one_use_that_needs_a_column_makes_it_required():
         d.objective("length")
 
     instance = Instance(problem(declare)(), {}, CATALOGS)
-    assert instance.combinations == 2
+    assert instance.combinations.count == 2
     assert instance.selection.left_out == [
         {"slot": "rod", "designation": "odd", "reason": "no value in column stress_allow"}
     ]

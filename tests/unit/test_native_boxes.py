@@ -424,10 +424,10 @@ def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
 def test_the_question_alone_decides_what_is_compiled(monkeypatch):
     small, large = formulation({}).propagation, formulation({}).propagation
     many = propagation.COMPILE_AFTER
-    monkeypatch.setattr(propagation, "COMPILED_FROM", small.instance.combinations + 1)
+    monkeypatch.setattr(propagation, "COMPILED_FROM", small.instance.combinations.count + 1)
     assert [small._to_compile(False, True, boxes) for boxes in (10, many - 10, 1)] == [False, False, True]
     assert not small._to_compile(True, True, 1)  # each pattern counts for itself
-    monkeypatch.setattr(propagation, "COMPILED_FROM", large.instance.combinations)
+    monkeypatch.setattr(propagation, "COMPILED_FROM", large.instance.combinations.count)
     assert large._to_compile(False, True, 1)
     assert not large._to_compile(False, False, 1)  # without caps only the first box is contracted
 

@@ -102,7 +102,7 @@ def test_generations_are_about_those_of_single_steps(kind, grid):
 def lost(boxes, points, combinations, form):
     """Tell which designs no box holds."""
     held = np.zeros(len(points), dtype=bool)
-    digits = form.instance.digits(combinations)
+    digits = form.instance.combinations.digits(combinations)
     for k in range(len(boxes)):
         low, high = boxes.low[k, : form.n] - 1e-9, boxes.high[k, : form.n] + 1e-9
         inside = np.all((points >= low) & (points <= high), axis=1)

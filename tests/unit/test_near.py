@@ -152,7 +152,7 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
     instance = front.question
     rings = np.array([(o, i) for o in range(290, 361) for i in range(150, o) if 0.0999 <= (o - i) / (o + i) <= 0.2501])
     members = set()
-    for combination in range(instance.combinations):
+    for combination in range(instance.combinations.count):
         data = instance.data(np.array([combination]))
         points = np.column_stack([rings / 1e3, np.full(len(rings), 1e3), np.full(len(rings), 2.0)])
         # Torque grows with the force in proportion, so the least force is known; time and heat may ask for more.
@@ -163,7 +163,7 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
             if np.any(result.feasible & near_by):
                 members.add(combination)
                 break
-    assert 3 < len(members) < instance.combinations
+    assert 3 < len(members) < instance.combinations.count
     assert found.found == len(members) - 1
 
 

@@ -176,7 +176,7 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
     assert len(rows) == len(archive)
     np.testing.assert_array_equal(phi, archive.phi)
     for f, tree in enumerate(form.cells.trees):
-        assert np.isin(instance.digits(archive.combination)[f], tree.rows(int(left.cell[0, f]))).all()
+        assert np.isin(instance.combinations.digits(archive.combination)[f], tree.rows(int(left.cell[0, f]))).all()
     assert len(form.archive)
 
 

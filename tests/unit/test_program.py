@@ -61,7 +61,7 @@ class Traced:
         outer = rng.uniform(0.12, 0.5, third)
         self.variables[:third, 0], self.variables[:third, 1] = outer, outer * rng.uniform(0.6, 0.8, third)
         self.variables[:third, 2] = rng.uniform(5e3, 5e4, third)
-        self.combinations = rng.integers(0, self.instance.combinations, points)
+        self.combinations = rng.integers(0, self.instance.combinations.count, points)
         data = self.instance.data(self.combinations)
         self.data = [np.broadcast_to(np.asarray(x, dtype=float), (points,)) for x in data]
         self.inputs = [*self.variables.T, *self.data]

@@ -130,7 +130,7 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed, monkeypatch):
     rng = np.random.default_rng(seed)
     x = instance.lower + (instance.upper - instance.lower) * rng.random((3000, 3))
     x[:, 2] = rng.choice(instance.grids()[2], len(x))
-    data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations, len(x)))
+    data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations.count, len(x)))
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
     good = np.flatnonzero(feasible & np.isfinite(signed).all(axis=1))
@@ -149,7 +149,7 @@ def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
     known = known_design(family, "default", optional=False)
     if known is None:
         x = case.sound(rng, instance, 20000)
-        data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations, len(x)))
+        data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations.count, len(x)))
     else:  # around a design whose parts fit each other
         x = np.clip(
             known[0][:1] * np.exp(rng.normal(0, 0.02, (4000, instance.lower.size))), instance.lower, instance.upper
@@ -352,8 +352,8 @@ class Beyond(synth.DesignProblem):
 def test_single_designs_are_settled_by_their_evaluation_also_where_formulas_do_not_exist(seed):
     instance, tree = tree_of(Beyond(seed), {"cost": "min"}, catalogs={"things": THINGS})
     makeable = np.stack([m.ravel() for m in np.meshgrid(*instance.grids(), indexing="ij")], axis=1)
-    x = np.tile(makeable, (instance.combinations, 1))
-    _, values, feasible = sample(instance, x, np.repeat(np.arange(instance.combinations), len(makeable)))
+    x = np.tile(makeable, (instance.combinations.count, 1))
+    _, values, feasible = sample(instance, x, np.repeat(np.arange(instance.combinations.count), len(makeable)))
     cost = np.where(feasible, values["cost"], np.inf)
     best = np.min(cost)
     room = 1e-9 * max(abs(best), 1.0)

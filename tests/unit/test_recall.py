@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.recall import combination_like, recall
+from synth.recall import recall
 from synth.results import Design
 from synth.search import Question, pose
 from tests.unit.strut import NEEDED, RODS, Strut
@@ -28,9 +28,9 @@ def designs() -> list[Design]:
 def test_a_combination_is_found_by_its_parts_counts_and_choices(designs: list[Design]) -> None:
     instance = question("30 kN").instance
     for design in designs:
-        number = combination_like(instance, design)
+        number = instance.combinations.find(design)
         assert number is not None
-        parts, counts, choices = instance.describe(number)
+        parts, counts, choices = instance.combinations.describe(number)
         assert {s: table.designations[row] for s, (table, row) in parts.items()} == {
             s: str(row) for s, row in design.parts.items()
         }
@@ -45,7 +45,7 @@ def test_a_combination_is_found_by_its_parts_counts_and_choices(designs: list[De
 )
 def test_what_is_not_offered_here_is_no_idea(designs: list[Design], more: dict[str, object]) -> None:
     instance = question(**{"parts": {}, **more}).instance
-    gone = [d for d in designs if combination_like(instance, d) is None]
+    gone = [d for d in designs if instance.combinations.find(d) is None]
     assert gone
     form = question(**{"parts": {}, **more}).search().form
     assert not recall(form, question().search().purpose, gone, np.random.default_rng(0))
@@ -65,7 +65,7 @@ def test_ideas_are_solved_again_for_the_new_question(designs: list[Design]) -> N
     assert result.feasible.all()
     assert not search.form.evaluate(
         np.array([[d.values["width"], d.values["length"]] for d in designs]),
-        np.array([combination_like(heavier.instance, d) for d in designs]),
+        np.array([heavier.instance.combinations.find(d) for d in designs]),
     ).feasible.all()
 
 

@@ -41,7 +41,7 @@ def first_design(form, combination, rng):
 @pytest.mark.parametrize("grid", [False, True])
 def test_exchanging_parts_finds_what_solving_everything_finds(grid):
     form, rng = strut_form(1, grid), np.random.default_rng(3)
-    everything = np.arange(form.instance.combinations)
+    everything = np.arange(form.instance.combinations.count)
     points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
     own = rng.choice(everything, len(points))
     rows, phi = form.feasible_rows(form.makeable(points), own)
@@ -55,7 +55,7 @@ def test_exchanging_parts_finds_what_solving_everything_finds(grid):
 def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
     form, rng = strut_form(), np.random.default_rng(4)
     points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
-    own = rng.choice(form.instance.combinations, len(points))
+    own = rng.choice(form.instance.combinations.count, len(points))
     rows, phi = form.feasible_rows(points, own)
     first_design(form, int(own[rows[0]]), rng)
     seeker(form).beside(Clock())

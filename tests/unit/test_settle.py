@@ -80,7 +80,7 @@ def some_designs(form, count):
     rng = np.random.default_rng(7)
     low, high = form.lower, form.upper
     points = form.makeable(low + (high - low) * rng.random((20 * count, form.n)))
-    found = form.feasible_points(points, rng.integers(0, form.instance.combinations, len(points)))
+    found = form.feasible_points(points, rng.integers(0, form.instance.combinations.count, len(points)))
     assert len(found) >= count
     return found[:count]
 
@@ -106,7 +106,7 @@ def settled_alone(form, own, traded, order, parts):
             trials[:, k] = grid
             own = step(form, own, trials, np.full(len(grid), own.combination), traded, order)
         if parts:
-            others = form.instance.neighbours(own.combination)
+            others = form.instance.combinations.neighbours(own.combination)
             own = step(form, own, np.tile(own.variables, (len(others), 1)), others, traded, order)
         if own is before:
             break
@@ -139,7 +139,7 @@ def test_no_designs_settle_to_none():
 def test_what_is_feasible_and_as_good_is_promising(which):
     form = FORMS[which]
     rng = np.random.default_rng(3)
-    combinations = rng.integers(0, form.instance.combinations, (40, 1))
+    combinations = rng.integers(0, form.instance.combinations.count, (40, 1))
     points = form.lower + (form.upper - form.lower) * rng.random((40, form.n))
     caps = np.array([c.phi[:2] for c in some_designs(form, 40)])
     grid = np.linspace(form.lower[0], form.upper[0], 50)

@@ -86,10 +86,10 @@ CONDITIONS = {
 def offered(instance):
     """Return the pairs of rows that combinations offer and no refusal forbids."""
     form = Formulation(instance, {"cost": "min", "weight": "min"}, 2)
-    every = np.arange(instance.combinations)
+    every = np.arange(instance.combinations.count)
     found = set()
     for k in every[form.not_refused(every)]:
-        parts, _, _ = instance.describe(int(k))
+        parts, _, _ = instance.combinations.describe(int(k))
         found.add(tuple(table.designations[row] for table, row in parts.values()))
     return found
 
@@ -100,7 +100,7 @@ def test_the_combinations_left_are_those_of_a_plain_loop(text):
     allowed = pairs(CONDITIONS[text])
     assert offered(instance) == set(allowed)
     (told,) = instance.combinations_left_out
-    assert told == f"one: {text}: {instance.combinations - 3 * len(allowed)} of {instance.combinations}"
+    assert told == f"one: {text}: {instance.combinations.count - 3 * len(allowed)} of {instance.combinations.count}"
     for slot, rows in zip(instance.selection.slots, zip(*allowed, strict=True), strict=True):
         assert {slot.table.designations[k] for k in slot.rows} == set(rows)  # none without a partner
 

@@ -560,18 +560,20 @@ def together() -> Together:
 @given(st.lists(st.integers(0, 6 * 24 - 1), min_size=1, max_size=9))
 @settings(deadline=None, derandomize=True, max_examples=40)
 def test_combinations_mean_what_they_mean_in_their_question(together: Together, numbers: list[int]) -> None:
-    assert together.combinations == 144
+    assert together.combinations.count == 144
     combinations = np.array(numbers, dtype=np.int64)
-    data, digits = together.data(combinations), together.digits(combinations)
+    data, digits = together.data(combinations), together.combinations.digits(combinations)
     owners = together.owners()
-    assert together.factors() == ["", "rope", "strands", "end"]
+    assert together.combinations.names == ["", "rope", "strands", "end"]
     for row, number in enumerate(numbers):
         question, own = divmod(number, 24)
         alone = together.each[question]
         assert together.of(number) is alone
-        assert together.question(combinations)[row] == question
-        assert together.describe(number) == alone.describe(own)
-        assert [int(d[row]) for d in digits] == [question, *(int(d[0]) for d in alone.digits(np.array([own])))]
+        assert together.combinations.question(combinations)[row] == question
+        assert together.combinations.describe(number) == alone.combinations.describe(own)
+        its = alone.combinations.digits(np.array([own]))
+        assert [int(d[row]) for d in digits] == [question, *(int(d[0]) for d in its)]
+        assert together.combinations.joined(question, own) == number
         for k, value in enumerate(alone.data(np.array([own]))):
             here = float(np.broadcast_to(data[k], combinations.shape)[row])
             assert here == float(np.ravel(value)[0])
@@ -580,8 +582,8 @@ def test_combinations_mean_what_they_mean_in_their_question(together: Together, 
             else:
                 # The question fixes it, and all questions alike.
                 assert all(float(np.ravel(i.data(np.array([own]))[k])[0]) == here for i in together.each)
-        beside = set(together.neighbours(number).tolist())
-        assert beside == {question * 24 + int(n) for n in alone.neighbours(own)}
+        beside = set(together.combinations.neighbours(number).tolist())
+        assert beside == {question * 24 + int(n) for n in alone.combinations.neighbours(own)}
         assert len(beside) == 3 + 2 + 1
 
 
@@ -682,7 +684,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
     plain = np.where(rng.random((count, goals)) < 0.2, 0.5, np.inf)
     known = BestOfEach(search.together, 0, form.n, goals, plain)
-    chosen = rng.integers(0, search.together.combinations, 5)
+    chosen = rng.integers(0, search.together.combinations.count, 5)
     known.add(chosen, np.zeros((5, form.n)), np.round(rng.random((5, goals)), 1))
     wanted = rng.random(count) < 0.7
     slack = 0.1
@@ -727,11 +729,11 @@ def test_open_boxes_leave_their_questions_open(seed: int) -> None:
     tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
     known = BestOfEach(search.together, 0, form.n, goals)
     phi = np.round(rng.normal(size=(4, goals)), 1)
-    known.add(rng.integers(0, search.together.combinations, 4), np.zeros((4, form.n)), phi)
+    known.add(rng.integers(0, search.together.combinations.count, 4), np.zeros((4, form.n)), phi)
     wanted = rng.random(count) < 0.7
     purpose = Each(form, known, lambda own: np.full(len(own), 0.05), wanted)
     needed = purpose.needed()
-    boxes = form.leaves(rng.integers(0, search.together.combinations, 6))
+    boxes = form.leaves(rng.integers(0, search.together.combinations.count, 6))
     clusters = rng.integers(0, len(tree), 6).astype(np.int32)
     boxes.cell[:, 0] = clusters
     lower = np.round(rng.normal(size=6), 1)

@@ -65,7 +65,7 @@ def check_front(question: Question, front: ParetoFront) -> None:
     assert (front.status, front.complete, front.certificate.kind) == (Status.OPTIMAL, False, "global")
     assert front.certificate.gap == question.settings["gap"]
     certificate, statistics = front.certificate, front.statistics
-    assert certificate.combinations == question.instance.combinations
+    assert certificate.combinations == question.instance.combinations.count
     assert certificate.excluded_by_bound + certificate.solved == certificate.combinations
     assert statistics["nlp_solves_to_find"] <= statistics["nlp_solves"]
     assert [d.rank for d in front.designs] == list(range(1, points + 1))
@@ -201,7 +201,7 @@ def test_few_designs_of_two_objectives_are_searched_together() -> None:
 
 def test_there_are_numbers_for_every_level_of_every_question(monkeypatch: pytest.MonkeyPatch) -> None:
     questions = struts(3, 10, 20)
-    numbers = together_fronts.PLACES * together_fronts.LEVELS * questions[0].instance.combinations
+    numbers = together_fronts.PLACES * together_fronts.LEVELS * questions[0].instance.combinations.count
     monkeypatch.setattr(together_fronts, "LARGEST", numbers)
     assert joint_groups(questions) == [[0, 1]]
     monkeypatch.setattr(together_fronts, "LARGEST", numbers - 1)

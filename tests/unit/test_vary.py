@@ -271,12 +271,12 @@ def test_a_limit_leaves_those_that_point_another_way(limits: Any, vary: str, kep
 def test_the_best_of_one_objective_among_given_parts() -> None:
     study = steps({"load": "5, 15 kN"}, weights={"cost": 2}, parts={"rope": ["rope a", "rope b"]})
     question = study.one_best((15.0,), {"cost": "min"}, 1e-5, {"rope": ["rope c"]}, {"strands": 2.0, "end": "clamp"})
-    assert question.instance.combinations == 1
+    assert question.instance.combinations.count == 1
     assert question.settings["gap"] == 1e-5
     assert dict(question.chosen) == {"cost": "min"}
     (design,) = question.answer().designs
     assert design.values["cost"] == pytest.approx(35 * 2 * 1.5 + 0.5 * 15, rel=1e-4)
-    assert study.one_best((15.0,), {"cost": "min"}, 1e-5, {}, {}).instance.combinations == 2 * 3 * 2
+    assert study.one_best((15.0,), {"cost": "min"}, 1e-5, {}, {}).instance.combinations.count == 2 * 3 * 2
 
 
 def test_a_fault_of_all_steps_is_no_matter_of_the_values() -> None:

@@ -32,6 +32,7 @@ def test_nothing_is_shared_with_the_search():
         "errors",
         "feasibility",
         "instance",
+        "inputs",  # where a number of the question stands; the proof tree reads it in its own way
         "problem",
         "program",
         "special",
