@@ -14,15 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.clock import Clock
-from synth.cover import BATCH, Covered, further
+from synth.cover import Covered, further
 from synth.effort import SearchEffort
 from synth.formulation import Boxes, Formulation
 from synth.purposes import Purpose, Tabled, reaches_beyond
 from synth.seeker import Seeker
-
-STEPS_PER_DOUBLING = 2  # levels of room
-MOST_LEVELS = 64
-MOST_BATCHES = 64  # of a level, before they are joined
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,9 +66,9 @@ class OpenBoxes:
     """
 
     def __init__(self, form: Formulation, purpose: Purpose, most: int) -> None:
-        self.form, self.purpose, self.most = form, purpose, most
-        self.levels: list[list[Boxes]] = [[] for _ in range(MOST_LEVELS)]
-        self.counts = np.zeros(MOST_LEVELS, dtype=np.int64)
+        self.form, self.purpose, self.most, self.tree = form, purpose, most, form.tuning.tree
+        self.levels: list[list[Boxes]] = [[] for _ in range(self.tree.levels)]
+        self.counts = np.zeros(self.tree.levels, dtype=np.int64)
 
     def __len__(self) -> int:
         return int(self.counts.sum())
@@ -84,14 +80,16 @@ class OpenBoxes:
         boxes, room = boxes.take(useful), room[useful]
         with np.errstate(all="ignore"):
             doublings = np.log2(room / float(self.purpose.slack.min()))
-        highest = MOST_LEVELS - 1
-        level = np.clip(np.nan_to_num(STEPS_PER_DOUBLING * doublings, nan=highest, posinf=highest), 0, highest)
+        highest = self.tree.levels - 1
+        level = np.clip(
+            np.nan_to_num(self.tree.levels_per_doubling * doublings, nan=highest, posinf=highest), 0, highest
+        )
         level = np.ceil(level).astype(int)
         for k in np.unique(level).tolist():
             own = boxes.take(level == k)
             self.levels[k].append(own)
             self.counts[k] += len(own)
-            if len(self.levels[k]) > MOST_BATCHES:
+            if len(self.levels[k]) > self.tree.level_batches:
                 self.levels[k] = [Boxes.joined(self.levels[k])]
 
     def next(self) -> Boxes:
@@ -100,10 +98,10 @@ class OpenBoxes:
         taken, count = list[Boxes](), 0
         for k in (filled if len(self) > self.most else filled[::-1]).tolist():
             level = self.levels[k]
-            while level and count < BATCH:
+            while level and count < self.tree.batch:
                 own = level.pop()
-                if count + len(own) > BATCH:
-                    left = count + len(own) - BATCH
+                if count + len(own) > self.tree.batch:
+                    left = count + len(own) - self.tree.batch
                     level.append(own.take(slice(0, left)))
                     own = own.take(slice(left, None))
                 taken.append(own)

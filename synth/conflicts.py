@@ -11,32 +11,26 @@ from synth.batch_nlp import Tasks
 from synth.formulation import Formulation
 from synth.units import format_quantity
 
-TRIES = 400
-ROUNDS = 4  # of exchanging one part of the nearest designs
-PARENTS = 3
-STARTS = 16
-NEVER = 10.0  # more than any limit can be missed by: twice the larger side
-
 
 def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
     """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
     """
-    instance = form.instance
+    instance, limits = form.instance, form.tuning.heuristics.conflicts
     total = instance.combinations.count
-    numbers = rng.choice(total, size=TRIES, replace=False) if total > TRIES else np.arange(total)
+    numbers = rng.choice(total, size=limits.tries, replace=False) if total > limits.tries else np.arange(total)
     tried = np.empty(0, dtype=np.int64)
     found: list[tuple[float, int, np.ndarray]] = []
-    for _ in range(ROUNDS):
+    for _ in range(limits.rounds):
         numbers = np.setdiff1d(numbers, tried)
         if not len(numbers):
             break
         tried = np.concatenate([tried, numbers])
-        found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[:PARENTS]
+        found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[: limits.parents]
         near = [instance.combinations.neighbours(combination) for _, combination, _ in found]
         numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
-        numbers = numbers if len(numbers) <= TRIES else rng.choice(numbers, size=TRIES, replace=False)
+        numbers = numbers if len(numbers) <= limits.tries else rng.choice(numbers, size=limits.tries, replace=False)
     if not found:
         return {"message": "no design could be evaluated; check the requirements for values far from each other"}
     _, combination, variables = found[0]
@@ -51,7 +45,8 @@ def _least_missed(
     Limits that cannot all hold have many places where none of them gives way a little without another: combinations
     that are few are tried from several starts.
     """
-    number = np.repeat(np.arange(len(combinations)), np.clip(TRIES // len(combinations), 1, STARTS))
+    limits = form.tuning.heuristics.conflicts
+    number = np.repeat(np.arange(len(combinations)), np.clip(limits.tries // len(combinations), 1, limits.starts))
     every, goals = combinations[number], len(form.goals)
     nothing = np.zeros((len(every), goals))
     tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.goal_scales, elastic=1.0)
@@ -69,9 +64,9 @@ def _least_missed(
 def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
     """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
     result = form.evaluate(variables, combinations)
-    rows = []
+    rows, never = [], form.tuning.heuristics.conflicts.never
     for limit in form.constraints:
-        missed = np.nan_to_num(result.residuals[limit.name], nan=NEVER) + (NEVER if limit.guard else 0.0)
+        missed = np.nan_to_num(result.residuals[limit.name], nan=never) + (never if limit.guard else 0.0)
         rows.append(np.where(result.holds[limit.name], 0.0, missed))
     worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
     return worst

@@ -13,14 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.clock import Clock
-from synth.formulation import Archive, Boxes, Candidate, Formulation, Subtrees
+from synth.formulation import Boxes, Candidate, Formulation, Subtrees
 from synth.purposes import Cover, Purpose, Tabled, reaches_beyond
 from synth.seeker import Seeker
-
-BATCH = 8192
-GENERATION = 8 * BATCH
-FEW = 1024
-LEVELS = 3  # generations that are taken at once
 
 
 @dataclass(frozen=True)
@@ -70,7 +65,7 @@ def cover(
     -------
     Covered
     """
-    every = reaches_beyond(purpose, form.bounded)
+    tree, every = form.tuning.tree, reaches_beyond(purpose, form.bounded)
     form.focus()
     seeker, looked = Seeker(form, purpose, rng, every), 0
     boxes = boxes if every else form.lean(boxes)
@@ -78,13 +73,13 @@ def cover(
     queue, fresh, stuck = nothing, [boxes], nothing
     while (len(queue) or fresh) and looked <= effort:
         if not len(queue):
-            queue = _most_open(form, _latest(fresh), purpose)
+            queue = _most_open(form, _latest(fresh, tree.generation), purpose)
             if not len(queue):
                 continue
         clock.check([queue, *fresh, stuck])
         if enough is not None and len(form.archive) > enough:
             return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
-        batch, queue = queue.take(slice(0, BATCH)), queue.take(slice(BATCH, None))
+        batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
         children, small, seen = further(form, batch, purpose, seeker, every, effort - looked)
         looked += seen
         if len(small):
@@ -123,7 +118,7 @@ def further(
         return none, none, looked
     seeker.look(batch)
     stuck = []
-    for _ in range(2 if len(batch) < FEW else 1):
+    for _ in range(2 if len(batch) < form.tuning.tree.small_batch else 1):
         # A small batch costs as much as a larger one, so that it is split twice at once.
         batch, small = form.split(batch)
         if len(small):
@@ -139,10 +134,11 @@ def further(
 
 def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:
     """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
-    if not len(boxes) or not seeker.content or len(boxes) << LEVELS > effort:
+    levels = form.tuning.tree.generations
+    if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
         return None
     tables = purpose.tables(form)
-    return None if tables is None else form.grow(boxes, tables, LEVELS)
+    return None if tables is None else form.grow(boxes, tables, levels)
 
 
 def best(
@@ -160,7 +156,7 @@ def best(
 
     Designs of the archive of the formulation, and ``start``, are known already.
     """
-    purpose = Cover([column], np.array([slack]), plain, Archive([column], form.n, len(form.goals)))
+    purpose = Cover([column], np.array([slack]), plain, form.new_archive([column]))
     if len(form.archive):
         purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
@@ -169,16 +165,16 @@ def best(
     return (purpose.known[0] if len(purpose.known) else None), found
 
 
-def _latest(fresh: list[Boxes]) -> Boxes:
+def _latest(fresh: list[Boxes], generation: int) -> Boxes:
     """Take the next generation off the end of a list: the boxes that were split last, so that few wait at a time."""
     taken: list[Boxes] = []
     count = 0
-    while fresh and count < GENERATION:
+    while fresh and count < generation:
         taken.append(fresh.pop())
         count += len(taken[-1])
-    if count > GENERATION:
-        fresh.append(taken[-1].take(slice(0, count - GENERATION)))
-        taken[-1] = taken[-1].take(slice(count - GENERATION, None))
+    if count > generation:
+        fresh.append(taken[-1].take(slice(0, count - generation)))
+        taken[-1] = taken[-1].take(slice(count - generation, None))
     return Boxes.joined(taken[::-1])
 
 
@@ -190,5 +186,5 @@ def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> Boxes:
     # While no design is known, all room is infinite; then low bounds promise most.
     low = lower[:, purpose.columns].mean(axis=1)
     key = np.where(np.isfinite(space), -space, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
-    order = keep[np.argsort(key, kind="stable")] if len(keep) > BATCH else keep
+    order = keep[np.argsort(key, kind="stable")] if len(keep) > form.tuning.tree.batch else keep
     return waiting.take(order)

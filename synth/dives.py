@@ -13,15 +13,8 @@ import numpy as np
 from synth.batch_nlp import MISSED, Tasks
 from synth.clock import Clock
 from synth.cover import cover
-from synth.formulation import Archive, Formulation
+from synth.formulation import Formulation
 from synth.purposes import Cover
-
-MOST_DIVES = 40
-PATIENCE = 2  # dives without success, per objective
-SOLVED = 4096  # continuous problems of a dive
-PROMISING = 12  # combinations of a dive
-EFFORT = 30_000  # boxes of a dive
-TIE_WEIGHT = 1e-6
 
 
 def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator) -> None:
@@ -40,19 +33,19 @@ def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Cl
     clock : Clock
     rng : Generator
     """
-    failures = 0
-    for turn in range(MOST_DIVES):
+    limits, failures = form.tuning.heuristics.dives, 0
+    for turn in range(limits.dives):
         place = turn % len(columns)
         k = columns[place]
         best = form.archive.phi[:, k].min()
         combinations = _promising(form, columns, k, float(slack[place]), rng)
         if len(combinations):
-            nothing = Archive([k], form.n, len(form.goals))
-            purpose = Cover([k], slack[place : place + 1], np.full(len(form.goals), np.inf), nothing)
+            nothing_capped = np.full(len(form.goals), np.inf)
+            purpose = Cover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
             purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
-            cover(form, form.leaves(combinations), purpose, clock, rng, EFFORT)
+            cover(form, form.leaves(combinations), purpose, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
-        if failures >= PATIENCE * len(columns):
+        if failures >= limits.patience * len(columns):
             return
 
 
@@ -61,9 +54,10 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
 
     The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
     """
-    combinations, start = _two_parts_away(form, rng)
+    limits = form.tuning.heuristics.dives
+    combinations, start = _two_parts_away(form, rng, limits.solved)
     weights = np.zeros((len(combinations), len(form.goals)))
-    weights[:, list(columns)] = TIE_WEIGHT
+    weights[:, list(columns)] = limits.tie_weight
     weights[:, k] = 1.0
     free = np.full(weights.shape, np.inf)
     tasks = Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0)
@@ -73,19 +67,19 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
     if not len(good):
         return combinations[:0]
     good = good[np.argsort(reach[good], kind="stable")]
-    chosen: np.ndarray = combinations[good[np.unique((rng.random(PROMISING) ** 2 * len(good)).astype(int))]]
+    chosen: np.ndarray = combinations[good[np.unique((rng.random(limits.promising) ** 2 * len(good)).astype(int))]]
     return chosen
 
 
-def _two_parts_away(form: Formulation, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _two_parts_away(form: Formulation, rng: np.random.Generator, solved: int) -> tuple[np.ndarray, np.ndarray]:
     """Return random combinations that differ from a design known in at most two parts, with its variables."""
     archive, radix = form.archive, np.array(form.instance.combinations.radix)
-    parents = rng.integers(len(archive), size=SOLVED)
+    parents = rng.integers(len(archive), size=solved)
     digits = np.stack(form.instance.combinations.digits(archive.combination[parents]), axis=1)
     for _ in range(2):
-        part = rng.choice(np.flatnonzero(radix > 1), SOLVED)
-        digits[np.arange(SOLVED), part] = rng.integers(radix[part])
-    numbers = form.instance.combinations.composed(list(digits.T), SOLVED)
+        part = rng.choice(np.flatnonzero(radix > 1), solved)
+        digits[np.arange(solved), part] = rng.integers(radix[part])
+    numbers = form.instance.combinations.composed(list(digits.T), solved)
     combinations, first = np.unique(numbers, return_index=True)
     keep = form.not_refused(combinations)
     return combinations[keep], archive.variables[parents[first[keep]]]

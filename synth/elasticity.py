@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.batch_nlp import Tasks
 from synth.feasibility import residual
-from synth.formulation import TIE, Candidate, Formulation
+from synth.formulation import Candidate, Formulation
 from synth.instance import Instance, numeric
 from synth.model import Evaluation, Model
 from synth.special import expanded
@@ -147,7 +147,7 @@ def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndar
     """Return problems of one objective that hold the other chosen ones; ``moved`` is that of :class:`Tasks`."""
     count, goals = phi.shape
     caps = np.full((count, goals), np.inf)
-    caps[:, :chosen] = phi[:, :chosen] + TIE
+    caps[:, :chosen] = phi[:, :chosen] + form.tuning.tolerances.tie
     caps[:, k] = np.inf
     return Tasks(
         np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0, moved=moved

@@ -18,7 +18,6 @@ from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.margins import above, below
 from synth.model import Evaluation
-from synth.native import COMPILED_FROM
 from synth.native_tree import CapTables
 from synth.nlp import ParametricNlp, Rows, Solution, Task
 from synth.pareto import non_dominated
@@ -26,18 +25,8 @@ from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.propagation import Propagation
 from synth.refused_cells import RefusedCells
 from synth.resolution import declared_resolution, goal_scales, slack
+from synth.tuning import TUNING, Tuning
 
-CHUNK = 4096
-# Work of the solver, as ``Formulation.work`` counts it, that costs about as much as compiling it.
-COMPILE_NLP_AFTER = 150_000_000
-SNAP = 1e-9
-PINNED = 1e-12
-POINT_SHARE = 1e-8  # of a range, as which a point counts
-TIE = 1e-9
-# Designs may miss a limit by the tolerance of feasibility; the search does not live off it.
-SEARCH_TOLERANCE = 1e-8
-CAP_ROWS = 512
-FOCUS = 64  # designs known at which it is measured what boxes are split along
 EDGE = 1e-3  # share of max and min by which their edge is rounded off for a first solve
 
 
@@ -118,10 +107,13 @@ class Archive:
         The objectives that count for dominance.
     variables, objectives : int
         Width of the stored rows.
+    tuning : Tuning
+        Tells what counts as equal.
     """
 
-    def __init__(self, columns: Sequence[int], variables: int, objectives: int) -> None:
+    def __init__(self, columns: Sequence[int], variables: int, objectives: int, tuning: Tuning = TUNING) -> None:
         self.columns = list(columns)
+        self.tuning = tuning
         self.combination = np.empty(0, dtype=np.int64)
         self.variables = np.empty((0, variables))
         self.phi = np.empty((0, objectives))
@@ -163,8 +155,9 @@ class Archive:
                 place = np.searchsorted(at, lower[:, 1 - k], side="right")
                 result[:, k] = np.where(place > 0, least[place - 1], np.inf)
         else:
-            for first in range(0, len(lower), CAP_ROWS):
-                rows = slice(first, first + CAP_ROWS)
+            at_once = self.tuning.arrays.capped
+            for first in range(0, len(lower), at_once):
+                rows = slice(first, first + at_once)
                 under = known[None, :, :] <= lower[rows, None, :]
                 for k in range(m):
                     others = under[:, :, [j for j in range(m) if j != k]].all(axis=2)
@@ -194,6 +187,8 @@ class Formulation:
         Whether code of its own may be compiled for this question.
     alike : int
         How many questions of its kind are asked: code that is compiled serves them all.
+    tuning : Tuning
+        What the search in it goes by, its heuristics too.
     """
 
     def __init__(
@@ -204,8 +199,9 @@ class Formulation:
         conflict: bool = False,
         compiled: bool = True,
         alike: int = 1,
+        tuning: Tuning = TUNING,
     ) -> None:
-        self.instance = instance
+        self.instance, self.tuning = instance, tuning
         self.model = model = instance.model
         self.n = len(model.variables)
         self.names = list(objectives)
@@ -227,7 +223,7 @@ class Formulation:
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
         self.traded, self.workers = traded, 1
         self._rows: Rows | None = None
-        self.propagation = Propagation(instance, cuts, self.goals, self.bounded, conflict, compiled, alike)
+        self.propagation = Propagation(instance, cuts, self.goals, self.bounded, conflict, compiled, alike, tuning)
         self._begin()
         self.width = self.propagation.width
         carried = np.zeros(self.width - self.n, dtype=bool)
@@ -257,7 +253,7 @@ class Formulation:
         """Know no design yet, and count from nothing."""
         self.cells = self.propagation.cells
         self.refused_cells = RefusedCells(self.instance, self.cells)
-        self.archive = Archive(range(self.traded), self.n, len(self.goals))
+        self.archive = self.new_archive(range(self.traded))
         self.contracted = 0
         self.nlp_solves = 0
         self.work = 0  # of the solver without code of its own: evaluations times nodes of the program
@@ -280,6 +276,10 @@ class Formulation:
         free = self.lower < self.upper if gridded else (self.lower < self.upper) & ~self.gridded
         moving = self.model.program.dependence(np.flatnonzero(free).tolist())
         return np.array([not any(moving[k] for k in x.nodes) for x in self.constraints], dtype=bool)
+
+    def new_archive(self, columns: Sequence[int]) -> Archive:
+        """Return an archive without designs, in which objectives of these numbers count."""
+        return Archive(columns, self.n, len(self.goals), self.tuning)
 
     # -- boxes ---------------------------------------------------------------------------------
 
@@ -358,12 +358,13 @@ class Formulation:
         if every_goal and width < len(self.goals):
             unknown = np.full((len(boxes), len(self.goals) - width), -np.inf)
             boxes = replace(boxes, bounds=np.concatenate([boxes.bounds, unknown], axis=1))
-        if len(boxes) <= CHUNK:
+        at_once = self.tuning.arrays.boxes
+        if len(boxes) <= at_once:
             return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
         kept = []
-        for first in range(0, len(boxes), CHUNK):
+        for first in range(0, len(boxes), at_once):
             deadline.check()
-            rows = slice(first, min(first + CHUNK, len(boxes)))
+            rows = slice(first, min(first + at_once, len(boxes)))
             own = caps if caps is None or caps.ndim == 1 else caps[rows]
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
@@ -375,7 +376,7 @@ class Formulation:
         """
         found = self.propagation.grown(
             boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
-            caps, passes, levels, (SNAP, PINNED), self.workers,
+            caps, passes, levels, self.tuning.tolerances.margins, self.workers,
         )  # fmt: skip
         if found is None:
             return None
@@ -400,7 +401,7 @@ class Formulation:
         values = None if caps is None else self.values_of(caps)
         packed = self.propagation.packed(
             boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
-            values, passes, every, (SNAP, PINNED), self.workers,
+            values, passes, every, self.tuning.tolerances.margins, self.workers,
         )  # fmt: skip
         if packed is not None:
             result = Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
@@ -430,21 +431,23 @@ class Formulation:
         n = self.n
         np.maximum(low[:, :n], self.lower, out=low[:, :n])
         np.minimum(high[:, :n], self.upper, out=high[:, :n])
+        margins = self.tuning.tolerances.margins
         for k, grid in enumerate(self.grids):
             if len(grid):
-                first = np.searchsorted(grid, below(low[:, k], SNAP, PINNED))
-                last = np.searchsorted(grid, above(high[:, k], SNAP, PINNED), side="right") - 1
+                first = np.searchsorted(grid, below(low[:, k], *margins))
+                last = np.searchsorted(grid, above(high[:, k], *margins), side="right") - 1
                 alive &= first <= last
                 low[:, k] = grid[np.minimum(first, len(grid) - 1)]
                 high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
-        alive &= ~np.any(low > above(high, SNAP, PINNED), axis=1)
+        alive &= ~np.any(low > above(high, *margins), axis=1)
         np.maximum(high, low, out=high)
         return alive
 
     def _splittable(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Return widths, 0 where a variable cannot be split any more."""
         size = np.maximum(np.abs(low), np.abs(high))
-        floor = np.where(self._gridded, SNAP * size, 1e-7 * np.maximum(size, 1e-9 * self._span))
+        snap = self.tuning.tolerances.snap
+        floor = np.where(self._gridded, snap * size, 1e-7 * np.maximum(size, 1e-9 * self._span))
         width = self.propagation.widths(low, high)
         result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
         return result
@@ -488,12 +491,12 @@ class Formulation:
     def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         with np.errstate(all="ignore"):
             middle = np.where(low > 0, np.sqrt(low * high), 0.5 * (low + high))
-        left, right = middle.copy(), middle.copy()
+        left, right, margins = middle.copy(), middle.copy(), self.tuning.tolerances.margins
         for k, grid in enumerate(self.grids):
             rows = np.flatnonzero(variable == k)
             if len(grid) and len(rows):
-                first = np.searchsorted(grid, below(low[rows], SNAP, PINNED))
-                last = np.searchsorted(grid, above(high[rows], SNAP, PINNED), side="right") - 1
+                first = np.searchsorted(grid, below(low[rows], *margins))
+                last = np.searchsorted(grid, above(high[rows], *margins), side="right") - 1
                 cut = (first + last) // 2
                 left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
         return left, right
@@ -593,7 +596,7 @@ class Formulation:
                 r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
                 held[rows] |= holds(r, guard, tolerances[rows, None])
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & self.not_refused(combinations)
-        feasible &= np.all(variables >= below(self.lower, PINNED), axis=1)
+        feasible &= np.all(variables >= below(self.lower, self.tuning.tolerances.pinned), axis=1)
         return phi, feasible
 
     def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:
@@ -610,7 +613,8 @@ class Formulation:
         """
         data = self.instance.data(combinations)
         keep = np.ones(np.broadcast_shapes(combinations.shape, *(x.shape for x in variables)), dtype=bool)
-        most = self.values_of(caps + 2 * TIE * np.maximum(np.abs(caps), 1.0))
+        tie = self.tuning.tolerances.tie
+        most = self.values_of(caps + 2 * tie * np.maximum(np.abs(caps), 1.0))
         limits = len(self.cuts)
         with np.errstate(all="ignore"):
             sides = self._screen([*variables, *data])
@@ -643,12 +647,13 @@ class Formulation:
         kinds = [(c.sense, c.guard) for c in self.cuts]
         self._alike = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
         self._scales = np.array([c.scale for c in self.cuts], dtype=float)
-        self._tolerances = np.where(self.immovable, TOLERANCE, SEARCH_TOLERANCE)
+        self._tolerances = np.where(self.immovable, TOLERANCE, self.tuning.tolerances.limit)
 
     def sample(self, boxes: Boxes, rng: np.random.Generator) -> None:
         """Evaluate a random makeable point of a random combination of every box; what is feasible is archived."""
-        for first in range(0, len(boxes), CHUNK):
-            part = boxes.take(slice(first, first + CHUNK))
+        at_once = self.tuning.arrays.boxes
+        for first in range(0, len(boxes), at_once):
+            part = boxes.take(slice(first, first + at_once))
             share = rng.random((len(part), self.n))
             combinations = self.cells.combination(self.cells.random_leaves(part.cell, rng))
             self.candidates(self.makeable(self.inside(part, share)), combinations)
@@ -668,11 +673,12 @@ class Formulation:
     def extent(self, boxes: Boxes) -> float:
         """Return how much of everything boxes hold together: combinations times shares of the ranges of variables.
 
-        What is narrower than a hundred-millionth of its range counts as that wide, so that one point is not nothing.
+        What is narrower than ``point_share`` of its range counts as that wide, so that one point is not nothing.
         """
         ranged = np.flatnonzero(self._span[: self.n] > 0)
         shares = (boxes.high[:, ranged] - boxes.low[:, ranged]) / self._span[ranged]
-        return float(self.cells.size(boxes.cell) @ np.maximum(shares, POINT_SHARE).prod(axis=1))
+        least = self.tuning.tolerances.point_share
+        return float(self.cells.size(boxes.cell) @ np.maximum(shares, least).prod(axis=1))
 
     def makeable(self, variables: np.ndarray) -> np.ndarray:
         """Return points with gridded variables moved to the nearest makeable value."""
@@ -723,8 +729,8 @@ class Formulation:
 
     def _batch_nlp(self) -> BatchNlp | KinkedNlp:
         rows, kinks, model = self.rows(), self._kinks, self.model
-        large = self.instance.combinations.count * self.alike >= COMPILED_FROM
-        long = self.work > COMPILE_NLP_AFTER
+        large = self.instance.combinations.count * self.alike >= self.tuning.compiling.combinations
+        long = self.work > self.tuning.compiling.work
         code: Code = "arrays" if not switched_on() else "own" if self.compiled and (large or long) else "general"
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
         edge = EDGE if self._has_edges(kinks) else 0.0
@@ -815,7 +821,7 @@ class Formulation:
         if not len(known) or known is self._focused:
             return
         self._focused = known
-        rows = np.unique(np.linspace(0, len(known) - 1, FOCUS).astype(int))
+        rows = np.unique(np.linspace(0, len(known) - 1, self.tuning.tree.focus).astype(int))
         self.propagation.focus(self.archive.variables[rows], self.archive.combination[rows])
 
     def void(self, data: Sequence[Any], count: int) -> np.ndarray:

@@ -25,14 +25,14 @@ from synth.deadline import until
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
 from synth.files import csv_text
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.formulation import Archive, Boxes, Candidate, Formulation
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance
 from synth.output_folder import NEAR_EQUALS, save_result
 from synth.purposes import Cover
 from synth.question import question_of
 from synth.results import Design, ParetoFront, design_columns, design_row
-from synth.seeker import EDGE, Seeker, roundings
+from synth.seeker import Seeker, roundings
 from synth.settle import settle_discrete, settle_variables
 from synth.units import parse_quantity
 
@@ -205,26 +205,26 @@ class _Near:
 
     proves = False
 
-    def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray) -> None:
-        self.columns = list(range(traded))
+    def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray, tie: float) -> None:
+        self.columns, self.tie = list(range(traded)), tie
         self.slack, self.plain = sizes, caps
         self.own = own
         self.found: dict[int, tuple[float, Candidate]] = {}
 
     def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return the caps, the same for every box."""
-        return np.tile(self.plain[: lower.shape[1]] + TIE, (len(lower), 1))
+        return np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
 
     def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how far within the caps a box could be."""
         with np.errstate(all="ignore"):
-            distance = (self.plain[self.columns] + TIE - lower[:, self.columns]).min(axis=1)
+            distance = (self.plain[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
         room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
         return room
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many combinations are new."""
-        kept = np.flatnonzero(np.all(phi[:, self.columns] <= self.plain[self.columns] + TIE, axis=1))
+        kept = np.flatnonzero(np.all(phi[:, self.columns] <= self.plain[self.columns] + self.tie, axis=1))
         worse = self.worse(phi[kept])
         order = np.lexsort((worse, combinations[kept]))
         _, first = np.unique(combinations[kept][order], return_index=True)
@@ -288,7 +288,8 @@ class _Enumeration:
         slack = np.where(form.log_goals[:m], np.log1p(self.share), self.share * size / form.goal_scales[:m])
         caps = np.full(len(form.goals), np.inf)
         caps[:m] = own[:m] + slack
-        return _Near(m, own, caps, np.maximum(slack, TIE))
+        tie = form.tuning.tolerances.tie
+        return _Near(m, own, caps, np.maximum(slack, tie), tie)
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
@@ -327,7 +328,7 @@ class _Enumeration:
         """Look at everything; tell whether every combination is decided."""
         form, near = self.form, self.near
         seeker = Seeker(form, near, self.rng, every=False)
-        caps = near.plain[: form.bounded] + TIE
+        caps = near.plain[: form.bounded] + near.tie
         stack = [form.lean(form.root())]
         while stack:
             boxes = stack.pop()
@@ -371,7 +372,7 @@ class _Enumeration:
             some = np.array(rows[start : start + PROBLEMS], dtype=np.int64)
             self._solve(numbers[some], form.inside(boxes.take(some), 0.5))
         # Boxes of combinations tried before have become smaller since.
-        for share in (EDGE, 0.5):
+        for share in (form.tuning.heuristics.seeker.inside, 0.5):
             points = form.makeable(form.inside(boxes, share))
             self._offer(points, numbers)
 
@@ -389,7 +390,7 @@ class _Enumeration:
             self._offer(answer.variables, combinations)
             return
         phi = answer.phi[:, :m]
-        good = np.flatnonzero((answer.violation <= MISSED) & np.all(phi <= near.plain[:m] + TIE, axis=1))
+        good = np.flatnonzero((answer.violation <= MISSED) & np.all(phi <= near.plain[:m] + near.tie, axis=1))
         for k in good:
             self._round(int(combinations[k]), answer.variables[[k]])
 
@@ -403,8 +404,8 @@ class _Enumeration:
         cell = form.whole(combination).cell
         whole = form.leaves(np.full(len(low), combination), low, high)
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
-        around = form.contract(form.lean(around), near.plain[: form.bounded] + TIE)
-        for share in (EDGE, 0.5):
+        around = form.contract(form.lean(around), near.plain[: form.bounded] + near.tie)
+        for share in (form.tuning.heuristics.seeker.inside, 0.5):
             points = form.makeable(form.inside(around, share))
             self._offer(points, form.combination(around))
 
@@ -449,8 +450,8 @@ class _Enumeration:
             return known
         slack = np.where(form.log_goals[:m], -np.log1p(-SETTLE_GAP), SETTLE_GAP / self.share * near.slack)
         caps = near.plain.copy()
-        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + TIE
-        purpose = Cover(range(m), slack, caps, Archive(range(m), form.n, len(form.goals)))
+        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
+        purpose = Cover(range(m), slack, caps, form.new_archive(range(m)))
         purpose.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         cover(form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, SETTLE_EFFORT)
         worst = near.worse(purpose.known.phi)

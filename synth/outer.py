@@ -28,10 +28,7 @@ from synth.instance import Instance
 from synth.posed import nominal
 from synth.purposes import Purpose
 from synth.seeker import roundings
-
-BATCH = 48
-DIRECTIONS = 5
-WORST = 1e3  # phi of a trial without a feasible design: worse than any, and finite as samplers want it
+from synth.tuning import TUNING, Tuning
 
 
 def search_parts(
@@ -78,7 +75,7 @@ def _searched(
     from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
 
     optuna.logging.set_verbosity(logging.ERROR)
-    rows = _offered(form, left)
+    rows, limits = _offered(form, left), form.tuning.heuristics.parts
     columns = purpose.columns
     storage = None
     if journal is not None:
@@ -97,9 +94,9 @@ def _searched(
         done = before
         while done < trials:
             clock.check([left])
-            asked = [study.ask() for _ in range(min(BATCH, trials - done))]
+            asked = [study.ask() for _ in range(min(limits.batch, trials - done))]
             places = [[t.suggest_int(f"factor_{f}", 0, len(r) - 1) for f, r in enumerate(rows)] for t in asked]
-            towards = [t.suggest_int("direction", 0, DIRECTIONS - 1) if len(columns) > 1 else 0 for t in asked]
+            towards = [t.suggest_int("direction", 0, limits.directions - 1) if len(columns) > 1 else 0 for t in asked]
             digits = [rows[f][np.array([p[f] for p in places])] for f in range(len(rows))]
             combinations = form.instance.combinations.composed(digits, len(asked))
             values, missed = _inner(form, purpose, combinations, np.array(towards))
@@ -110,7 +107,7 @@ def _searched(
     return done - before
 
 
-def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> Path | None:
+def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tuning: Tuning = TUNING) -> Path | None:
     """Return where the study of a question is kept, or None where no folder can be written.
 
     What computes the answers belongs to its name: another version must not go on with trials that it would value
@@ -130,6 +127,7 @@ def study_file(instance: Instance, objectives: Mapping[str, str], seed: int) -> 
         "compared": [str(x) for x in instance.compared],
         "objectives": dict(objectives),
         "seed": seed,
+        "tuning": repr(tuning),
     }
     digest = hashlib.sha256(json.dumps(question, sort_keys=True).encode()).hexdigest()[:24]
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "clutchsynth" / "studies"
@@ -156,7 +154,8 @@ def _inner(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solve the continuous problem of each combination; return phi, and by how much limits are missed."""
     columns, goals, count = purpose.columns, len(form.goals), len(combinations)
-    share = towards / max(DIRECTIONS - 1, 1)
+    limits = form.tuning.heuristics.parts
+    share = towards / max(limits.directions - 1, 1)
     weights = np.zeros((count, goals))
     for position, k in enumerate(columns):
         even = (share + position / len(columns)) % 1.0
@@ -166,7 +165,7 @@ def _inner(
     answer = form.solve_many(tasks, combinations, start)
     points, owner = _makeable(form, combinations, answer.variables)
     rows, phi = form.feasible_rows(points, combinations[owner])
-    values = np.full((count, len(columns)), WORST)
+    values = np.full((count, len(columns)), limits.worst)
     missed = np.maximum(np.nan_to_num(answer.violation, nan=1.0), 1e-6)
     for k in rows:
         own = phi[k, columns]
@@ -184,5 +183,6 @@ def _makeable(form: Formulation, combinations: np.ndarray, variables: np.ndarray
     low, high, owner = roundings(form, variables)
     around = form.leaves(combinations[owner], low, high)
     boxes = form.contract(replace(around, tag=owner), None)
-    points = np.concatenate([form.makeable(form.inside(boxes, share)) for share in (0.02, 0.5)])
+    shares = (form.tuning.heuristics.seeker.inside, 0.5)
+    points = np.concatenate([form.makeable(form.inside(boxes, share)) for share in shares])
     return points, np.tile(boxes.tag, 2)

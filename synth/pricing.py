@@ -24,7 +24,7 @@ from synth.deadline import Stopped, until
 from synth.elasticity import NOISE, Optima, optima
 from synth.errors import InputError
 from synth.fingerprint import code_digest
-from synth.formulation import TIE, Formulation
+from synth.formulation import Formulation
 from synth.instance import Instance
 from synth.output_folder import claimed
 from synth.price_list import CHANGE, CONFIRMED, FIXED, FORMAT, NOTHING, WITHHELD, Price, Prices, Store, percent, told
@@ -295,7 +295,7 @@ class _Case:
         form, count = self.again.form, len(combinations)
         nothing = np.zeros((count, len(form.goals)))
         caps, slopes = np.full(nothing.shape, np.inf), nothing.copy()
-        caps[:, : self.again.m] = self.phi[: self.again.m] + TIE
+        caps[:, : self.again.m] = self.phi[: self.again.m] + form.tuning.tolerances.tie
         caps[:, self.k] = self.base + reach
         slopes[:, : self.again.m] = np.where(form.log_goals, 1.0, np.abs(self.phi))[: self.again.m]
         tasks = Tasks(nothing, slopes, caps, form.goal_scales, elastic=1.0)

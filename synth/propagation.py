@@ -16,27 +16,11 @@ from synth.clusters import Cells, ClusterTree, Factor
 from synth.contractor import INNER, Code, Contractor, Layout
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
-from synth.native import COMPILED_FROM
 from synth.native_boxes import BoxCode, Packed, Prepared, Question, compiled
 from synth.native_tree import CapTables, Grown, Halves
 from synth.program import OP_SPECIAL
 from synth.special import SpecialCall, expanded
-
-SAMPLES = 256
-STEP = 1e-4
-LARGEST_INFLUENCE = 50.0
-LEAST = 1e-3  # influence and weight of what seems to matter to nothing
-LEAST_IN_CONFLICT = 1e-6  # limits that nearly agree are told apart in very small boxes
-MOST_BITS = 3  # objectives that are told apart when weights are learned
-SOME = 1e-3  # share of the multipliers of all objectives from which one counts as asked for
-ENOUGH = 8  # problems solved before their own weights are believed
-# Parts are told apart early: until then the columns of a cluster are bounded as if they belonged to no row.
-PARTS_FIRST = 3.0
-QUESTIONS_FIRST = 6.0  # questions that are answered together even more so: each has a best value of its own
-ANYWHERE = 0.1  # what influences anywhere count beside those at the designs known
-PIVOT_OF = 2  # variables that an inner node depends on to be worth carrying
-MOST_PIVOTS = 1
-COMPILE_AFTER = 20_000  # boxes of a question; as many as NumPy does in about a tenth of a second
+from synth.tuning import TUNING, Tuning
 
 
 @dataclass(frozen=True)
@@ -77,6 +61,7 @@ class Propagation:
         Whether code may be compiled.
     alike : int
         How many questions of this kind are asked.
+    tuning : Tuning
     """
 
     def __init__(
@@ -88,8 +73,10 @@ class Propagation:
         conflict: bool = False,
         compiled: bool = True,
         alike: int = 1,
+        tuning: Tuning = TUNING,
     ) -> None:
         self._compiled, self._alike = compiled, alike
+        self.compiling, self.branching = tuning.compiling, tuning.branching
         self.instance, self.model = instance, instance.model
         self.cuts, self.goals = list(cuts), list(goals)
         self.n = len(self.model.variables)
@@ -128,7 +115,7 @@ class Propagation:
             instance.lower, instance.upper, hull, self._constants[True], self.bounds
         )
         # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
-        self._floor = LEAST_IN_CONFLICT if conflict else LEAST
+        self._floor = self.branching.least_in_conflict if conflict else self.branching.least
         self.empty = self._root.empty
         self.pivots = self._pivots(conflict)
         if self.pivots:
@@ -140,7 +127,7 @@ class Propagation:
         self.grids = [*instance.grids(), *(np.empty(0) for _ in self.pivots)]
         self._range = np.maximum(self.high - self.low, 1e-300)
         self._codes: dict[tuple[bool, bool], Code] = {}
-        self._bits = bounded if bounded <= MOST_BITS else 0
+        self._bits = bounded if bounded <= self.branching.most_bits else 0
         self._anywhere = self._influences()
         self.cells = Cells([self._tree(f) for f in self.factors], instance.combinations.radix)
         self._ends_of = {
@@ -226,9 +213,9 @@ class Propagation:
         for k, _ in count.most_common():
             inner = k in order and contractor.kind[k] == INNER and contractor.narrows[k]
             bounded = root.low[k] > 0 and bool(np.isfinite(root.high[k]))
-            if inner and bounded and sum(bool(marked[k]) for marked in moving) >= PIVOT_OF:
+            if inner and bounded and sum(bool(marked[k]) for marked in moving) >= self.branching.pivot_of:
                 result.append(k)
-        return () if self.empty else tuple(sorted(result[:MOST_PIVOTS]))
+        return () if self.empty else tuple(sorted(result[: self.branching.most_pivots]))
 
     def _ends_of_variable(self, position: int) -> tuple[float, float]:
         low, high = float(self.instance.lower[position]), float(self.instance.upper[position])
@@ -301,7 +288,7 @@ class Propagation:
         # A cap is as far off as the objective that it caps.
         capped = np.eye(len(self._influence))[:, [len(self.cuts) + g for g in factor.capped]]
         own = np.concatenate([self._influence[:, [self.n + i for i in factor.inputs]], capped], axis=1)
-        first = PARTS_FIRST if factor.name else QUESTIONS_FIRST
+        first = self.branching.parts_first if factor.name else self.branching.questions_first
         result: np.ndarray = (first * width @ own.T).astype(np.float32)
         # Rows that differ only in what has no influence are still different rows.
         result += np.where(tree.leaf, 0.0, self._floor)[:, None].astype(np.float32)
@@ -312,14 +299,14 @@ class Propagation:
 
         A median over random points; it only decides where boxes are split, never what is excluded.
         """
-        n = self.n
+        n, samples = self.n, self.branching.samples
         rng = np.random.default_rng(0)
-        share, low, high = rng.random((SAMPLES, n)), self.low[:n], self.high[:n]
+        share, low, high = rng.random((samples, n)), self.low[:n], self.high[:n]
         with np.errstate(all="ignore"):
             ratio = low * (high / low) ** share
         points = np.where(self.positive[:n], ratio, low + share * (high - low))
-        numbers = [rng.integers(size, size=SAMPLES) for size in self.instance.combinations.radix]
-        data = [np.full(SAMPLES, v) for v in self._one_data()]
+        numbers = [rng.integers(size, size=samples) for size in self.instance.combinations.radix]
+        data = [np.full(samples, v) for v in self._one_data()]
         for digits, factor in zip(numbers, self.factors, strict=True):
             for position, k in enumerate(factor.inputs):
                 data[k] = factor.columns[digits, position]
@@ -337,7 +324,7 @@ class Propagation:
         data = self.instance.data(combinations)
         data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in data]
         near, _ = self._steepness([variables[:, i] for i in range(self.n)] + data)
-        self._influence = np.maximum(near, ANYWHERE * self._anywhere)
+        self._influence = np.maximum(near, self.branching.anywhere * self._anywhere)
         self._spreads = [self._spread(tree) for tree in self.cells.trees]
         self._steep = self._steep_of_moving()
         self._prepared.clear()
@@ -357,7 +344,7 @@ class Propagation:
         inputs : list of array (designs,)
             Variables and data.
         """
-        program, n, count = self.model.program, self.n, len(inputs[0])
+        program, n, count, step_size = self.model.program, self.n, len(inputs[0]), self.branching.step
         nodes = [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
         moving = list(range(n)) + [n + k for f in self.factors for k in f.inputs]
         pivoted = program.with_inputs(self.pivots)
@@ -372,9 +359,9 @@ class Propagation:
         moved = [np.tile(x, (1 + len(moving), 1)) for x in inputs]
         relative = [*self._relative, *(True for _ in self.pivots)]
         for row, i in enumerate(moving):
-            step = inputs[i] * STEP if relative[i] else np.full(count, STEP * self._reach[i])
+            step = inputs[i] * step_size if relative[i] else np.full(count, step_size * self._reach[i])
             # Variables are measured as widths() does, columns as clusters do.
-            scales[row] = STEP if relative[i] or i < n else step[0]
+            scales[row] = step_size if relative[i] or i < n else step[0]
             moved[i][1 + row] += step
         with np.errstate(all="ignore"):
             values = [np.broadcast_to(np.asarray(v, dtype=float), moved[0].shape) for v in evaluate(moved)]
@@ -383,7 +370,7 @@ class Propagation:
             changed = np.array([size[1:] - size[0] for size in self._sizes(values)])
             if changed.size:
                 steep = _medians(np.abs(changed) / scales[:, None])
-                result[:, moving] = np.minimum(steep, LARGEST_INFLUENCE)
+                result[:, moving] = np.minimum(steep, self.branching.largest_influence)
         return result, np.where(sizes > 0, sizes, 1.0)
 
     def _sizes(self, values: Sequence[np.ndarray]) -> list[np.ndarray]:
@@ -539,12 +526,12 @@ class Propagation:
     @property
     def compiled_at_once(self) -> bool:
         """Tell whether code for capped boxes is compiled from the first: by the question alone."""
-        return self._compiled and self.instance.combinations.count * self._alike >= COMPILED_FROM
+        return self._compiled and self.instance.combinations.count * self._alike >= self.compiling.combinations
 
     def _to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
         """Tell whether code is to be compiled for so many boxes more."""
         self._contracted[every, capped] += boxes
-        many = self._compiled and self._contracted[every, capped] > COMPILE_AFTER
+        many = self._compiled and self._contracted[every, capped] > self.compiling.boxes
         return many or (self.compiled_at_once and capped and not every)
 
     def _question(self, every: bool, margins: tuple[float, float]) -> Question:
@@ -600,7 +587,7 @@ class Propagation:
         shares = sizes[good] / total[good, None]
         first = len(self.cuts)
         own = shares[:, first : first + self._bits]
-        pattern = self._pattern(own > SOME * own.sum(axis=1, keepdims=True))
+        pattern = self._pattern(own > self.branching.some * own.sum(axis=1, keepdims=True))
         np.add.at(self._learned, pattern, importance[good, None] * shares)
         np.add.at(self._importance, pattern, importance[good])
         np.add.at(self._lessons, pattern, 1)
@@ -637,7 +624,7 @@ class Propagation:
         result = np.ones(self._learned.shape)
         if self._lessons.any():
             result[:] = self._learned.sum(axis=0) / self._importance.sum()
-            own = self._lessons >= ENOUGH
+            own = self._lessons >= self.branching.enough
             result[own] = self._learned[own] / self._importance[own, None]
             result += self._floor
         for pattern in range(1, len(result)):

@@ -7,10 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
-from synth.formulation import TIE, Archive, Candidate, Formulation
+from synth.formulation import Archive, Candidate, Formulation
 from synth.native_tree import CapTables
-
-ROWS = 1024
 
 
 class Purpose(Protocol):
@@ -64,10 +62,11 @@ class Cover:
 
     def __init__(self, columns: Sequence[int], slack: np.ndarray, plain: np.ndarray, known: Archive) -> None:
         self.columns, self.slack, self.plain, self.known = list(columns), slack, plain, known
+        self.tie = known.tuning.tolerances.tie
 
     def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
-        caps = np.tile(self.plain[: lower.shape[1]] + TIE, (len(lower), 1))
+        caps = np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
         own = self.known.caps(lower[:, self.columns], self.slack)
         caps[:, self.columns] = np.minimum(caps[:, self.columns], own)
         return caps
@@ -79,12 +78,12 @@ class Cover:
         with np.errstate(all="ignore"):
             distance = self.known.caps(lower[:, self.columns], self.slack) - lower[:, self.columns]
             result = np.where(np.isnan(distance), np.inf, distance).min(axis=1)
-            broken = np.any(lower > self.plain[: lower.shape[1]] + TIE, axis=1)
+            broken = np.any(lower > self.plain[: lower.shape[1]] + self.tie, axis=1)
         return np.where(broken, 0.0, result)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many no known one covered."""
-        keep = np.all(phi <= self.plain + TIE, axis=1)
+        keep = np.all(phi <= self.plain + self.tie, axis=1)
         combinations, variables, phi = combinations[keep], variables[keep], phi[keep]
         new = int((self.room(phi) > 0).sum())
         self.known.add(combinations, variables, phi)
@@ -92,7 +91,7 @@ class Cover:
 
     def leading(self, archive: Archive) -> list[Candidate]:
         """Return the best design of an archive in the one objective."""
-        allowed = np.flatnonzero(np.all(archive.phi <= self.plain + TIE, axis=1))
+        allowed = np.flatnonzero(np.all(archive.phi <= self.plain + self.tie, axis=1))
         k = self.columns[0]
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
@@ -101,7 +100,7 @@ class Cover:
         columns, bounded = self.columns, form.bounded
         if reaches_beyond(self, bounded) or len(columns) > 2:
             return None
-        plain = self.plain[:bounded] + TIE
+        plain = self.plain[:bounded] + self.tie
         if len(columns) == 1:
             least = (self.known.phi[:, columns[0]] - self.slack[0]).min(initial=np.inf)
             plain[columns[0]] = min(plain[columns[0]], least)
@@ -140,7 +139,7 @@ class Staircase:
         proven: Collection[bytes] = (),
     ) -> None:
         self.designs, self.columns, self.slack, self.known = list(designs), list(columns), slack, known
-        self.plain = np.full(known.phi.shape[1], np.inf)
+        self.plain, self.tie = np.full(known.phi.shape[1], np.inf), known.tuning.tolerances.tie
         self._proven = proven
         self._set()
 
@@ -153,7 +152,7 @@ class Staircase:
         known = self.known.phi[:, self.columns]
         result = [self.known[int(k)] for k in dict.fromkeys(np.argmin(known, axis=0).tolist())]
         for c in self.designs:
-            rows = np.flatnonzero(beating(known, c.phi[self.columns]))
+            rows = np.flatnonzero(beating(known, c.phi[self.columns], self.tie))
             result.append(self.known[int(rows[0])] if len(rows) else c)
         return result
 
@@ -188,12 +187,12 @@ class Staircase:
 
     def _below(self, own: np.ndarray) -> np.ndarray:
         """Return, per box, the largest step in each objective among those that the box could be below."""
-        result = np.full(own.shape, -np.inf)
-        for first in range(0, len(own), ROWS):
-            part = own[first : first + ROWS]
+        result, at_once = np.full(own.shape, -np.inf), self.known.tuning.arrays.steps
+        for first in range(0, len(own), at_once):
+            part = own[first : first + at_once]
             below = np.all(part[:, None, :] < self.steps[None, :, :], axis=2)
             for k in range(own.shape[1]):
-                result[first : first + ROWS, k] = np.where(below, self.steps[None, :, k], -np.inf).max(axis=1)
+                result[first : first + at_once, k] = np.where(below, self.steps[None, :, k], -np.inf).max(axis=1)
         return result
 
     def _below_two(self, own: np.ndarray) -> np.ndarray:
@@ -226,7 +225,7 @@ class Staircase:
         """Replace designs that are beaten; return how many were."""
         own = phi[:, self.columns]
         least = np.array([c.phi[self.columns] for c in self.designs])
-        beats = beating(own[:, None, :], least[None, :, :])
+        beats = beating(own[:, None, :], least[None, :, :], self.tie)
         worth = np.where(beats, (own / self.slack).sum(axis=1)[:, None], np.inf)
         for k, j in enumerate(np.argmin(least, axis=0)):
             lower = own[:, k] < least[j, k] - self.slack[k]
@@ -245,9 +244,9 @@ class Staircase:
         return []
 
 
-def beating(rows: np.ndarray, phi: np.ndarray) -> np.ndarray:
+def beating(rows: np.ndarray, phi: np.ndarray, tie: float) -> np.ndarray:
     """Tell which rows (..., objectives) are as good as phi in all, and better in some by more than rounding."""
-    better: np.ndarray = np.all(rows <= phi, axis=-1) & np.any(rows < phi - TIE, axis=-1)
+    better: np.ndarray = np.all(rows <= phi, axis=-1) & np.any(rows < phi - tie, axis=-1)
     return better
 
 

@@ -19,11 +19,10 @@ from synth.conflicts import explain_infeasible
 from synth.count_domain import stated
 from synth.cover import Covered, best, cover
 from synth.dives import dive
-from synth.effort import SearchEffort
 from synth.elasticity import elasticities
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation, rows_of
+from synth.formulation import Archive, Boxes, Candidate, Formulation, rows_of
 from synth.gap import GAP_EXPECTED, is_gap
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance, as_mapping, catalogs_for
@@ -40,30 +39,12 @@ from synth.resolution import ROOM, ranges, rounded_up
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
 from synth.scatter import read_remaining
-from synth.seeker import EDGE_WORTH, SCARCE, Seeker
+from synth.seeker import Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
+from synth.tuning import TUNING, TreeLimits, Tuning
 
-EFFORT = 20_000_000
-TOGETHER = 1_000_000  # boxes of a whole front at once; what needs more is easier step by step
-SOON, QUICKLY = 150_000, 50_000
-MANY = 7  # variables
-EFFORT_WITH_MANY, EFFORT_WITH_FEW_PARTS = 2_000_000, 200_000
-FURTHER = SearchEffort()  # for what all this leaves open
-FILL_EFFORT = 100_000
-TIE_EFFORT = 2_000
-COARSE = 0.1
-COARSE_EFFORT = 20_000
-FIRST_EFFORT = 1_000  # for one objective a first design is enough to begin with
-FINE = 2.0  # every design is covered within so many times the mean distance of the points asked for
-ROUNDS = 4
-POLISHINGS = 3
-MARGIN = 0.99
-ROWS = 256  # of a large comparison at a time
-ROUNDED = 2e-9
 LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
-EXHAUSTIVE_LIMIT = 3000
-OUTER_TRIALS = 576
 
 
 def synthesize(
@@ -158,7 +139,8 @@ def time_left(time_limit: float | None, begun: float) -> float | None:
 class Question:
     """A question that has been checked: everything that can be wrong with it has been said.
 
-    ``alike``: how many questions of its kind are asked; code that is compiled for one serves them all.
+    ``alike``: how many questions of its kind are asked; code that is compiled for one serves them all. ``tuning``: what
+    its search goes by.
     """
 
     instance: Instance
@@ -166,6 +148,7 @@ class Question:
     weights: Mapping[str, float]
     settings: Mapping[str, Any]
     alike: int = 1
+    tuning: Tuning = TUNING
 
     def answer(
         self,
@@ -207,7 +190,7 @@ class Question:
         points, gap, seed = (self.settings[name] for name in ("points", "gap", "seed"))
         return FrontSearch(
             self.instance, self.chosen, points, gap, seed, progress, time_limit, int(workers),
-            known=known, alike=self.alike, lessons=lessons,
+            known=known, alike=self.alike, lessons=lessons, tuning=self.tuning,
         )  # fmt: skip
 
 
@@ -224,8 +207,11 @@ def pose(
     gap: float = 1e-3,
     grid: bool = True,
     seed: int = 0,
+    tuning: Tuning = TUNING,
 ) -> Question:
     """Check a question to ``synthesize``; its arguments are those of the same names there.
+
+    ``tuning``: what its search goes by.
 
     Raises
     ------
@@ -247,31 +233,40 @@ def pose(
         "limits": stated(limits),
         "fix": stated(fix),
     }
-    return Question(instance, chosen, weight_of, settings)
+    return Question(instance, chosen, weight_of, settings, tuning=tuning)
 
 
 def one_best(
-    instance: Instance, objective: str, gap: float, effort: int, seed: int = 0, time_limit: float | None = None
+    instance: Instance,
+    objective: str,
+    gap: float,
+    effort: int,
+    seed: int = 0,
+    time_limit: float | None = None,
+    tuning: Tuning = TUNING,
 ) -> ParetoFront:
     """Return the best design for one objective, for questions that the engine asks itself.
 
     Where there is none nothing is explained; what ``effort`` boxes leave open is left open.
     """
     chosen = chosen_objectives(instance.model, [objective])
-    search = FrontSearch(instance, chosen, 1, gap, seed, None, time_limit, 1, effort)
+    search = FrontSearch(instance, chosen, 1, gap, seed, None, time_limit, 1, effort, tuning=tuning)
     return search.run([1.0], {"points": 1, "gap": gap}, explained=False)
 
 
-def distinct(candidates: Sequence[Candidate], m: int, alike: np.ndarray | float = 0.0) -> list[Candidate]:
+def distinct(
+    candidates: Sequence[Candidate], m: int, tuning: Tuning, alike: np.ndarray | float = 0.0
+) -> list[Candidate]:
     """Return the designs that no other one equals or beats in the first objectives, but for rounding.
 
     ``alike``: what else in phi counts as equal, per objective.
     """
     phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
-    room = np.maximum(ROUNDED * np.maximum(np.abs(phi), 1.0), alike)
+    at_once = tuning.arrays.compared
+    room = np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), alike)
     number, gone = np.arange(len(phi)), np.zeros(len(phi), dtype=bool)
-    for first in range(0, len(phi), ROWS):
-        own = slice(first, first + ROWS)
+    for first in range(0, len(phi), at_once):
+        own = slice(first, first + at_once)
         beaten = np.all(phi[:, None, :] <= (phi + room)[None, own, :], axis=2)
         beats = np.all(phi[None, own, :] <= (phi + room)[:, None, :], axis=2)
         # Of those that beat each other by rounding alone the first stays.
@@ -317,15 +312,16 @@ def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str
     return list(values.values())
 
 
-def _effort(instance: Instance, objectives: int) -> int:
+def _effort(instance: Instance, objectives: int, limits: TreeLimits) -> int:
     """Return how many boxes are worth looking into: with many unknowns they hardly close.
 
     Combinations that are few are solved one by one instead; where boxes for one best design over few combinations do
     not close soon, limits leave a sliver that they hardly ever close on.
     """
-    if int(np.sum(instance.lower < instance.upper)) < MANY:
-        return EFFORT_WITH_MANY if objectives == 1 and instance.combinations.count <= EXHAUSTIVE_LIMIT else EFFORT
-    return EFFORT_WITH_FEW_PARTS if instance.combinations.count <= EXHAUSTIVE_LIMIT else EFFORT_WITH_MANY
+    few = instance.combinations.count <= limits.few_combinations
+    if int(np.sum(instance.lower < instance.upper)) < limits.many_variables:
+        return limits.boxes_of_many if objectives == 1 and few else limits.boxes
+    return limits.boxes_of_few_parts if few else limits.boxes_of_many
 
 
 class FrontSearch:
@@ -345,16 +341,21 @@ class FrontSearch:
         known: Sequence[Design] = (),
         alike: int = 1,
         lessons: Lessons | None = None,
+        tuning: Tuning = TUNING,
     ) -> None:
+        self.tuning, self.limits = tuning, tuning.tree
         # A question that is worth only some effort is not worth compiling for, nor solving what stays open.
-        self.effort, self.thorough = (_effort(instance, len(chosen)), True) if effort is None else (effort, False)
+        self.thorough = effort is None
+        self.effort = _effort(instance, len(chosen), self.limits) if effort is None else effort
         self.alike = alike
         self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
         self.started = time.monotonic()
         self.workers, self.m = workers, len(chosen)
         self.form = self._formulation(conflict=False)
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
-        self.budget = FURTHER.seconds if time_limit is None else math.inf  # s left for what a first effort leaves open
+        self.budget = (
+            self.limits.further.seconds if time_limit is None else math.inf
+        )  # s for what a first effort leaves open
         self.budget_spent = self.reporting = False
         self.stage, self.done = "", 0.0
         self.seed, self.rng = seed, np.random.default_rng(seed)
@@ -395,7 +396,7 @@ class FrontSearch:
 
     def _formulation(self, conflict: bool) -> Formulation:
         goals = with_ties(self.instance.model, self.chosen)
-        form = Formulation(self.instance, goals, self.m, conflict, self.thorough, self.alike)
+        form = Formulation(self.instance, goals, self.m, conflict, self.thorough, self.alike, self.tuning)
         form.workers = self.workers
         return form
 
@@ -413,7 +414,7 @@ class FrontSearch:
         combinations = np.array([self.instance.combinations.number(d) for d in front.designs], dtype=np.int64)
         closely, phi = form.feasible_rows(points, combinations)
         edge, _ = form.edge_rows(points, combinations)
-        phi[edge] += EDGE_WORTH
+        phi[edge] += self.tuning.tolerances.edge_worth
         rows = np.concatenate([closely, edge])
         form.archive.add(combinations[rows], points[rows], phi[rows])
         self.given = phi[rows, : self.m]
@@ -425,7 +426,8 @@ class FrontSearch:
         """Return the positions of those designs that take the places of the given ones: each as good in everything."""
         places = dict[int, None]()
         for own in self.given:
-            as_good = np.flatnonzero(np.all(phi <= own + ROUNDED * np.maximum(np.abs(own), 1.0), axis=1))
+            room = self.tuning.tolerances.rounded * np.maximum(np.abs(own), 1.0)
+            as_good = np.flatnonzero(np.all(phi <= own + room, axis=1))
             if len(as_good):
                 places[int(as_good[np.argmin(phi[as_good].sum(axis=1))])] = None
         return list(places)
@@ -501,7 +503,7 @@ class FrontSearch:
         with switched_off(), deadline.until(self.clock.deadline, ready):
             aside = FrontSearch(
                 self.instance, self.chosen, self.points, self.gap, self.seed, self.progress, None, 1,
-                self.effort, self.recalled,
+                self.effort, self.recalled, tuning=self.tuning,
             )  # fmt: skip
             for c in (*self.form.archive, *self.meanwhile):
                 aside.form.archive.add(*rows_of([c]))
@@ -615,7 +617,8 @@ class FrontSearch:
         """
         self.scalar_problems += 1
         before = len(self.form.archive)
-        first = effort if effort is not None else self.effort if self.in_conflict else min(SOON, self.effort)
+        soon = self.effort if self.in_conflict else min(self.limits.first_try, self.effort)
+        first = soon if effort is None else effort
         found, outcome, slack = self._best_within(k, plain, start, first)
         if not outcome.closed and effort is None and not self.in_conflict:
             # What is feasible is so narrow that it costs most to tell which limits leave nothing.
@@ -635,7 +638,7 @@ class FrontSearch:
 
     def _for_best(self, k: int, plain: np.ndarray, slack: float, known: Candidate | None) -> Cover:
         """Return the search for the design that is best in one objective."""
-        purpose = Cover([k], np.array([slack]), plain, Archive([k], self.form.n, len(self.form.goals)))
+        purpose = Cover([k], np.array([slack]), plain, self.form.new_archive([k]))
         if known is not None:
             purpose.take(*rows_of([known]))
         return purpose
@@ -691,9 +694,10 @@ class FrontSearch:
         self.closed = False
         self.unresolved += len(left)
         if self.thorough and not solved and not self._solve_few(left, purpose):
-            journal = study_file(self.instance, self.chosen, self.seed)
+            journal = study_file(self.instance, self.chosen, self.seed, self.tuning)
             self._say("parts", 0.0)
-            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, OUTER_TRIALS)
+            trials = self.tuning.heuristics.parts.trials
+            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, trials)
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
         if len(purpose.columns) == self.m:
@@ -702,8 +706,8 @@ class FrontSearch:
 
     def _solve_few(self, boxes: Boxes, purpose: Purpose) -> bool:
         """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
-        combinations = self.form.cells.all_members(boxes.cell, EXHAUSTIVE_LIMIT + 1)
-        few = len(combinations) <= EXHAUSTIVE_LIMIT
+        combinations = self.form.cells.all_members(boxes.cell, self.limits.few_combinations + 1)
+        few = len(combinations) <= self.limits.few_combinations
         if few:
             solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
         return few
@@ -712,7 +716,7 @@ class FrontSearch:
         """Go on with boxes while they keep closing and there is time; return what stays open."""
         self._begin_tree(purpose.slack if len(purpose.columns) == self.m else None)
         begun = time.monotonic()
-        effort = replace(FURTHER, seconds=self.budget)
+        effort = replace(self.limits.further, seconds=self.budget)
         outcome = best_first(self.form, left, purpose, self.clock, self.rng, effort)
         self.budget -= time.monotonic() - begun
         self.budget_spent |= outcome.spent
@@ -759,10 +763,10 @@ class FrontSearch:
 
     def _look_round(self) -> bool:
         """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
-        coarse = self._with_slack(self.purpose.slack * max(COARSE / self.gap, 1.0))
-        outcome = self._covered(coarse, FIRST_EFFORT if self.m == 1 else COARSE_EFFORT)
+        coarse = self._with_slack(self.purpose.slack * max(self.limits.coarse / self.gap, 1.0))
+        outcome = self._covered(coarse, self.limits.first_boxes if self.m == 1 else self.limits.coarse_boxes)
         if not len(self.form.archive) and not outcome.closed and self.m == 1:
-            outcome = self._covered(coarse, COARSE_EFFORT)
+            outcome = self._covered(coarse, self.limits.coarse_boxes)
         if len(self.form.archive):
             self._seek(self._fine())
         elif outcome.closed:
@@ -771,15 +775,15 @@ class FrontSearch:
 
     def _cover(self) -> None:
         """Cover everything as finely as the points asked for need, at most as the gap."""
-        scarce = self.m == 2 and self.instance.combinations.count > EXHAUSTIVE_LIMIT and self._dive()
+        scarce = self.m == 2 and self.instance.combinations.count > self.limits.few_combinations and self._dive()
         form = self.form
         fine = self._fine()
-        together = QUICKLY if scarce else TOGETHER
+        together = self.limits.scarce_front if scarce else self.limits.whole_front
         outcome = self._covered(fine, min(self.effort, together) if self.m == 2 else self.effort)
         if not outcome.closed and self.m == 2:
             fine = self._fine()
             # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
-            self.by_steps = self.effort < EFFORT or len(form.archive) < self.points
+            self.by_steps = self.effort < self.limits.boxes or len(form.archive) < self.points
             outcome = self._in_steps(fine) if self.by_steps else self._covered(fine, self.effort)
         left = self._close(outcome.open, fine)
         if len(outcome.open) and not len(left):
@@ -791,20 +795,20 @@ class FrontSearch:
     def _dive(self) -> bool:
         """Look for more where few designs are known; tell whether they are still few, but not none."""
         if not len(self.form.archive):
-            self._covered(self._with_slack(self.purpose.slack), min(self.effort, TOGETHER), enough=0)
-        if not 0 < len(self.form.archive) < SCARCE:
+            self._covered(self._with_slack(self.purpose.slack), min(self.effort, self.limits.whole_front), enough=0)
+        if not 0 < len(self.form.archive) < self.tuning.heuristics.seeker.scarce:
             return False
         if self.in_conflict:
             self._begin_again(conflict=False)
         dive(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
         self._seek(self._fine())
-        return len(self.form.archive) < SCARCE
+        return len(self.form.archive) < self.tuning.heuristics.seeker.scarce
 
     def _fine(self) -> Cover:
         """Return the cover that is as fine as the points asked for need, at most as the gap."""
         phi = self.form.archive.phi[:, : self.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.m)
-        return self._with_slack(np.maximum(FINE * span / self.points, self.purpose.slack))
+        return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.purpose.slack))
 
     def _seek(self, purpose: Cover) -> None:
         """Look for designs beside those that are known."""
@@ -839,7 +843,7 @@ class FrontSearch:
 
     def _choose(self) -> None:
         """Choose the designs to return and prove them; where too few are known, look for more until nothing is left."""
-        for last in (*(False,) * (ROUNDS - 1), True):
+        for last in (*(False,) * (self.limits.choices - 1), True):
             self.front = self._polished(self._more_than_asked)
             self._rescale()
             if not last and self._too_few() and self._look_for_more():
@@ -847,7 +851,7 @@ class FrontSearch:
             if not self.closed or self.complete or self._proven_at_gap() or self._prove():
                 break
         if self.closed and not self.complete and len(self.front) < self.points:
-            covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, EFFORT).closed
+            covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, self.limits.boxes).closed
             if covered:
                 # Now each design stands that no known one beats, also those that were found meanwhile.
                 self.front = self._polished(self._more_than_asked)
@@ -882,7 +886,7 @@ class FrontSearch:
 
     def _distinct(self, designs: Sequence[Candidate]) -> list[Candidate]:
         """Return designs that still differ when ties are settled, which gives away some of what may be zero."""
-        return distinct(designs, self.m, np.where(self.form.log_goals[: self.m], 0.0, ROOM))
+        return distinct(designs, self.m, self.tuning, np.where(self.form.log_goals[: self.m], 0.0, ROOM))
 
     def _stand_for_all(self) -> bool:
         """Tell whether the designs of the front cover all that are known."""
@@ -898,7 +902,7 @@ class FrontSearch:
         too_wide = needed < self.purpose.slack
         if np.any(too_wide):
             # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
-            self.purpose.slack = np.where(too_wide, MARGIN * needed, self.purpose.slack)
+            self.purpose.slack = np.where(too_wide, self.limits.margin * needed, self.purpose.slack)
             self.proven_designs.clear()
 
     def _proven_at_gap(self) -> bool:
@@ -908,7 +912,7 @@ class FrontSearch:
         """Return designs that spread over the front, at most so many, each made as good as its parts allow."""
         form, archive, done = self.form, self.form.archive, set[bytes]()
         polish_extremes(form, self.m, float(self.purpose.slack.max()))
-        for _ in range(POLISHINGS):
+        for _ in range(self.limits.polishings):
             rough = [c for c in self._spread(list(archive), most) if c.phi[: self.m].tobytes() not in done]
             if not rough:
                 break
@@ -919,12 +923,12 @@ class FrontSearch:
 
     def _look_for_more(self) -> bool:
         """Without slack everything non-dominated is found, or more than enough; tell whether anything was."""
-        known, effort = self.form.archive.phi, FILL_EFFORT + self.looked
+        known, effort = self.form.archive.phi, self.limits.fill + self.looked
         if self.by_steps:
             # Not everything that is not dominated, but everything that the gap tells apart.
             self.may_find_more = self._in_steps(self._with_slack(self.purpose.slack)).closed
             return not np.array_equal(self.form.archive.phi, known)
-        outcome = self._covered(self._with_slack(np.full(self.m, TIE)), effort, self.points)
+        outcome = self._covered(self._with_slack(np.full(self.m, self.tuning.tolerances.tie)), effort, self.points)
         self.complete = outcome.closed and len(self.form.archive) <= self.points
         return not np.array_equal(self.form.archive.phi, known)
 
@@ -938,7 +942,7 @@ class FrontSearch:
             outcome = prove_by_steps(form, self.pool, stairs, self.clock, self.rng, self.effort)
         else:
             self._begin_tree(stairs.slack)
-            outcome = cover(form, self.pool, stairs, self.clock, self.rng, EFFORT)
+            outcome = cover(form, self.pool, stairs, self.clock, self.rng, self.limits.boxes)
         self.looked += outcome.looked
         left = self._close(outcome.open, stairs)
         self.stairs, self.under_way = None, None
@@ -977,14 +981,14 @@ class FrontSearch:
         nowhere = np.full(form.n, np.nan)
         designs = [*(Candidate(-1, nowhere, row) for row in phi), *self.front]
         own = {c.phi.tobytes() for c in self.front}
-        nothing = Archive(range(m), form.n, len(form.goals))
+        nothing = form.new_archive(range(m))
         slack = form.slack(self.gap, sizes)[:m]
         self.against = np.maximum(self.against, (slack + ROOM) * form.goal_scales[:m])
         stairs = Staircase(designs, range(m), slack, nothing, own)
         stairs.take(form.archive.combination, form.archive.variables, form.archive.phi)
-        outcome = cover(form, self.pool, stairs, Clock(deadline, self._working), self.rng, EFFORT)
+        outcome = cover(form, self.pool, stairs, Clock(deadline, self._working), self.rng, self.limits.boxes)
         better = [c for c in stairs.designs if c.combination >= 0 and c.phi.tobytes() not in own]
-        return outcome.closed, settle_variables(form, distinct(better, m), m, range(m))
+        return outcome.closed, settle_variables(form, distinct(better, m, self.tuning), m, range(m))
 
     def reported(self, candidates: Sequence[Candidate]) -> list[Design]:
         """Return designs for more candidates, ties settled."""
@@ -996,7 +1000,7 @@ class FrontSearch:
     # -- the report ----------------------------------------------------------------------------
 
     def _designs(self, frame: Frame, weights: Sequence[float], settle: bool) -> list[Design]:
-        settled = distinct(self.form.as_they_are(self.front), self.m)
+        settled = distinct(self.form.as_they_are(self.front), self.m, self.tuning)
         alternatives: list[tuple[str, ...]] = [()] * len(settled)
         if settle:
             settled, alternatives = self._settled()
@@ -1029,15 +1033,15 @@ class FrontSearch:
         if self.m == 1 and len(form.goals) > 1:
             # One objective leaves whole families of parts open; the next objective is settled over all of them.
             caps = np.full(len(form.goals), np.inf)
-            caps[0] = chosen[0].phi[0] + TIE
-            better = self._best(1, caps, chosen[0], TIE_EFFORT)
+            caps[0] = chosen[0].phi[0] + self.tuning.tolerances.tie
+            better = self._best(1, caps, chosen[0], self.limits.tie)
             chosen[0] = chosen[0] if better is None else better
         pairs: list[tuple[Candidate, tuple[str, ...]]] = []
         while chosen:
             settled = settle_ties(form, self.pool, chosen, self.m)
             listed = form.as_they_are([c for c, _ in settled])
             pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
-            stay = {id(c) for c in distinct([c for c, _ in pairs], self.m)}
+            stay = {id(c) for c in distinct([c for c, _ in pairs], self.m, self.tuning)}
             pairs = [pair for pair in pairs if id(pair[0]) in stay]
             # Where settling has made two designs one, others that stand as well take the place.
             missing = max(self.points - len(pairs), 0)
@@ -1057,7 +1061,7 @@ class FrontSearch:
         gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
         solved = len(self.form.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
-        spent = FURTHER.seconds if self.budget_spent and kind != "global" else None
+        spent = self.limits.further.seconds if self.budget_spent and kind != "global" else None
         amounts = self._amounts(gap) if designs and gap is not None else {}
         units = {name: self.instance.model.units[name] for name in amounts}
         certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved, spent, amounts, units)

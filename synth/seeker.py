@@ -9,34 +9,11 @@ import numpy as np
 
 from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.clock import Clock
-from synth.formulation import SNAP, Boxes, Candidate, Formulation, rows_of
+from synth.formulation import Boxes, Candidate, Formulation, rows_of
 from synth.margins import below
 from synth.pareto import spread_subset
 from synth.purposes import Purpose
 from synth.settle import settle_variables
-
-PROBES = 256
-MOST_NLPS = 128
-LEAST_NLPS = 8
-PATIENCE = 3
-EDGE = 0.02  # a point just inside the lower ends: limits are loosened a little in propagation, not in evaluation
-REACH = 2
-MOST_ROUNDINGS = 1024  # of one design; with more gridded variables only the nearest values are tried
-TIE_WEIGHT = 1e-6
-PARENTS = 16  # known designs whose parts are exchanged in one round
-ROUNDS = 12
-TARGETS = 24  # places along the front at which each known combination is tried
-FAMILIES = 48  # known combinations that are tried at all places
-# Problems in a round: some tens of milliseconds, compiled or not.
-MOST_SOLVED, MOST_SOLVED_PLAIN = 4096, 512
-ROUNDED_OFF = 48
-CONFLICTS = 64
-LONG = 10  # rounds of a proof
-SCARCE = 16  # designs of a front below which it is worth looking harder
-LESSONS = 100  # optima that tell what is worth splitting, before boxes are probed alone
-NEAR = 1e-4  # limits that miss each other by less count as much as those that do by this
-THIN = 1e-5  # relative
-EDGE_WORTH = 1e-5  # of phi: more than what a design may gain by using up the tolerance
 
 
 class Seeker:
@@ -44,26 +21,28 @@ class Seeker:
 
     def __init__(self, form: Formulation, purpose: Purpose, rng: np.random.Generator, every: bool) -> None:
         self.form, self.purpose, self.rng, self.every = form, purpose, rng, every
-        self.nlps = MOST_NLPS // 4
+        self.limits = form.tuning.heuristics.seeker
+        self.nlps = self.limits.most_problems // 4
         self.rounds = self.failures = 0
 
     def look(self, batch: Boxes) -> None:
         """Try the boxes with most room, all along the front; after rounds without success, only now and then."""
         self.rounds += 1
-        if self.failures >= PATIENCE and self.rounds % (self.failures - PATIENCE + 2):
+        limits, form = self.limits, self.form
+        if self.failures >= limits.patience and self.rounds % (self.failures - limits.patience + 2):
             return
-        form = self.form
         if form.n and not len(form.archive):
             self._conflicts(batch)
         phi = form.phi_of(batch.bounds)
         space, along = self.purpose.room(phi, batch.cell), phi[:, self.purpose.columns[0]]
-        found = self._probe(batch.take(spread_choice(along, space, PROBES)))
+        found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
         if form.n and self._worth_solving():
-            most = MOST_NLPS if len(self.purpose.columns) > 1 else LEAST_NLPS
+            most = limits.most_problems if len(self.purpose.columns) > 1 else limits.least_problems
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
             chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
-            self.nlps = min(2 * self.nlps, MOST_NLPS) if 4 * good > len(chosen) else max(self.nlps // 2, LEAST_NLPS)
+            more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
+            self.nlps = more if 4 * good > len(chosen) else fewer
             found += good
         if found and len(self.purpose.columns) == 1:
             self.settle_best(0, self.purpose.columns)
@@ -77,8 +56,8 @@ class Seeker:
         close around a design that is not known.
         """
         form, purpose = self.form, self.purpose
-        found = len(form.archive) > 0 and form.propagation.taught >= LESSONS
-        pointed_at = self._known_before and self.rounds <= LONG
+        found = len(form.archive) > 0 and form.propagation.taught >= self.limits.lessons
+        pointed_at = self._known_before and self.rounds <= self.limits.long_proof
         return form.conflict or not found or (len(purpose.columns) > 1 and not pointed_at)
 
     @property
@@ -93,8 +72,8 @@ class Seeker:
         Where few designs of a front are known they are hard to find, and each spares many boxes.
         """
         archive = self.form.archive
-        scarce = len(archive.columns) > 1 and len(archive) < SCARCE
-        return self._known_before or (self.failures >= PATIENCE and not scarce)
+        scarce = len(archive.columns) > 1 and len(archive) < self.limits.scarce
+        return self._known_before or (self.failures >= self.limits.patience and not scarce)
 
     def settle_best(self, traded: int, order: Sequence[int]) -> None:
         """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
@@ -109,14 +88,14 @@ class Seeker:
     def _conflicts(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
         form = self.form
-        boxes = batch.take(self.rng.integers(len(batch), size=min(CONFLICTS, len(batch))))
+        boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
         combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
         caps = np.tile(self.purpose.plain, (len(boxes), 1))
         tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
         found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
-        form.learn(tasks, found, np.maximum(np.abs(found.t), NEAR) ** -2.0)
+        form.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
         if not form.gridded.any():
             self.offer(found.variables, combinations)
 
@@ -143,7 +122,7 @@ class Seeker:
         # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
         left[stood_for] = True
         worth = np.zeros(phi.shape[1])
-        worth[self.purpose.columns] = np.maximum(EDGE_WORTH - self.purpose.slack, 0.0)
+        worth[self.purpose.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.purpose.slack, 0.0)
         phi[stood_for] += worth
         return rest.take(left & (self.purpose.room(phi, rest.cell) > 0))
 
@@ -167,14 +146,14 @@ class Seeker:
     def _keep(self, boxes: Boxes) -> tuple[int, np.ndarray]:
         """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
         found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
-        for share in (EDGE, 0.5) if len(boxes) else ():
+        for share in (self.limits.inside, 0.5) if len(boxes) else ():
             points = self.form.makeable(self.form.inside(boxes, share))
             new, rows = self._offered(points, self.form.combination(boxes))
             hit[rows] = True
             found += new
         missed = np.flatnonzero(thin & ~hit)
         if len(missed):
-            new, rows = self.on_edge(points[missed], self.form.combination(boxes.take(missed)), ROUNDED_OFF)
+            new, rows = self.on_edge(points[missed], self.form.combination(boxes.take(missed)), self.limits.rounded_off)
             hit[missed[rows]] = True
             found += new
         return found, hit
@@ -186,7 +165,8 @@ class Seeker:
         the other variables.
         """
         low, high = self.form.ends(boxes)
-        narrow: np.ndarray = np.any((low < high) & (high - low <= THIN * np.maximum(np.abs(high), np.abs(low))), axis=1)
+        floor = self.limits.thin * np.maximum(np.abs(high), np.abs(low))
+        narrow: np.ndarray = np.any((low < high) & (high - low <= floor), axis=1)
         return narrow
 
     def offer(self, points: np.ndarray, combinations: np.ndarray) -> int:
@@ -239,13 +219,14 @@ class Seeker:
             base = np.full((len(own), len(form.goals)), np.inf)
             base[:, columns] = phi[own][:, columns]
             slopes = np.where(np.isfinite(base), 1.0, 0.0)
-            tasks = Tasks(TIE_WEIGHT * slopes, slopes, base, form.goal_scales, 1.0)
+            tasks = Tasks(self.limits.tie_weight * slopes, slopes, base, form.goal_scales, 1.0)
             low, high = (np.where(form.gridded, points[own], ends) for ends in (form.lower, form.upper))
             answer = form.solve_many(tasks, combinations[own], points[own], low, high)
             new, kept = self._offered(answer.variables, combinations[own])
             form.kept_closely.update((mark, k in set(kept.tolist())) for k, mark in enumerate(fresh))
         alone = rows[[not form.kept_closely[mark] for mark in marks]]
-        return new + self._taken(points[alone], combinations[alone], phi[alone] + EDGE_WORTH), rows
+        worse = phi[alone] + form.tuning.tolerances.edge_worth
+        return new + self._taken(points[alone], combinations[alone], worse), rows
 
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
         """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
@@ -267,11 +248,12 @@ class Seeker:
             return
         expanded: set[int] = set()
         placed: set[tuple[int, bytes]] = set()
-        for _ in range(ROUNDS):
+        for _ in range(self.limits.rounds):
             clock.check(clock.open)
             # Every part of a design that nobody asked about yet, one at a time ...
             fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
-            fresh = [fresh[int(k)] for k in spread_subset(archive.phi[fresh][:, self.purpose.columns], PARENTS)]
+            some = spread_subset(archive.phi[fresh][:, self.purpose.columns], self.limits.parents)
+            fresh = [fresh[int(k)] for k in some]
             parents = [archive[k] for k in fresh]
             expanded.update(c.combination for c in parents)
             found = self._reach(*self._exchanged(parents)) if parents else 0
@@ -282,7 +264,7 @@ class Seeker:
                 return
 
     def _most_solved(self) -> int:
-        return MOST_SOLVED if self.form.batch_nlp().compiled else MOST_SOLVED_PLAIN
+        return self.limits.solved if self.form.batch_nlp().compiled else self.limits.solved_over_arrays
 
     def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return combinations that differ from a parent in one part, with its variables and phi."""
@@ -302,8 +284,8 @@ class Seeker:
         """Return known combinations with places of the front to try them at."""
         archive, columns = self.form.archive, self.purpose.columns
         phi = archive.phi[:, columns]
-        places = corners(phi, TARGETS)
-        chosen = spread_subset(phi, FAMILIES)
+        places = corners(phi, self.limits.targets)
+        chosen = spread_subset(phi, self.limits.families)
         tried = [
             (int(k), place)
             for k in chosen
@@ -326,7 +308,7 @@ class Seeker:
                 combinations, start, _ = self._exchanged([parent])
                 own = np.append(combinations, parent.combination)
                 weights = np.zeros((len(own), len(self.form.goals)))
-                weights[:, self.purpose.columns] = TIE_WEIGHT
+                weights[:, self.purpose.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
                 caps = np.tile(self.purpose.plain, (len(own), 1))
                 tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
@@ -350,7 +332,7 @@ class Seeker:
         good = np.flatnonzero((found.violation <= MISSED) & np.all(np.isfinite(phi), axis=1))
         cell = form.cell_of(combinations[good])
         space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
-        good = good[space > 0][spread_choice(along[space > 0], space[space > 0], ROUNDED_OFF)]
+        good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
         return self.round_off(form.leaves(combinations[good]), found.variables[good], tasks.take(good))
@@ -368,7 +350,7 @@ class Seeker:
             known = np.isfinite(base)
             caps[:, columns] = np.where(known, base, np.inf)
             slopes[:, columns] = np.where(known, slope, 0.0)
-            weights[:, columns] = np.where(known, TIE_WEIGHT / slope, 1.0)
+            weights[:, columns] = np.where(known, self.limits.tie_weight / slope, 1.0)
         return Tasks(weights, slopes, caps, form.goal_scales, 1.0 if len(columns) > 1 else 0.0)
 
     def _solve(self, boxes: Boxes) -> int:
@@ -422,7 +404,8 @@ class Seeker:
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
-    reach = REACH if (2 * REACH) ** int(form.gridded.sum()) <= MOST_ROUNDINGS else 1
+    limits, snap = form.tuning.heuristics.seeker, form.tuning.tolerances.snap
+    reach = limits.reach if (2 * limits.reach) ** int(form.gridded.sum()) <= limits.most_roundings else 1
     steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T
     count = len(steps)
@@ -430,7 +413,7 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
     high = np.tile(form.propagation.high[: form.n], (len(variables) * count, 1))
     for k, grid in enumerate(form.grids):
         if len(grid):
-            place = np.searchsorted(grid, below(variables[:, k], SNAP))[:, None] + steps[None, :, k]
+            place = np.searchsorted(grid, below(variables[:, k], snap))[:, None] + steps[None, :, k]
             low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()
     return low, high, np.repeat(np.arange(len(variables)), count)
 

@@ -10,26 +10,18 @@ import numpy as np
 from synth import deadline
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
-from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.formulation import Boxes, Candidate, Formulation
 from synth.instance import Instance
 from synth.purposes import Purpose
-
-STARTS = 6
-DIRECTIONS = 5
-BATCH = 2048
-MOST_TIES = 50
-MOST_MOVES = 8
-TRIED_AT_ONCE = 16_384  # points, that arrays stay in the cache
-EVALUATED_AT_ONCE = 65_536
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
     """Make the design that is best in each objective exact: solve in all combinations that come near to it."""
-    archive = form.archive
+    archive, ties = form.archive, form.tuning.heuristics.settle.ties
     for k in range(traded if form.n else 0):
         near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * slack)
         _, first = np.unique(archive.combination[near], return_index=True)
-        chosen = [archive[int(near[i])] for i in np.sort(first)[:MOST_TIES]]
+        chosen = [archive[int(near[i])] for i in np.sort(first)[:ties]]
         order = [k, *(j for j in range(traded) if j != k)]
         exact = settle_discrete(form, settle_variables(form, chosen, 0, order), traded, order)
         for c in settle_variables(form, exact, 0, order):
@@ -53,14 +45,14 @@ def settle_discrete(
     steps: list[int | None] = [int(k) for k in np.flatnonzero(form.gridded & (form.lower < form.upper))]
     steps += [None] if parts else []
     moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
-    for step in steps * MOST_MOVES:
+    for step in steps * form.tuning.heuristics.settle.moves:
         # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
         own = np.flatnonzero(idle < len(steps))
         if not len(own):
             break
         known = combinations[own], variables[own], phi[own, :traded]
         trials = _other_parts(form, *known) if step is None else _other_values(form, step, *known)
-        found = _better(phi[own], _feasible(form, *trials), traded, list(order))
+        found = _better(phi[own], _feasible(form, *trials), traded, list(order), form.tuning.tolerances.tie)
         better = own[found.whose]
         idle[own] += 1
         idle[better], moved[better] = 0, True
@@ -87,9 +79,10 @@ class _Found:
 def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
     """Return the feasible ones of some points."""
     rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
-    for first in range(0, len(whose), EVALUATED_AT_ONCE):
+    at_once = form.tuning.heuristics.settle.evaluated_at_once
+    for first in range(0, len(whose), at_once):
         deadline.check()
-        part = slice(first, first + EVALUATED_AT_ONCE)
+        part = slice(first, first + at_once)
         own, values = form.feasible_rows(variables[part], combinations[part])
         rows.append(first + own)
         phi.append(values[own])
@@ -105,7 +98,7 @@ def _other_values(
     grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
     own = [np.empty(0, dtype=np.int64)]
     places = [np.empty(0, dtype=np.int64)]
-    for part in _slices(len(combinations), len(grid)):
+    for part in _slices(form, len(combinations), len(grid)):
         deadline.check()
         columns = list(variables[part].T[:, :, None])
         columns[k] = grid[None, :]
@@ -123,7 +116,7 @@ def _other_parts(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return designs with one other part that promise to be as good: whose, combination, variables."""
     own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
-    for part in _slices(len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
+    for part in _slices(form, len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
         deadline.check()
         others = form.instance.combinations.neighbours(combinations[part])
         keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
@@ -133,24 +126,24 @@ def _other_parts(
     return whose, np.concatenate(numbers), variables[whose]
 
 
-def _slices(count: int, each: int) -> list[slice]:
+def _slices(form: Formulation, count: int, each: int) -> list[slice]:
     """Return which of so many designs are tried at once, with so many points each."""
-    at_once = max(TRIED_AT_ONCE // max(each, 1), 1)
+    at_once = max(form.tuning.heuristics.settle.tried_at_once // max(each, 1), 1)
     return [slice(first, first + at_once) for first in range(0, count, at_once)]
 
 
-def _better(own: np.ndarray, found: _Found, traded: int, order: list[int]) -> _Found:
+def _better(own: np.ndarray, found: _Found, traded: int, order: list[int], tie: float) -> _Found:
     """Return, per design with phi ``own``, the best point by the objectives in their order, where that is better."""
-    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + TIE, axis=1))
+    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + tie, axis=1))
     for j in order:
         least = np.full(len(own), np.inf)
         np.minimum.at(least, left.whose, left.phi[:, j])
-        left = left.take(left.phi[:, j] <= least[left.whose] + TIE)
+        left = left.take(left.phi[:, j] <= least[left.whose] + tie)
     _, first = np.unique(left.whose, return_index=True)
     left = left.take(first)
     gain = (own[left.whose] - left.phi)[:, order]
-    decisive = np.argmax(np.abs(gain) > TIE, axis=1)
-    return left.take(gain[np.arange(len(gain)), decisive] > TIE)
+    decisive = np.argmax(np.abs(gain) > tie, axis=1)
+    return left.take(gain[np.arange(len(gain)), decisive] > tie)
 
 
 def settle_variables(
@@ -163,6 +156,7 @@ def settle_variables(
     """
     if not form.n or not candidates:
         return list(candidates)
+    tie = form.tuning.tolerances.tie
     combinations = np.array([c.combination for c in candidates])
     variables = np.array([c.variables for c in candidates])
     phi = np.array([c.phi for c in candidates])
@@ -170,7 +164,7 @@ def settle_variables(
     high = np.where(form.gridded, variables, form.upper)
     goals = len(form.goals)
     caps = np.full(phi.shape, np.inf)
-    caps[:, :traded] = phi[:, :traded] + TIE
+    caps[:, :traded] = phi[:, :traded] + tie
     for j in range(goals) if order is None else order:
         moving = np.flatnonzero(np.any((high > low) & form.seen_by_goal[j], axis=1))
         if not len(moving):
@@ -186,9 +180,9 @@ def settle_variables(
         rows, found = form.feasible_rows(answer.variables, combinations[moving])
         for k in rows:
             own = moving[k]
-            if np.all(found[k] <= caps[own] + TIE) and found[k, j] < phi[own, j] - TIE:
+            if np.all(found[k] <= caps[own] + tie) and found[k, j] < phi[own, j] - tie:
                 variables[own], phi[own] = answer.variables[k], found[k]
-        caps[:, j] = phi[:, j] + TIE
+        caps[:, j] = phi[:, j] + tie
     return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
 
 
@@ -230,10 +224,11 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     found: list[list[Candidate]] = [[] for _ in candidates]
     if not len(pool) or not candidates:
         return found
+    tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.settle.ties
     phi = np.array([c.phi for c in candidates])
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     caps = np.full(phi.shape, np.inf)
-    caps[:, :traded] = phi[:, :traded] + TIE
+    caps[:, :traded] = phi[:, :traded] + tie
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
     cell[:, :apart] = form.cell_of(own)[:, :apart]
@@ -243,7 +238,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     while len(boxes):
         boxes = form.contract(boxes, caps[boxes.tag], passes=1)
         single = form.cells.single(boxes.cell)
-        numbers = _members(form, boxes.cell[single])
+        numbers = _members(form, boxes.cell[single], most)
         tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
         combinations += numbers
         boxes, _ = form.split(boxes.take(~single))
@@ -254,28 +249,28 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
         keep &= digit == its[whose]
     whose = whose[keep]
     same = _feasible(form, whose, every[keep], points[whose])
-    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= TIE, axis=1)):
-        if len(found[same.whose[k]]) < MOST_TIES:
+    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= tie, axis=1)):
+        if len(found[same.whose[k]]) < most:
             found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
     return found
 
 
-def _members(form: Formulation, cells: np.ndarray) -> list[np.ndarray]:
-    """Return the combinations of each of some cells that cannot be split, most of which have one."""
+def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray]:
+    """Return combinations of each of some cells that cannot be split, most of which have one: at most so many."""
     if np.all(form.cells.size(cells) == 1):
         return list(form.cells.combination(cells)[:, None])
-    return [form.cells.members(cell, MOST_TIES) for cell in cells]
+    return [form.cells.members(cell, most) for cell in cells]
 
 
 def solve_everywhere(
     form: Formulation, combinations: np.ndarray, purpose: Purpose, clock: Clock, rng: np.random.Generator
 ) -> None:
     """Solve the continuous problem of every combination from several starts and in several directions."""
-    columns, goals = purpose.columns, len(form.goals)
+    columns, goals, limits = purpose.columns, len(form.goals), form.tuning.heuristics.settle
     directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
-    for number in range(0, len(combinations), BATCH):
-        own = combinations[number : number + BATCH]
-        for _ in range(STARTS):
+    for number in range(0, len(combinations), limits.batch):
+        own = combinations[number : number + limits.batch]
+        for _ in range(limits.starts):
             share = rng.random((len(own), form.n))
             start = form.lower + share * (form.upper - form.lower)
             for direction in directions if len(columns) > 1 else [np.ones(1)]:

@@ -11,14 +11,12 @@ import numpy as np
 
 from synth.clock import Clock
 from synth.cover import Covered, best, cover
-from synth.formulation import TIE, Boxes, Candidate, Formulation
+from synth.formulation import Boxes, Candidate, Formulation
 from synth.purposes import Cover, Staircase
 from synth.seeker import Seeker
 from synth.settle import settle_variables
 
 CAPPED, SOUGHT = 0, 1
-PROOF = 0.8  # share of the slack
-NARROW = 20.0  # in units of the slack
 
 
 def cover_by_steps(
@@ -47,7 +45,8 @@ def cover_by_steps(
     Covered
         What steps left open, without what was covered meanwhile.
     """
-    proof = PROOF * purpose.slack[SOUGHT]
+    tree, tie = form.tuning.tree, form.tuning.tolerances.tie
+    proof = tree.step_proof * purpose.slack[SOUGHT]
     choice = purpose.slack[SOUGHT] - proof
     plain = np.full(len(form.goals), np.inf)
     corner = [form.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
@@ -70,9 +69,9 @@ def cover_by_steps(
             corner[SOUGHT] = max(corner[SOUGHT], found.phi[SOUGHT] - proof)
         _stretch(form, found, choice)
         phi = form.archive.phi
-        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + TIE)
+        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + tie)
         plain[CAPPED] = phi[good, CAPPED].min() - purpose.slack[CAPPED]
-        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= NARROW * purpose.slack[CAPPED]:
+        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= tree.narrow * purpose.slack[CAPPED]:
             # Nothing is better in the first objective than its end, so nothing useful is worse than that in the second.
             between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - purpose.slack[SOUGHT], plain)
             rest = Cover(purpose.columns, purpose.slack, between, form.archive)

@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from synth.combinations import JointCombinations
-from synth.formulation import TIE, Archive, Boxes, Candidate, Formulation
+from synth.formulation import Archive, Boxes, Candidate, Formulation
 from synth.inputs import inputs_of_combination
 from synth.instance import Instance
 from synth.native_tree import CapTables
 from synth.purposes import reaches_beyond
 from synth.search import Question
+from synth.tuning import TUNING, Tuning
 
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 
@@ -102,6 +103,7 @@ def alike(question: Question) -> tuple[Any, ...]:
         tuple(question.chosen.items()),
         settings["gap"],
         settings["seed"],
+        question.tuning,
     )
 
 
@@ -117,18 +119,26 @@ class BestOfEach(Archive):
         Width of the stored rows.
     plain : array (questions, objectives), optional
         Caps of phi that a design must keep.
+    tuning : Tuning
     """
 
     def __init__(
-        self, together: Together, column: int, variables: int, objectives: int, plain: np.ndarray | None = None
+        self,
+        together: Together,
+        column: int,
+        variables: int,
+        objectives: int,
+        plain: np.ndarray | None = None,
+        tuning: Tuning = TUNING,
     ) -> None:
-        super().__init__([column], variables, objectives)
+        super().__init__([column], variables, objectives, tuning)
+        self.tie = tuning.tolerances.tie
         self.together, self.column = together, column
         self.plain = np.full((len(together.each), objectives), np.inf) if plain is None else plain
 
     def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
         """Take new designs and keep the best of each question; of equal ones that which was known first."""
-        keep = np.all(phi <= self.plain[self.together.combinations.question(combination)] + TIE, axis=1)
+        keep = np.all(phi <= self.plain[self.together.combinations.question(combination)] + self.tie, axis=1)
         if combination is self.combination or not keep.any():
             return
         combination = np.concatenate([self.combination, combination[keep]])
@@ -171,7 +181,7 @@ class Each:
         self, form: Formulation, known: BestOfEach, slack: Callable[[np.ndarray], np.ndarray], asked: np.ndarray
     ) -> None:
         self.form, self.known, self._slack, self.asked = form, known, slack, asked
-        self.columns = [known.column]
+        self.columns, self.tie = [known.column], form.tuning.tolerances.tie
         self.slack = slack(np.zeros(1))
         self.plain = np.full(len(form.goals), np.inf)
         self._tree = form.cells.trees[0]
@@ -195,7 +205,7 @@ class Each:
     def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
         assert cell is not None
-        caps: np.ndarray = self._plain[cell[:, 0], : lower.shape[1]] + TIE
+        caps: np.ndarray = self._plain[cell[:, 0], : lower.shape[1]] + self.tie
         k = self.columns[0]
         caps[:, k] = np.minimum(caps[:, k], self._cap(cell))
         return caps
@@ -206,7 +216,7 @@ class Each:
         cap = self._cap(cell)
         with np.errstate(all="ignore"):
             distance = cap - lower[:, self.columns[0]]
-        broken = np.any(lower > self._plain[cell[:, 0], : lower.shape[1]] + TIE, axis=1) | (cap == -np.inf)
+        broken = np.any(lower > self._plain[cell[:, 0], : lower.shape[1]] + self.tie, axis=1) | (cap == -np.inf)
         room: np.ndarray = np.where(broken, 0.0, np.where(np.isnan(distance), np.inf, distance))
         return room
 
@@ -219,7 +229,7 @@ class Each:
     def leading(self, archive: Archive) -> list[Candidate]:
         """Return the best designs that are better than when last asked."""
         best = self.known.best()
-        better = best < self._polished - TIE
+        better = best < self._polished - self.tie
         self._polished = np.minimum(best, self._polished)
         return [c for c, q in zip(self.known, self.known.questions(), strict=True) if better[q]]
 
@@ -227,7 +237,7 @@ class Each:
         """Return the caps by the cluster of questions that a box speaks of."""
         if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._plain[:, form.bounded :])):
             return None
-        caps = self._plain[:, : form.bounded] + TIE
+        caps = self._plain[:, : form.bounded] + self.tie
         clusters = np.arange(len(caps))[:, None]
         caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(clusters))
         return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.values_of(caps))

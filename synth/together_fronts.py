@@ -22,22 +22,19 @@ from synth.search import Question, distinct
 from synth.together import LARGEST, different, groups_of
 from synth.together_search import TogetherSearch, Wider
 
-MOST_POINTS = 8  # designs of a front; where there are more, questions are answered sooner one by one
-PLACES = 8  # questions of which a rough picture is made
-LEVELS = 12  # caps of that picture
-
 
 def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
     """Return the positions of questions that are answered sooner together, by groups that are alike."""
     groups = groups_of(questions)
     for group in groups_of(questions, objectives=2):
+        joint = questions[group[0]].tuning.joint
         sizes: dict[int, list[int]] = {}
         for k in group:
             sizes.setdefault(int(questions[k].settings["points"]), []).append(k)
         # Every level of every question has combinations of its own, which must be numbered.
-        most = LARGEST // (LEVELS * questions[group[0]].instance.combinations.count)
-        few = (own for points, own in sizes.items() if 2 <= points <= MOST_POINTS)
-        groups += [own for own in few if len(own) > 1 and max(len(own), PLACES) <= most]
+        most = LARGEST // (joint.levels * questions[group[0]].instance.combinations.count)
+        few = (own for points, own in sizes.items() if 2 <= points <= joint.front_points)
+        groups += [own for own in few if len(own) > 1 and max(len(own), joint.places) <= most]
     return groups
 
 
@@ -83,6 +80,7 @@ class FrontsSearch:
         time_limit: float | None = None,
     ) -> None:
         self.questions, self.workers, self.progress = list(questions), workers, progress
+        self.tuning, self.joint = questions[0].tuning, questions[0].tuning.joint
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
         self.between = int(questions[0].settings["points"]) - 2
         moving = different([q.instance for q in questions])
@@ -107,7 +105,7 @@ class FrontsSearch:
                 question = numbers[codec.question(c.combination) // self.between]
                 found[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
         solves = self._work_counted()
-        fronts = [distinct(first.form.as_they_are(own), 2) for own in found.values()]
+        fronts = [distinct(first.form.as_they_are(own), 2, self.tuning) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
     def _search(self, positions: np.ndarray, wider: Wider, **more: Any) -> TogetherSearch:
@@ -136,7 +134,7 @@ class FrontsSearch:
         codec = self.first.together.combinations
         first, second = ({codec.question(c.combination): c for c in own} for own in (best, least))
         pairs = {q: (c, second[q]) for q, c in first.items() if q in second}
-        return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2)) == 2}
+        return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2, self.tuning)) == 2}
 
     # -- designs between -----------------------------------------------------------------------
 
@@ -163,17 +161,17 @@ class FrontsSearch:
         """Return where to cap the first objective of each question, and designs that are good between the ends."""
         numbers = list(ends)
         low, high = (np.array([pair[k].phi[0] for pair in ends.values()]) for k in range(2))
-        places = np.unique(np.linspace(0, len(numbers) - 1, PLACES).round().astype(int))
-        even = np.arange(1, LEVELS + 1) / (LEVELS + 1)
+        places = np.unique(np.linspace(0, len(numbers) - 1, self.joint.places).round().astype(int))
+        even = np.arange(1, self.joint.levels + 1) / (self.joint.levels + 1)
         at = low[places, None] + even * (high - low)[places, None]
         known = [c for k in places for c in ends[numbers[k]]]
         picture = self._at_levels([numbers[k] for k in places], at, known)
         drawn: dict[int, list[Candidate]] = {}
         for c in picture.glimpse():
-            drawn.setdefault(picture.together.combinations.question(c.combination) // LEVELS, []).append(c)
+            drawn.setdefault(picture.together.combinations.question(c.combination) // self.joint.levels, []).append(c)
         shares, good = [], list[Candidate]()
         for row, k in enumerate(places):
-            every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2)
+            every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2, self.tuning)
             phi = np.array([c.phi[:2] for c in every])
             chosen = spread_subset(phi, 2 + self.between)
             inner = np.sort((phi[chosen, 0] - low[k]) / (high[k] - low[k]))[1:-1]

@@ -10,16 +10,7 @@ from synth.cover import cover
 from synth.formulation import Boxes
 from synth.seeker import Seeker
 from synth.together import Each, Together
-
-FIRST_EFFORTS = (1_000, 20_000)  # boxes until a first design is known
-SETTLING_EFFORT = 100  # boxes per combination that may hold a better design than is made of it
-ROUNDS = 6
-ANYWHERE = 512  # combinations at random
-MOST_KNOWN = 32  # combinations that are tried for every question
-PLACES, FAR_PLACES = 8, 4  # among the questions, at which one part is exchanged, or two at a time
-MOST_SOLVED = 16_384  # continuous problems of a round
-MOST_DRAWN = 1_000_000  # combinations, of which so many are chosen
-ROUNDED_OFF = 10  # of them, per question
+from synth.tuning import JointHeuristics
 
 
 class Lookout:
@@ -32,11 +23,19 @@ class Lookout:
     rng : Generator
     thorough : bool
         Look longer, where boxes are costly.
+    limits : JointHeuristics
     """
 
-    def __init__(self, together: Together, clock: Clock, rng: np.random.Generator, thorough: bool) -> None:
+    def __init__(
+        self,
+        together: Together,
+        clock: Clock,
+        rng: np.random.Generator,
+        thorough: bool,
+        limits: JointHeuristics,
+    ) -> None:
         self.together, self.clock, self.rng, self.thorough = together, clock, rng, thorough
-        self.codec = together.combinations
+        self.codec, self.limits = together.combinations, limits
         # Where to look first: variables, by the combination that they are of in any question.
         self.starts: dict[int, np.ndarray] = {}
 
@@ -48,7 +47,7 @@ class Lookout:
         self.recalled(purpose)
         if not len(purpose.known):
             self._anywhere(purpose)
-        for effort in FIRST_EFFORTS:
+        for effort in self.limits.first_boxes:
             if not len(purpose.known):
                 cover(purpose.form, pool, purpose, self.clock, self.rng, effort)
         self.improve(purpose)
@@ -65,15 +64,15 @@ class Lookout:
 
     def _anywhere(self, purpose: Each) -> None:
         """Try combinations at random, some of each question: where designs are many, one is found soon."""
-        questions = np.flatnonzero(purpose.asked)
-        every = questions[np.arange(ANYWHERE) % len(questions)]
-        every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=ANYWHERE)))
+        questions, count = np.flatnonzero(purpose.asked), self.limits.anywhere
+        every = questions[np.arange(count) % len(questions)]
+        every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=count)))
         self.tried(purpose, every, purpose.form.inside(purpose.form.leaves(every), 0.5))
 
     def improve(self, purpose: Each) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
         elsewhere, made, expanded = set[tuple[int, bytes]](), set[tuple[int, bytes]](), set[tuple[int, int]]()
-        for _ in range(ROUNDS if len(purpose.known) else 0):
+        for _ in range(self.limits.rounds if len(purpose.known) else 0):
             found = self._everywhere(purpose, elsewhere)
             found += self._everywhere(purpose, made, True) if self.thorough and purpose.form.gridded.any() else 0
             found += self._beside(purpose, expanded) if purpose.form.n else 0
@@ -90,7 +89,7 @@ class Lookout:
         made = np.where(purpose.form.gridded & as_made, known.variables, 0.0)
         marks = [(int(c), x.tobytes()) for c, x in zip(own, made, strict=True)]
         first = {mark: k for k, mark in reversed(list(enumerate(marks))) if mark not in tried}
-        place = np.array(sorted(first.values())[:MOST_KNOWN], dtype=np.int64)
+        place = np.array(sorted(first.values())[: self.limits.known], dtype=np.int64)
         tried.update(marks[k] for k in place)
         rows = np.tile(place, len(questions))
         every = self.codec.joined(np.repeat(questions, len(place)), own[rows])
@@ -99,7 +98,7 @@ class Lookout:
     def _beside(self, purpose: Each, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
         # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
-        questions = purpose.known.questions() * PLACES // len(self.together.each)
+        questions = purpose.known.questions() * self.limits.places // len(self.together.each)
         own = {(int(q), self.codec.own(c.combination)): c for q, c in zip(questions, purpose.known, strict=True)}
         parents = [c for place, c in own.items() if place not in expanded]
         expanded.update(own)
@@ -108,19 +107,20 @@ class Lookout:
         made = [self.codec.neighbours(c.combination) for c in parents]
         rows = np.repeat(np.arange(len(made)), [len(x) for x in made])
         every, start = np.concatenate(made), np.array([c.variables for c in parents])[rows]
-        if len(every) > MOST_SOLVED:
-            chosen = np.sort(self.rng.choice(len(every), MOST_SOLVED, replace=False))
+        if len(every) > self.limits.solved:
+            chosen = np.sort(self.rng.choice(len(every), self.limits.solved, replace=False))
             every, start = every[chosen], start[chosen]
         return self.tried(purpose, every, start)
 
     def _further_away(self, purpose: Each) -> int:
         """Exchange two parts at a time of the best design of a few questions; return how many designs are of use."""
         known, every, start = purpose.known, [np.empty(0, dtype=np.int64)], [np.empty((0, purpose.form.n))]
-        for k in np.unique(np.linspace(0, len(known) - 1, FAR_PLACES).round().astype(int)) if len(known) else ():
+        limits = self.limits
+        for k in np.unique(np.linspace(0, len(known) - 1, limits.far_places).round().astype(int)) if len(known) else ():
             beside = self.codec.neighbours(known.combination[k])
-            some = self.rng.choice(beside, min(len(beside), MOST_DRAWN // max(len(beside), 1)), replace=False)
+            some = self.rng.choice(beside, min(len(beside), limits.drawn // max(len(beside), 1)), replace=False)
             away = np.unique(self.codec.neighbours(some))
-            every.append(self.rng.choice(away, min(len(away), MOST_SOLVED // FAR_PLACES), replace=False))
+            every.append(self.rng.choice(away, min(len(away), limits.solved // limits.far_places), replace=False))
             start.append(np.tile(known.variables[k], (len(every[-1]), 1)))
         return self.tried(purpose, np.concatenate(every), np.concatenate(start))
 
@@ -149,7 +149,7 @@ class Lookout:
         good = np.flatnonzero((found.violation <= MISSED) & better)
         order = good[np.lexsort((found.phi[good, k], questions[good]))]
         question = questions[order]
-        best = order[np.arange(len(order)) - np.searchsorted(question, question) < ROUNDED_OFF]
+        best = order[np.arange(len(order)) - np.searchsorted(question, question) < self.limits.rounded_off]
         if not len(best):
             return 0
         if form.gridded.any() and not as_made:
@@ -161,6 +161,13 @@ class Lookout:
             # What a combination leaves of the grid may lie far from where it is best without one.
             left = best[found.phi[best, k] < purpose.needed()[questions[best]]]
             if len(left):
-                cover(form, form.leaves(combinations[left]), purpose, self.clock, self.rng, SETTLING_EFFORT * len(left))
+                cover(
+                    form,
+                    form.leaves(combinations[left]),
+                    purpose,
+                    self.clock,
+                    self.rng,
+                    self.limits.settling_boxes * len(left),
+                )
                 seeker.settle_best(k, range(k + 1))
         return new

@@ -15,7 +15,7 @@ from synth.clock import Clock
 from synth.cover import cover
 from synth.elasticity import elasticities
 from synth.feasibility import Status
-from synth.formulation import TIE, Boxes, Candidate, Formulation, rows_of
+from synth.formulation import Boxes, Candidate, Formulation, rows_of
 from synth.pareto import rank
 from synth.resolution import rounded_up, slack
 from synth.results import Certificate, Design, Frame, ParetoFront
@@ -23,14 +23,6 @@ from synth.search import Question
 from synth.settle import settle_ties
 from synth.together import BestOfEach, Each, Together
 from synth.together_look import Lookout
-
-# Boxes per question; what needs more is easier alone. By turns: with plain boxes; in conflict; and there, where no
-# design is known, as there may be none to be found.
-TURNS = ((5_000, 5_000, 5_000), (5_000, 20_000, 10_000), (5_000, 250_000, 20_000))
-NEARLY_CLOSED = 0.1  # of the effort: if fewer boxes are open, as much again is worth it
-EFFORT = 20_000  # with given parts
-MOST_EFFORT = 12_000_000  # boxes of all questions: a quarter of them may have to be kept at a time
-TIE_EFFORT = 200  # boxes per question
 
 
 class Wider:
@@ -47,7 +39,7 @@ class Wider:
     """
 
     def __init__(self, questions: Sequence[Question], moving: Collection[str], first: str | None = None) -> None:
-        self.moving = moving
+        self.moving, self._tuning = moving, questions[0].tuning
         self._together = Together([q.instance for q in questions], moving)
         chosen = dict(questions[0].chosen)
         in_order = {first: chosen[first], **chosen} if first is not None else chosen
@@ -57,7 +49,7 @@ class Wider:
     def among(self, together: Together, conflict: bool) -> Formulation | None:
         """Return questions prepared for a search; None where their numbers are not among those of these."""
         if conflict not in self._forms:
-            self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict)
+            self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict, tuning=self._tuning)
         return self._forms[conflict].among(together)
 
 
@@ -70,6 +62,7 @@ class _Attempt:
     def open_questions(self, asked: np.ndarray, effort: float) -> np.ndarray:
         """Go on with so much effort; tell of which of the questions asked it is not proven what is best."""
         search, form = self.search, self.form
+        joint = search.joint
         if not asked.any():
             return asked
         if self.known is not search.known:
@@ -79,8 +72,8 @@ class _Attempt:
         before = form.contracted, form.nlp_solves
         purpose = Each(form, self.known, search._slack(search.sought), asked)
         for _ in range(2):
-            self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, MOST_EFFORT)).open
-            if not 0 < len(self.left) < NEARLY_CLOSED * effort:
+            self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, joint.most_boxes)).open
+            if not 0 < len(self.left) < joint.nearly_closed * effort:
                 break
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
@@ -124,6 +117,7 @@ class TogetherSearch:
         self.started = time.monotonic()
         self.questions, self.progress = list(questions), progress
         first = questions[0]
+        self.tuning, self.joint = first.tuning, first.tuning.joint
         self.wider, self.workers, self.sought = wider, workers, sought
         self.together = Together([q.instance for q in questions], () if wider is None else wider.moving, caps)
         self.gap = float(first.settings["gap"])
@@ -138,7 +132,7 @@ class TogetherSearch:
         self.rng = np.random.default_rng(first.settings["seed"])
         self.pool = self.form.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
-        self.look = Lookout(self.together, self.clock, self.rng, thorough=bool(caps))
+        self.look = Lookout(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
         self.look.starts = self._starts(ideas)
 
     def answers(self) -> list[ParetoFront | None]:
@@ -193,7 +187,7 @@ class TogetherSearch:
         plain = _Attempt(self, self.form, self.known, self.pool)
         conflict: _Attempt | None = None
         # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
-        for plainly, surely, doubtfully in TURNS:
+        for plainly, surely, doubtfully in self.joint.turns:
             now = unproven & found
             unproven &= ~found | plain.open_questions(now, plainly * int(now.sum()))
             if not unproven.any():
@@ -237,7 +231,9 @@ class TogetherSearch:
         purpose = Each(form, known, self._slack(self.sought), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self.look.tried(purpose, combinations, self._points([design for _, _, design in rows]))
-        outcome = cover(form, form.leaves(combinations), purpose, self.clock, self.rng, EFFORT * len(rows))
+        outcome = cover(
+            form, form.leaves(combinations), purpose, self.clock, self.rng, self.joint.given_parts * len(rows)
+        )
         left = purpose.open_questions(outcome.open)
         designs = self._designs([(c, ()) for c in known], 0)
         for q, _, _ in rows:
@@ -255,12 +251,12 @@ class TogetherSearch:
         return _Attempt(self, form, known, form.root())
 
     def _none_known(self) -> BestOfEach:
-        return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain)
+        return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain, self.tuning)
 
     def _prepared(self, conflict: bool = False) -> Formulation:
         form = None if self.wider is None else self.wider.among(self.together, conflict)
         if form is None:
-            form = Formulation(self.together, self.goals, 1, conflict)
+            form = Formulation(self.together, self.goals, 1, conflict, tuning=self.tuning)
         form.workers = self.workers
         return form
 
@@ -398,7 +394,10 @@ class TogetherSearch:
         result = []
         for c in designs:
             own = self.together.combinations.own(c.combination)
-            form, number = Formulation(self.together.of(c.combination), self.goals, 1), np.array([own])
+            form, number = (
+                Formulation(self.together.of(c.combination), self.goals, 1, tuning=self.tuning),
+                np.array([own]),
+            )
             _, phi = form.feasible_rows(c.variables[None, :], number)
             result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
@@ -411,13 +410,13 @@ class TogetherSearch:
         following = 1 if sought == 0 else 0
         questions = self.together.combinations.question(np.array([c.combination for c in chosen]))
         plain = self.plain.copy()
-        plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + TIE
-        known = BestOfEach(self.together, following, form.n, len(form.goals), plain)
+        plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
+        known = BestOfEach(self.together, following, form.n, len(form.goals), plain, self.tuning)
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
         known.add(*rows_of(chosen))
         purpose = Each(form, known, self._slack(following), asked)
         self.look.improve(purpose)
-        cover(form, self.pool, purpose, self.clock, self.rng, TIE_EFFORT * len(chosen))
+        cover(form, self.pool, purpose, self.clock, self.rng, self.joint.tie * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]

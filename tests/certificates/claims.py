@@ -9,8 +9,10 @@ from itertools import product
 import numpy as np
 
 import synth
+from synth.tuning import TUNING, Tuning
 from tests.certificates.reference import TOLERANCE, Points, Reference
 from tests.certificates.structures import Case, RandomProblem, make
+from tests.tuned import synthesize
 
 ROUNDING = 2e-6  # twice the tolerance of a limit: a design may gain from it what the limit is worth
 SAME = 1e-9
@@ -30,9 +32,9 @@ class Answer:
         return self.front.certificate.kind == "global"
 
 
-def run(case: Case, **more) -> synth.ParetoFront:
+def run(case: Case, tuning: Tuning = TUNING, **more) -> synth.ParetoFront:
     problem = RandomProblem(structure=case.structure, seed=str(case.seed))
-    return synth.synthesize(problem, case.requirements, **case.question() | more)
+    return synthesize(tuning, problem, case.requirements, **case.question() | more)
 
 
 @cache

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth import propagation, search
+from synth import search
 from synth.effort import SearchEffort
 from synth.search import pose
 from synth.steps import cover_by_steps
@@ -27,6 +27,7 @@ from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
+from tests.tuned import tuned
 
 INSTANCES = (
     dict.fromkeys(STRUCTURES, 6)
@@ -78,10 +79,10 @@ def test_a_front_claims_nothing_that_is_wrong(structure, seed):
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("structure", ["signs_gridded", "signs_pinned", "signs_poles"])
-def test_compiled_code_loses_no_value_of_any_sign(structure, seed, monkeypatch):
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
+def test_compiled_code_loses_no_value_of_any_sign(structure, seed):
     case = make(structure, 4 + seed)
-    a = Answer(case, run(case, time_limit=PATIENT), Reference(case))
+    at_once = tuned(compiling={"boxes": 0})
+    a = Answer(case, run(case, at_once, time_limit=PATIENT), Reference(case))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{4 + seed}: {a.front.certificate}", *wrong])
 
@@ -120,12 +121,13 @@ TWO_OBJECTIVES = (
     "scales",
     "one_feasible",
 )
+STEPS = {"whole_front": -1, "many_variables": 0}  # every front of two objectives goes step by step
 IN_STEPS = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(3)]
 
 
 @pytest.fixture
 def steps(monkeypatch):
-    """Let every front of two objectives go step by step; the boxes looked into by each pass over it."""
+    """Return the boxes looked into by each pass over a front step by step."""
     looked = []
 
     def counted(*arguments):
@@ -133,18 +135,15 @@ def steps(monkeypatch):
         looked.append(outcome.looked)
         return outcome
 
-    monkeypatch.setattr(search, "TOGETHER", -1)
-    monkeypatch.setattr(search, "MANY", 0)
     monkeypatch.setattr(search, "cover_by_steps", counted)
     return looked
 
 
 @pytest.mark.parametrize(("structure", "seed"), IN_STEPS)
-def test_a_front_step_by_step_claims_nothing_that_is_wrong(steps, monkeypatch, structure, seed):
-    if seed == 1:
-        monkeypatch.setattr("synth.steps.NARROW", 0.0)  # steps to the end
+def test_a_front_step_by_step_claims_nothing_that_is_wrong(steps, structure, seed):
     case = make(structure, seed)
-    a = Answer(case, run(case), Reference(case))
+    to_the_end = {"narrow": 0.0} if seed == 1 else {}
+    a = Answer(case, run(case, tuned(tree=STEPS | to_the_end)), Reference(case))
     assert steps or not a.front.designs or len(a.case.objectives) != 2 or a.proven
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
@@ -161,14 +160,16 @@ def of_two(structure: str, seed: int, points: int) -> Case:
 @pytest.mark.parametrize(
     ("structure", "seed"), [("gridded", 3), ("hard", 0), ("waves", 0), ("waves", 1), ("products", 1)]
 )
-def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, monkeypatch, effort, points, structure, seed):
-    monkeypatch.setattr(search, "EFFORT_WITH_FEW_PARTS", effort)
-    monkeypatch.setattr(search, "EFFORT_WITH_MANY", effort)
-    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=60.0 if points == 20 else 0.0, spell=100, patience=2))
-    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 0)  # what stays open is left to chance, and said so
-    monkeypatch.setattr("synth.steps.NARROW", 20.0 if points == 5 else 0.0)
+def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, effort, points, structure, seed):
+    given_up = {
+        "boxes_of_few_parts": effort,
+        "boxes_of_many": effort,
+        "further": SearchEffort(seconds=60.0 if points == 20 else 0.0, spell=100, patience=2),
+        "few_combinations": 0,  # what stays open is left to chance, and said so
+        "narrow": 20.0 if points == 5 else 0.0,
+    }
     case = of_two(structure, seed, points)
-    a = Answer(case, run(case), Reference(case))
+    a = Answer(case, run(case, tuned(tree=STEPS | given_up)), Reference(case))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
 
@@ -177,7 +178,7 @@ def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, monkeypatch,
 @pytest.mark.parametrize("seed", range(3))
 def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(steps, seconds, seed):
     case = of_two("hard", seed, 5)
-    a = Answer(case, run(case, time_limit=seconds), Reference(case))
+    a = Answer(case, run(case, tuned(tree=STEPS), time_limit=seconds), Reference(case))
     assert a.proven or a.front.interrupted == "time limit"
     wrong = faults(a)
     assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])

@@ -5,6 +5,7 @@ import pandas as pd
 import synth
 from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
+from synth.tuning import TUNING
 
 RODS = pd.DataFrame(
     {
@@ -49,11 +50,11 @@ class Strut(synth.DesignProblem):
         d.advise("wide", width > 0.05, "a wide bar")
 
 
-def strut_form(grid=True):
+def strut_form(grid=True, tuning=TUNING):
     """Return the problem ready to be searched."""
     problem = Strut()
     instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
-    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2)
+    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, tuning=tuning)
 
 
 def designs_of(form, rng, count):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import synth
-from synth import search
 from synth.best_first import OpenBoxes, Progress, best_first
 from synth.clock import Clock, Stopped
 from synth.cover import best, cover
@@ -17,6 +16,8 @@ from synth.formulation import Boxes, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover
+from synth.tuning import TUNING
+from tests.tuned import synthesize, tuned
 from tests.unit.spring import OPTIMUM, TensionSpring
 from tests.unit.strut import NEEDED, RODS, Strut
 
@@ -176,18 +177,17 @@ def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
         grid=False,
     )
     assert front.certificate.kind == "global"
-    assert front.statistics["boxes"] > search.EFFORT_WITH_MANY  # more than a first effort
+    assert front.statistics["boxes"] > TUNING.tree.boxes_of_many  # more than a first effort
 
 
 @pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
-def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(monkeypatch, objectives):
-    trees = ("FIRST_EFFORT", "COARSE_EFFORT", "SOON", "TOGETHER", "EFFORT", "EFFORT_WITH_MANY", "EFFORT_WITH_FEW_PARTS")
-    for name in trees:
-        monkeypatch.setattr(search, name, 50 if len(objectives) > 1 else 1)
-    proven = synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5)
+def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(objectives):
+    trees = ("first_boxes", "coarse_boxes", "first_try", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
+    soon = dict.fromkeys(trees, 50 if len(objectives) > 1 else 1)
+    ask = {"objectives": objectives, "catalogs": {"rods": RODS}, "points": 5}
+    proven = synthesize(tuned(tree=soon), Strut(), NEEDED, **ask)
     assert proven.certificate.kind == "global"  # what the first effort leaves open is closed
-    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=0.0))
-    left = synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5)
+    left = synthesize(tuned(tree={**soon, "further": SearchEffort(seconds=0.0)}), Strut(), NEEDED, **ask)
     assert left.certificate.kind == "exhaustive"
     assert left.certificate.budget == 0.0
     assert 1e-3 <= left.certificate.gap < 1

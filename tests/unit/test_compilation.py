@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import synth
-from synth import compilation, deadline, formulation, native, propagation, search
+from synth import compilation, deadline, native, search
 from synth.batch_nlp import BatchNlp, Tasks
 from synth.compilation import compile_shared, meanwhile, switched_off, switched_on
 from synth.deadline import Stopped
 from synth.effort import CompilingEffort
+from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut, strut_form
 
 SOURCE = "int one(void) { return 1; }"
@@ -128,16 +128,18 @@ def test_compiled_code_can_be_switched_off_for_a_block(monkeypatch):
 # -- beside a search -------------------------------------------------------------------------------
 
 
+AT_ONCE = tuned(compiling={"combinations": 0})  # everything is compiled from the first
+
+
 def ask(problem=None, **more):
-    return synth.synthesize(problem or Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
+    return synthesize(AT_ONCE, problem or Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
 
 
 @pytest.fixture
 def never_done(tmp_path, monkeypatch):
-    """Let everything be compiled from the first, by a compiler that is never done; its folder."""
+    """Let everything be compiled by a compiler that is never done; its folder."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
     path = compiler(tmp_path, 600)
     monkeypatch.setattr(native, "_compiler", lambda: (path, "slow"))
     return tmp_path / "home" / "clutchsynth"
@@ -177,8 +179,6 @@ def wanted(monkeypatch, tmp_path):
     """Let all time limits of less than a year be too short for compiling, with an empty cache; what is compiled."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
-    monkeypatch.setattr(formulation, "COMPILED_FROM", 0)
     monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=3e7))
     monkeypatch.setattr(native, "_compiler", lambda: ("cc", "a compiler"))
     begun = []
@@ -258,7 +258,6 @@ def test_ctrl_c_while_the_compiler_works_is_heard(never_done, monkeypatch):
 @pytest.mark.skipif(native._compiler() is None, reason="no C compiler")
 def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatch):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-    monkeypatch.setattr(propagation, "COMPILED_FROM", 0)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     looked = []
     aside = search.FrontSearch._look_meanwhile

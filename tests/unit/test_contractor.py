@@ -11,15 +11,19 @@ from hypothesis import strategies as st
 
 import synth
 from problems.mechanics.guide_friction import sum_geometric
-from synth import native, propagation
+from synth import native
 from synth.clusters import ClusterTree, Factor
 from synth.contractor import Contracted, Contractor, Layout
-from synth.formulation import TIE, Formulation
+from synth.formulation import Formulation
 from synth.instance import Instance, as_catalogs, catalogs_for
 from synth.intervals import Cut, Goal
 from synth.program import Program
 from synth.special import recorded
+from synth.tuning import TUNING
+from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
+
+TIE = TUNING.tolerances.tie
 
 ROWS = 6
 
@@ -434,8 +438,8 @@ def test_halves_of_boxes_hold_what_the_box_held():
 
 def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
-    plain, machine = strut_form(), strut_form()
+    at_once = tuned(compiling={"boxes": 0})
+    plain, machine = strut_form(tuning=at_once), strut_form(tuning=at_once)
     rng = np.random.default_rng(4)
     points, combinations, phi = designs_of(plain, rng, 2000)
     boxes = around(plain, rng, points, combinations, 0.2)

@@ -11,12 +11,15 @@ from hypothesis import strategies as st
 import synth
 from synth.clock import Clock, Stopped
 from synth.cover import best, cover
-from synth.formulation import TIE, Archive, Candidate, Formulation
+from synth.formulation import Archive, Candidate, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.purposes import Cover, Staircase
-from synth.search import ROUNDED, distinct
+from synth.search import distinct
 from synth.seeker import spread_choice
+from synth.tuning import TUNING
 from tests.unit.strut import NEEDED, RODS, Strut
+
+TIE = TUNING.tolerances.tie
 
 WIDTH = 4  # objectives; the first ones are traded off
 
@@ -148,15 +151,15 @@ def candidates(*phi):
 
 
 def test_distinct_keeps_the_first_of_those_that_differ_by_rounding():
-    tiny = 0.4 * ROUNDED
-    kept = distinct(candidates((1, 2), (1 + tiny, 2 - tiny), (2, 1), (2, 2), (1, 2)), 2)
+    tiny = 0.4 * TUNING.tolerances.rounded
+    kept = distinct(candidates((1, 2), (1 + tiny, 2 - tiny), (2, 1), (2, 2), (1, 2)), 2, TUNING)
     assert [c.combination for c in kept] == [0, 2]
 
 
 def test_distinct_drops_what_is_beaten_wherever_it_stands():
-    assert [c.combination for c in distinct(candidates((3, 3), (1, 2), (2, 1)), 2)] == [1, 2]
-    assert [c.combination for c in distinct(candidates((1, 2, 9), (1, 2.5, 0)), 2)] == [0]
-    assert distinct([], 2) == []
+    assert [c.combination for c in distinct(candidates((3, 3), (1, 2), (2, 1)), 2, TUNING)] == [1, 2]
+    assert [c.combination for c in distinct(candidates((1, 2, 9), (1, 2.5, 0)), 2, TUNING)] == [0]
+    assert distinct([], 2, TUNING) == []
 
 
 @given(st.integers(0, 10**6))
@@ -164,7 +167,7 @@ def test_distinct_drops_what_is_beaten_wherever_it_stands():
 def test_distinct_leaves_designs_of_which_none_beats_another_and_drops_only_what_is_beaten(seed):
     rng = np.random.default_rng(seed)
     tried = candidates(*np.round(rng.uniform(0, 1, (int(rng.integers(1, 20)), 2)), 1))
-    kept = distinct(tried, 2)
+    kept = distinct(tried, 2, TUNING)
     for a, b in product(kept, kept):
         assert a is b or not np.all(a.phi <= b.phi)
     for c in tried:

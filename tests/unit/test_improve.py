@@ -8,19 +8,21 @@ import numpy as np
 import pytest
 
 import synth
-from synth import search
 from synth.effort import SearchEffort
 from synth.improvement import go_on
 from synth.instance import catalogs_for
 from synth.loading import load_front
+from synth.search import pose
+from synth.tuning import TUNING, PartSampling
+from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut
 
 OWN = {"rods": RODS}
 
 
-def ask(**more):
+def ask(tuning=TUNING, **more):
     settings = {"catalogs": OWN, "points": 6, "gap": 1e-3, **more}
-    return synth.synthesize(Strut(), NEEDED, **settings)
+    return synthesize(tuning, Strut(), NEEDED, **settings)
 
 
 @pytest.fixture
@@ -28,12 +30,9 @@ def unproven(monkeypatch, tmp_path_factory):
     """A front of which little is proven, since its search was given up early."""
     with monkeypatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        for name in ("COARSE_EFFORT", "TOGETHER", "EFFORT", "EFFORT_WITH_MANY", "EFFORT_WITH_FEW_PARTS"):
-            patch.setattr(search, name, 40)
-        patch.setattr(search, "EXHAUSTIVE_LIMIT", 1)
-        patch.setattr(search, "OUTER_TRIALS", 1)
-        patch.setattr(search, "FURTHER", SearchEffort(seconds=0.0))
-        front = ask()
+        trees = ("coarse_boxes", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
+        given_up = {"few_combinations": 1, "further": SearchEffort(seconds=0.0), **dict.fromkeys(trees, 40)}
+        front = ask(tuned(tree=given_up, heuristics={"parts": PartSampling(trials=1)}))
     assert front.certificate.kind == "heuristic"
     assert front.designs
     return front
@@ -74,7 +73,7 @@ def test_a_front_that_is_stopped_again_is_never_worse(unproven, seconds):
 
 
 def test_designs_given_stay_where_there_is_room_for_them(unproven):
-    question = search.pose(Strut(), NEEDED, points=20, catalogs=catalogs_for(Strut(), OWN))
+    question = pose(Strut(), NEEDED, points=20, catalogs=catalogs_for(Strut(), OWN))
     better = go_on(unproven, question, "front")
     assert better.certificate.kind == "global"
     assert len(better.designs) > len(unproven.designs)

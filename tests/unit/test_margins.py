@@ -4,21 +4,23 @@ import numpy as np
 import pytest
 
 import synth
-from synth import native, propagation
+from synth import native
 from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
 from synth.margins import above, below, within
 from synth.search import one_best
+from tests.tuned import synthesize, tuned
 
+OVER_ARRAYS = tuned(compiling={"boxes": 1e9})
 HERE = native.cache_folder() is not None and native._compiler() is not None
 COMPILED = [False, pytest.param(True, marks=pytest.mark.skipif(not HERE, reason="no C compiler"))]
 
 
 @pytest.fixture(params=COMPILED, ids=["arrays", "compiled"])
 def code(request, monkeypatch):
-    """Take boxes over arrays, or by compiled code from the first on."""
+    """Take boxes over arrays, or by compiled code from the first on; the numbers to ask with."""
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1" if request.param else "0")
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
+    return tuned(compiling={"boxes": 0})
 
 
 class Tilt(synth.DesignProblem):
@@ -61,14 +63,14 @@ def test_ends_of_any_sign_move_outward():
 
 @pytest.mark.parametrize("pinned", [None, -5.0, -10.0, -3.75])
 def test_negative_makeable_and_pinned_values_are_found(code, pinned):
-    front = synth.synthesize(Tilt, {}, points=1, fix={} if pinned is None else {"angle": pinned})
+    front = synthesize(code, Tilt, {}, points=1, fix={} if pinned is None else {"angle": pinned})
     assert front.status.value == "optimal"
     assert np.rad2deg(front.designs[0].values["angle"]) == pytest.approx(-10.0 if pinned is None else pinned)
     assert front.verify().holds
 
 
 def test_a_front_of_negative_makeable_values_is_whole(code):
-    front = synth.synthesize(Tilt, {}, objectives=["cost", "lean"], points=10)
+    front = synthesize(code, Tilt, {}, objectives=["cost", "lean"], points=10)
     assert front.certificate.kind == "global"
     angles = {round(float(np.rad2deg(d.values["angle"])), 6) for d in front.designs}
     assert angles == {-10.0, -7.5, -5.0}
@@ -77,7 +79,10 @@ def test_a_front_of_negative_makeable_values_is_whole(code):
 
 def test_thin_boxes_of_any_sign_are_kept_and_split(code):
     form = Formulation(
-        Instance(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False), {"cost": "min"}, 1
+        Instance(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False),
+        {"cost": "min"},
+        1,
+        tuning=code,
     )
     size = 4096
     rng = np.random.default_rng(0)
@@ -89,10 +94,9 @@ def test_thin_boxes_of_any_sign_are_kept_and_split(code):
     assert np.all((kept.low <= middle * (1 - 1e-12)) & (kept.high >= middle * (1 + 1e-12)))
 
 
-def test_what_falls_without_end_beside_a_pole_is_not_proven(monkeypatch):
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 1e9)
+def test_what_falls_without_end_beside_a_pole_is_not_proven():
     problem = synth.load(Pole)
-    front = one_best(Instance(problem, {}, catalogs_for(problem, None)), "cost", 1e-3, 3000)
+    front = one_best(Instance(problem, {}, catalogs_for(problem, None)), "cost", 1e-3, 3000, tuning=OVER_ARRAYS)
     assert front.statistics["boxes"] > 3000
     assert front.certificate.kind != "global"
 

@@ -11,15 +11,17 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
-from synth import native, native_boxes, propagation
+from synth import native, native_boxes
 from synth.c_text import template
 from synth.contractor import Contractor, Layout
-from synth.formulation import PINNED, SNAP, Formulation
+from synth.formulation import Formulation
 from synth.instance import Instance, as_catalogs
 from synth.intervals import BACKWARD, FORWARD, Cut, Goal
 from synth.margins import above
 from synth.program import OP_SELECT, Program
 from synth.special import TABLE, recorded
+from synth.tuning import TUNING
+from tests.tuned import tuned
 
 HERE = native.cache_folder() is not None and native._compiler() is not None
 pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
@@ -114,7 +116,7 @@ class Case:
             low[b], high[b] = [float(x[0]) for x, _ in ends], [float(y[0]) for _, y in ends]
             goals[b] = [float(np.asarray(x).ravel()[0]) for x in least]
             opens[b] = [bool(np.asarray(x).ravel()[0]) for x in flags]
-        alive &= ~np.any(low > above(high, SNAP, PINNED), axis=1)
+        alive &= ~np.any(low > above(high, *TUNING.tolerances.margins), axis=1)
         return alive, low, np.maximum(low, high), goals, opens
 
     def compiled(self, code, capped, passes, workers=1):
@@ -130,7 +132,7 @@ class Case:
             self.steep,
             self.spreads,
             [np.empty(0)] * self.n,
-            (SNAP, PINNED),
+            TUNING.tolerances.margins,
         )
         prepared = native_boxes.Prepared(self.contractor, question)
         return loaded(code).contract(
@@ -364,12 +366,13 @@ OPTIONS = {
     "lipka": {"friction_basis": "worst_case", "guide_series": "lipka"},
     "dry": {"lubrication": "dry"},
 }
+AT_ONCE = tuned(compiling={"boxes": 0})
 OBJECTIVES = {"mass": "min", "actuation_force": "min", "friction_work": "min"}
 
 
-def formulation(options, grid=False, requirements=REQUIREMENTS):
+def formulation(options, grid=False, requirements=REQUIREMENTS, tuning=TUNING):
     problem = synth.load("multi_plate_clutch", **options)
-    return Formulation(Instance(problem, requirements, as_catalogs(None), grid=grid), OBJECTIVES, 2)
+    return Formulation(Instance(problem, requirements, as_catalogs(None), grid=grid), OBJECTIVES, 2, tuning=tuning)
 
 
 def batches(form, rounds=12):
@@ -398,8 +401,7 @@ def compare(form, boxes, caps, passes, every, monkeypatch):
 @pytest.mark.parametrize("grid", [False, True])
 @pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_the_family_agrees(options, grid, monkeypatch):
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
-    form = formulation(options, grid)
+    form = formulation(options, grid, tuning=AT_ONCE)
     for boxes, caps in batches(form):
         compare(form, boxes, caps, 2, False, monkeypatch)
     compare(form, boxes, np.median(caps, axis=0), 1, True, monkeypatch)
@@ -421,21 +423,20 @@ def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
     assert len(asked) == 1
 
 
-def test_the_question_alone_decides_what_is_compiled(monkeypatch):
-    small, large = formulation({}).propagation, formulation({}).propagation
-    many = propagation.COMPILE_AFTER
-    monkeypatch.setattr(propagation, "COMPILED_FROM", small.instance.combinations.count + 1)
+def test_the_question_alone_decides_what_is_compiled():
+    own, many = formulation({}).instance.combinations.count, TUNING.compiling.boxes
+    small, large = (
+        formulation({}, tuning=tuned(compiling={"combinations": least})).propagation for least in (own + 1, own)
+    )
     assert [small._to_compile(False, True, boxes) for boxes in (10, many - 10, 1)] == [False, False, True]
     assert not small._to_compile(True, True, 1)  # each pattern counts for itself
-    monkeypatch.setattr(propagation, "COMPILED_FROM", large.instance.combinations.count)
     assert large._to_compile(False, True, 1)
     assert not large._to_compile(False, False, 1)  # without caps only the first box is contracted
 
 
 def test_it_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
-    form = formulation({})
+    form = formulation({}, tuning=AT_ONCE)
     assert len(form.root()) == 1
     assert form.propagation._code(True, False).compiled is None
     assert native.library("test", "int one(void) { return 1; }") is None
@@ -450,7 +451,6 @@ def test_requirements_do_not_enter_the_source():
 
 
 def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
     monkeypatch.delitem(native_boxes.rules.FORWARD, ca.OP_FLOOR)
     x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
     program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])

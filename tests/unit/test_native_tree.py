@@ -5,23 +5,27 @@ from functools import partial
 import numpy as np
 import pytest
 
-from synth import native, native_tree, propagation
-from synth.formulation import TIE, Archive, Boxes
+from synth import native, native_tree
+from synth.formulation import Archive, Boxes
 from synth.purposes import Cover, Staircase
+from synth.tuning import TUNING
+from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
+
+TIE = TUNING.tolerances.tie
 
 HERE = native.cache_folder() is not None and native._compiler() is not None
 pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
 
+AT_ONCE = tuned(compiling={"boxes": 0})  # code is compiled from the first box on
 SLACK = np.array([0.02, 0.05])
 KINDS = ("front", "front with a cap", "one objective", "staircase")
 
 
 @pytest.fixture(autouse=True)
 def compiled(monkeypatch):
-    """Compile from the first box on."""
+    """Let code be compiled."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0)
 
 
 def known_designs(form, rng, count):
@@ -75,7 +79,7 @@ def by_single_steps(form, purpose, boxes, levels):
 @pytest.mark.parametrize("grid", [True, False])
 @pytest.mark.parametrize("kind", KINDS)
 def test_one_generation_is_a_single_step(kind, grid):
-    form = strut_form(grid)
+    form = strut_form(grid, AT_ONCE)
     purpose = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, purpose, 9)
     assert len(boxes) > 20
@@ -89,7 +93,7 @@ def test_one_generation_is_a_single_step(kind, grid):
 @pytest.mark.parametrize("grid", [True, False])
 @pytest.mark.parametrize("kind", KINDS)
 def test_generations_are_about_those_of_single_steps(kind, grid):
-    form = strut_form(grid)
+    form = strut_form(grid, AT_ONCE)
     purpose = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, purpose, 9)
     grown = form.grow(boxes, purpose.tables(form), 4)
@@ -117,7 +121,7 @@ def lost(boxes, points, combinations, form):
 def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room, monkeypatch):
     monkeypatch.setattr(native_tree, "LEAST_ROOM", room)
     monkeypatch.setattr(native_tree, "ROOM", 4 if room > 40 else 1)
-    form, rng = strut_form(), np.random.default_rng(3)
+    form, rng = strut_form(tuning=AT_ONCE), np.random.default_rng(3)
     purpose = purpose_of(kind, form, rng)
     boxes = after(form, purpose, 4)
     grown = form.grow(boxes, purpose.tables(form), 6)
@@ -133,7 +137,7 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
 
 def test_threads_change_nothing(monkeypatch):
     monkeypatch.setattr(native_tree, "PART", 16)
-    form = strut_form()
+    form = strut_form(tuning=AT_ONCE)
     purpose = purpose_of("front", form, np.random.default_rng(5))
     boxes = after(form, purpose, 9)
     assert len(boxes) > 64
@@ -147,7 +151,7 @@ def test_threads_change_nothing(monkeypatch):
 
 
 def test_boxes_carry_the_question_they_belong_to():
-    form = strut_form()
+    form = strut_form(tuning=AT_ONCE)
     purpose = purpose_of("front", form, np.random.default_rng(5))
     boxes = after(form, purpose, 6)
     boxes.tag[:] = np.arange(len(boxes))
@@ -159,7 +163,7 @@ def test_boxes_carry_the_question_they_belong_to():
 
 
 def test_three_objectives_and_ties_have_no_tables():
-    form = strut_form()
+    form = strut_form(tuning=AT_ONCE)
     archive = Archive([0, 1, 2], form.n, 3)
     nowhere = np.full(3, np.inf)
     assert Cover([0, 1, 2], np.full(3, 0.1), nowhere, archive).tables(form) is None
@@ -168,6 +172,6 @@ def test_three_objectives_and_ties_have_no_tables():
 
 def test_without_a_compiler_nothing_is_grown(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    form = strut_form()
+    form = strut_form(tuning=AT_ONCE)
     purpose = purpose_of("front", form, np.random.default_rng(5))
     assert form.grow(after(form, purpose, 3), purpose.tables(form), 2) is None

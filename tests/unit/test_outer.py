@@ -6,8 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-import synth
-from synth import outer, search
+from synth import outer
 from synth.clock import Clock, Stopped
 from synth.effort import SearchEffort
 from synth.file_locks import alone
@@ -15,25 +14,28 @@ from synth.formulation import Archive, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.outer import search_parts, study_file
 from synth.purposes import Cover
+from synth.tuning import PartSampling
+from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut
 
 TRIALS = 16
+BATCH = 4
+# Bounds and enumeration give up at once.
+SMALL = {
+    "tree": {"boxes": 1, "coarse_boxes": 1, "few_combinations": 1, "further": SearchEffort(seconds=0.0)},
+    "heuristics": {"parts": PartSampling(trials=TRIALS, batch=BATCH)},
+}
 
 
 @pytest.fixture(autouse=True)
-def small(monkeypatch, tmp_path):
-    """Let bounds and enumeration give up at once, keep studies in a folder of the test."""
+def kept_here(monkeypatch, tmp_path):
+    """Keep studies in a folder of the test."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(search, "EFFORT", 1)
-    monkeypatch.setattr(search, "COARSE_EFFORT", 1)
-    monkeypatch.setattr(search, "FURTHER", SearchEffort(seconds=0.0))
-    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 1)
-    monkeypatch.setattr(search, "OUTER_TRIALS", TRIALS)
-    monkeypatch.setattr(outer, "BATCH", 4)
 
 
-def ask(objectives=None, **more):
-    return synth.synthesize(Strut(), NEEDED, objectives, catalogs={"rods": RODS}, points=5, **more)
+def ask(objectives=None, tuning=SMALL, **more):
+    own = {"catalogs": {"rods": RODS}, "points": 5, **more}
+    return synthesize(tuned(**tuning), Strut(), NEEDED, objectives, **own)
 
 
 def journals(tmp_path):
@@ -76,9 +78,8 @@ def test_optuna_takes_over_and_says_so(tmp_path):
     assert journals(tmp_path) == []
 
 
-def test_what_enumeration_reaches_is_not_left_to_optuna(monkeypatch, tmp_path):
-    monkeypatch.setattr(search, "EXHAUSTIVE_LIMIT", 240)
-    front = ask()
+def test_what_enumeration_reaches_is_not_left_to_optuna(tmp_path):
+    front = ask(tuning={**SMALL, "tree": {**SMALL["tree"], "few_combinations": 240}})
     assert front.certificate.kind in ("global", "exhaustive")
     assert front.statistics["outer_trials"] == 0
     assert limits_hold(front)
@@ -95,7 +96,7 @@ def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
     assert len(journals(tmp_path)) == 1
     resumed = ask()
     assert not resumed.interrupted
-    assert resumed.statistics["outer_trials"] == TRIALS - 2 * outer.BATCH
+    assert resumed.statistics["outer_trials"] == TRIALS - 2 * BATCH
     assert resumed.certificate.kind == "heuristic"
     assert limits_hold(resumed)
     assert journals(tmp_path) == []
@@ -163,7 +164,7 @@ def test_another_question_does_not_take_up_the_study(monkeypatch, tmp_path):
 def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, kept):
     problem = Strut()
     instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
-    form = Formulation(instance, {"mass": "min", "flexibility": "min"}, 2)
+    form = Formulation(instance, {"mass": "min", "flexibility": "min"}, 2, tuning=tuned(**SMALL))
     root = form.root()
     left = form.split(root)[0].take(slice(0, 1))  # half of everything
     archive = Archive(columns, form.n, 2)

@@ -5,11 +5,15 @@ import pytest
 
 import synth
 from synth import DesignProblem
-from synth.formulation import TIE, Candidate
+from synth.formulation import Candidate
 from synth.search import pose
-from synth.settle import MOST_MOVES, settle_discrete
+from synth.settle import settle_discrete
 from synth.together_search import TogetherSearch
+from synth.tuning import TUNING, SettleLimits
+from tests.tuned import tuned
 from tests.unit.strut import RODS, Strut
+
+TIE = TUNING.tolerances.tie
 
 
 class Beam(DesignProblem):
@@ -63,17 +67,17 @@ def test_a_makeable_value_that_is_pinned_stays():
 # -- many designs at once ------------------------------------------------------------------------------
 
 
-def forms():
+def forms(tuning=TUNING):
     """Return formulations with two variables of which one is makeable, parts, voids and refusals; of two questions."""
     strut = Strut()
-    ask = [
-        pose(strut, {"load": load, "room": "150 mm"}, ["mass"], 1, {"rods": RODS}, limits={"area": ">= 60 mm2"})
-        for load in ("20 kN", "30 kN")
-    ]
+    more = {"catalogs": {"rods": RODS}, "limits": {"area": ">= 60 mm2"}, "tuning": tuning}
+    ask = [pose(strut, {"load": load, "room": "150 mm"}, ["mass"], 1, **more) for load in ("20 kN", "30 kN")]
     return {"one question": ask[0].search().form, "two together": TogetherSearch(ask).form}
 
 
 FORMS = forms()
+AT_ONCE = 7  # points that are evaluated at a time where designs settle piece by piece
+IN_PIECES = forms(tuned(heuristics={"settle": SettleLimits(tried_at_once=300, evaluated_at_once=AT_ONCE)}))
 
 
 def some_designs(form, count):
@@ -98,7 +102,7 @@ def step(form, own, trials, combinations, traded, order):
 
 def settled_alone(form, own, traded, order, parts):
     """Return what a design becomes that takes its steps alone, all points of each looked at."""
-    for _ in range(MOST_MOVES):
+    for _ in range(TUNING.heuristics.settle.moves):
         before = own
         for k in np.flatnonzero(form.gridded & (form.lower < form.upper)):
             grid = form.grids[k]
@@ -123,9 +127,11 @@ def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, tra
     alone = [settled_alone(form, own, traded, order, parts) for own in designs]
     if traded == 0 or (parts and 0 in order):
         assert any(a is not own for a, own in zip(alone, designs, strict=True))
-    monkeypatch.setattr("synth.settle.TRIED_AT_ONCE", 300)
-    monkeypatch.setattr("synth.settle.EVALUATED_AT_ONCE", 7)
-    for found in (together, settle_discrete(form, designs, traded, order, parts)):
+    pieces, evaluated, sizes = IN_PIECES[which], IN_PIECES[which].feasible_rows, []
+    monkeypatch.setattr(pieces, "feasible_rows", lambda points, own: sizes.append(len(own)) or evaluated(points, own))
+    in_pieces = settle_discrete(pieces, designs, traded, order, parts)
+    assert 0 < max(sizes) <= AT_ONCE
+    for found in (together, in_pieces):
         assert [c.combination for c in found] == [c.combination for c in alone]
         np.testing.assert_array_equal([c.variables for c in found], [c.variables for c in alone])
         np.testing.assert_array_equal([c.phi for c in found], [c.phi for c in alone])

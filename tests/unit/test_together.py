@@ -15,20 +15,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth import contractor, propagation, together_search
+from synth import contractor, together_search
 from synth.clock import Stopped
 from synth.feasibility import Status
-from synth.formulation import TIE, Formulation
+from synth.formulation import Formulation
 from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
 from synth.search import Question, pose
 from synth.tables import Catalogs
 from synth.together import BestOfEach, Each, Together, different, groups_of
 from synth.together_search import TogetherSearch, Wider
+from synth.tuning import TUNING
+from tests.tuned import tuned
 from tests.unit.ropes import Made, Ropes, best_ropes, ropes
 from tests.unit.shaft_brake import CATALOGS as PAIRS_TABLE
 from tests.unit.shaft_brake import FACE, PAIRS, ShaftBrake
 from tests.unit.strut import RODS, Strut
+
+TIE = TUNING.tolerances.tie
 
 GAP = 1e-3
 FOUR = ropes((10, 2), (20, 1), (35, 0.5), (5, 4), most=[100, 200, 400, 20])
@@ -369,11 +373,11 @@ def lightest(question: Question) -> float | None:
 
 @pytest.mark.parametrize("at_once", [True, False], ids=["compiled", "not_compiled"])
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
-def test_struts(grid: bool, at_once: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(propagation, "COMPILE_AFTER", 0 if at_once else math.inf)
+def test_struts(grid: bool, at_once: bool) -> None:
+    tuning = tuned(compiling={"boxes": 0 if at_once else math.inf})
     loaded = ((3, 1.5), (20, 4), (89, 9.9))
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in loaded]
-    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
+    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid, tuning=tuning)
     check_each(whole, lambda k: lightest(whole[k]))
 
 
@@ -387,10 +391,10 @@ def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) 
         return proceed(attempt, questions, effort)
 
     monkeypatch.setattr(together_search._Attempt, "open_questions", noted)
-    monkeypatch.setattr(together_search, "TURNS", ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000)))
-    monkeypatch.setattr(together_search, "NEARLY_CLOSED", 0)
+    turns = ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000))
+    tuning = tuned(joint={"turns": turns, "nearly_closed": 0})
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
-    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid)
+    whole = asked(STRUT, varied, ["mass"], STRUTS, grid=grid, tuning=tuning)
     check_each(whole, lambda k: lightest(whole[k]))
     assert asked_of[:3] == [(False, 4), (True, 4), (False, 4)]
 

@@ -16,8 +16,9 @@ from synth.feasibility import Status
 from synth.results import Design, ParetoFront
 from synth.search import Question, pose
 from synth.tables import Catalogs
-from synth.together_fronts import MOST_POINTS, FrontsSearch, joint_answers, joint_groups
+from synth.together_fronts import FrontsSearch, joint_answers, joint_groups
 from synth.together_search import TogetherSearch
+from synth.tuning import TUNING
 from tests.unit.ropes import Ropes, ropes
 from tests.unit.strut import RODS, Strut
 
@@ -87,7 +88,7 @@ def check_front(question: Question, front: ParetoFront) -> None:
 # ---- against the questions alone ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("points", [2, 3, 5, MOST_POINTS])
+@pytest.mark.parametrize("points", [2, 3, 5, TUNING.joint.front_points])
 @pytest.mark.parametrize("grid", [True, False])
 def test_fronts_of_struts_stand_against_those_asked_alone(points: int, grid: bool) -> None:
     questions = struts(points, 10, 17, 30, 44, grid=grid)
@@ -192,8 +193,13 @@ def test_few_designs_of_two_objectives_are_searched_together() -> None:
     one = struts(5, 10, 20, objectives=("mass",))
     assert groups(*one) == [[0, 1]]
     assert groups(*struts(2, 10, 20, 30)) == [[0, 1, 2]]
-    assert groups(*struts(MOST_POINTS, 10, 20)) == [[0, 1]]
-    assert groups(*struts(MOST_POINTS + 1, 10, 20)) == groups(*struts(1, 10, 20)) == groups(*struts(3, 10)) == []
+    assert groups(*struts(TUNING.joint.front_points, 10, 20)) == [[0, 1]]
+    assert (
+        groups(*struts(TUNING.joint.front_points + 1, 10, 20))
+        == groups(*struts(1, 10, 20))
+        == groups(*struts(3, 10))
+        == []
+    )
     assert groups(*struts(3, 10, 20, objectives=(*BOTH, "width"))) == []
     assert groups(*struts(3, 10), *struts(4, 20), *struts(3, 30), *one) == [[3, 4], [0, 2]]
     assert groups(*struts(3, 10), *struts(3, 20, gap=0.01)) == []

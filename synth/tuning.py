@@ -1,0 +1,550 @@
+"""The numbers that steer a search: how much it tries, when it gives up, and what it takes for equal.
+
+None of them is part of an answer: with other numbers a search takes longer, or leaves more open and says so. They are
+handed down from where a question is posed (``synth.search.pose``, ``Formulation``), so that whoever wants others makes
+a record of them with ``dataclasses.replace`` and passes it in. ``TUNING`` are those that everybody gets.
+
+Counts of boxes and of problems decide wherever they can, never seconds, so that the same question goes the same way on
+every machine. What verification takes is not here: it shares nothing with the search, see ``synth.proof_limits``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from synth.effort import SearchEffort
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances:
+    """What the search takes for equal.
+
+    By how much a limit may be missed is no tolerance of the search but a promise of ``docs/results.md``, the same for
+    everything that evaluates, searches and verifies: ``synth.feasibility.TOLERANCE``. These lie inside it. Users meet
+    two of them, ``limit`` and ``snap``, which ``docs/search.md`` tells under what is exact; they move with its text.
+
+    Parameters
+    ----------
+    limit : float
+        Relative. By how much the search lets designs miss a limit that a variable moves: less than what is allowed, so
+        that it does not live off the tolerance.
+    edge_worth : float
+        In phi. As how much worse a design counts that keeps its limits by the full tolerance alone: more than it may
+        gain by using that up, so that it takes the place of no design that does without.
+    snap : float
+        Relative. How far a makeable value may lie outside a box and still count as inside: more than rounding costs.
+    pinned : float
+        Relative, and in SI beside ``snap``. As ``snap`` where a range is one value.
+    tie : float
+        In phi. Objectives that differ by less are the same; caps are looser by as much.
+    rounded : float
+        Relative, of phi. By how much designs of one front may miss each other and still beat each other: what settling
+        ties twice may give away.
+    point_share : float
+        Of a range. As how wide a box counts that is a point, where extents of boxes are summed up.
+    """
+
+    limit: float = 1e-8
+    edge_worth: float = 1e-5
+    snap: float = 1e-9
+    pinned: float = 1e-12
+    tie: float = 1e-9
+    rounded: float = 2e-9
+    point_share: float = 1e-8
+
+    @property
+    def margins(self) -> tuple[float, float]:
+        """By how much a value may miss the grid: relative, and absolute in SI."""
+        return self.snap, self.pinned
+
+
+@dataclass(frozen=True, kw_only=True)
+class TreeLimits:
+    """How far branch and bound goes, in boxes that are looked into unless another unit is told.
+
+    Parameters
+    ----------
+    whole_front : int
+        For a front of two objectives at once; what needs more is easier step by step.
+    scarce_front : int
+        The same where few designs are known although they were looked for.
+    first_try : int
+        For one best design, before limits are taken for the reason that boxes do not close.
+    boxes : int
+        For any tree of a question with few unknowns: they hardly ever need so many.
+    many_variables : int
+        Variables that move from which on boxes hardly close.
+    boxes_of_many : int
+        For a tree with many variables; and for one best design over few combinations.
+    boxes_of_few_parts : int
+        The same over combinations that can be solved one by one instead.
+    few_combinations : int
+        Combinations that are few enough to be solved one by one, each from several starts.
+    further : SearchEffort
+        For what all this leaves open.
+    coarse : float
+        The gap with which first designs are looked for.
+    coarse_boxes : int
+        For looking for first designs.
+    first_boxes : int
+        The same for one objective: one design is enough to begin with.
+    fine : float
+        Every design is covered within so many times the mean distance of the points asked for.
+    fill : int
+        To find all designs where fewer are chosen than were asked for, beside what was looked into before.
+    tie : int
+        To settle the next objective over all parts, where one objective leaves parts open.
+    choices : int
+        Rounds of choosing designs and looking for more.
+    polishings : int
+        Rounds of making the designs chosen as good as their parts allow.
+    margin : float
+        A gap that must shrink becomes this share of what is needed: a range that shrinks by next to nothing again shall
+        not need another proof.
+    batch : int
+        That are tightened at a time: enough for arrays to pay.
+    generation : int
+        That are sorted by what they promise at a time; the rest waits.
+    small_batch : int
+        Below which a batch is split twice at once: it costs as much as a larger one.
+    generations : int
+        That compiled code grows at once where no designs are to be looked for in between.
+    levels_per_doubling : int
+        Levels of how much better than needed a box could be, in a search by levels.
+    levels : int
+        Of them in all.
+    level_batches : int
+        Batches of a level that are kept apart before they are joined.
+    step_proof : float
+        The share of the slack that the proof of one step of a front takes; the rest is for the choice of its design.
+    narrow : float
+        In units of the slack: when so little is left between the ends of a front, it is covered at once.
+    focus : int
+        Designs known at which it is measured what boxes are split along.
+    """
+
+    whole_front: int = 1_000_000
+    scarce_front: int = 50_000
+    first_try: int = 150_000
+    boxes: int = 20_000_000
+    many_variables: int = 7
+    boxes_of_many: int = 2_000_000
+    boxes_of_few_parts: int = 200_000
+    few_combinations: int = 3000
+    further: SearchEffort = field(default_factory=SearchEffort)
+    coarse: float = 0.1
+    coarse_boxes: int = 20_000
+    first_boxes: int = 1_000
+    fine: float = 2.0
+    fill: int = 100_000
+    tie: int = 2_000
+    choices: int = 4
+    polishings: int = 3
+    margin: float = 0.99
+    batch: int = 8192
+    generation: int = 65_536
+    small_batch: int = 1024
+    generations: int = 3
+    levels_per_doubling: int = 2
+    levels: int = 64
+    level_batches: int = 64
+    step_proof: float = 0.8
+    narrow: float = 20.0
+    focus: int = 64
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeekerLimits:
+    """How long designs are looked for in open boxes and beside designs that are known.
+
+    Parameters
+    ----------
+    probes : int
+        Boxes of which points are evaluated in a round.
+    most_problems, least_problems : int
+        Continuous problems of boxes that are solved in a round: more while they find designs, fewer while not.
+    patience : int
+        Rounds without success after which only now and then is looked again.
+    inside : float
+        Share of a box from its lower ends at which a point is tried: limits are loosened a little when boxes are
+        tightened, not when points are evaluated.
+    reach : int
+        Makeable values on either side of a continuous optimum that are tried.
+    most_roundings : int
+        Of one design; with more gridded variables only the nearest values are tried.
+    tie_weight : float
+        Of the other objectives in a problem that seeks one, so that they do not go anywhere.
+    parents : int
+        Known designs whose parts are exchanged in one round.
+    rounds : int
+        Of looking beside known designs.
+    targets : int
+        Places along the front at which each known combination is tried.
+    families : int
+        Known combinations that are tried at all places.
+    solved, solved_over_arrays : int
+        Continuous problems of a round: some tens of milliseconds, with compiled code and without.
+    rounded_off : int
+        Continuous optima of a round around which makeable points are tried.
+    conflicts : int
+        Boxes of a round for which is solved by how much all limits would have to give way.
+    long_proof : int
+        Rounds of a proof after which boxes are worth a solver again.
+    scarce : int
+        Designs of a front below which it is worth looking harder.
+    lessons : int
+        Optima that tell what is worth splitting, before points of boxes are evaluated alone.
+    near : float
+        Relative: limits that miss each other by less count as much as those that do by this.
+    thin : float
+        Relative: a box that is narrower has no choice left in a variable.
+    """
+
+    probes: int = 256
+    most_problems: int = 128
+    least_problems: int = 8
+    patience: int = 3
+    inside: float = 0.02
+    reach: int = 2
+    most_roundings: int = 1024
+    tie_weight: float = 1e-6
+    parents: int = 16
+    rounds: int = 12
+    targets: int = 24
+    families: int = 48
+    solved: int = 4096
+    solved_over_arrays: int = 512
+    rounded_off: int = 48
+    conflicts: int = 64
+    long_proof: int = 10
+    scarce: int = 16
+    lessons: int = 100
+    near: float = 1e-4
+    thin: float = 1e-5
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiveLimits:
+    """How long a few promising combinations are searched to the bottom, where hardly any designs are known.
+
+    Parameters
+    ----------
+    dives : int
+    patience : int
+        Dives without success, per objective, after which it ends.
+    solved : int
+        Continuous problems of a dive, two parts away from designs that are known.
+    promising : int
+        Combinations of a dive.
+    boxes : int
+        Boxes of a dive.
+    tie_weight : float
+        As for :class:`SeekerLimits`.
+    """
+
+    dives: int = 40
+    patience: int = 2
+    solved: int = 4096
+    promising: int = 12
+    boxes: int = 30_000
+    tie_weight: float = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class SettleLimits:
+    """How long ties are settled and combinations solved one by one.
+
+    Parameters
+    ----------
+    starts : int
+        From which each combination is solved.
+    batch : int
+        Combinations that are solved at a time.
+    ties : int
+        Designs that are as good as one, at most.
+    moves : int
+        Changes of each makeable value and of parts.
+    tried_at_once, evaluated_at_once : int
+        Points: of the former a screen tells which may be good, so few that arrays stay in the cache; of the latter
+        everything is computed. The result is the same for any number.
+    """
+
+    starts: int = 6
+    batch: int = 2048
+    ties: int = 50
+    moves: int = 8
+    tried_at_once: int = 16_384
+    evaluated_at_once: int = 65_536
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartSampling:
+    """How parts are drawn where neither bounds nor plain enumeration reach.
+
+    Parameters
+    ----------
+    trials : int
+        Combinations in all.
+    batch : int
+        Of them, that are drawn and solved at a time.
+    directions : int
+        In which objectives are traded off against each other.
+    worst : float
+        In phi: what a trial without a feasible design is worth, worse than any, and finite as samplers want it.
+    """
+
+    trials: int = 576
+    batch: int = 48
+    directions: int = 5
+    worst: float = 1e3
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConflictLimits:
+    """How long the design is looked for that misses the limits by least, where none is feasible.
+
+    Parameters
+    ----------
+    tries : int
+        Combinations, and starts of all of them, of a round.
+    rounds : int
+        Of exchanging one part of the nearest designs.
+    parents : int
+        Nearest designs of a round.
+    starts : int
+        From which each combination is solved where there are few.
+    never : float
+        Relative: more than any limit can be missed by, which is twice the larger side.
+    """
+
+    tries: int = 400
+    rounds: int = 4
+    parents: int = 3
+    starts: int = 16
+    never: float = 10.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointHeuristics:
+    """How long designs are looked for of questions that are asked together.
+
+    Parameters
+    ----------
+    first_boxes : tuple of int
+        Boxes, one effort after the other, until a first design is known.
+    settling_boxes : int
+        Boxes per combination that may hold a better design than is made of it.
+    rounds : int
+        Of looking beside the best of each question and with what is good in any other.
+    anywhere : int
+        Combinations at random, where nothing is known.
+    known : int
+        Combinations that are tried for every question in a round.
+    places, far_places : int
+        Among the questions, at which one part is exchanged, or two at a time.
+    solved : int
+        Continuous problems of a round.
+    drawn : int
+        Combinations, of which those are chosen that are two parts away.
+    rounded_off : int
+        Continuous optima, per question, around which makeable points are tried.
+    """
+
+    first_boxes: tuple[int, ...] = (1_000, 20_000)
+    settling_boxes: int = 100
+    rounds: int = 6
+    anywhere: int = 512
+    known: int = 32
+    places: int = 8
+    far_places: int = 4
+    solved: int = 16_384
+    drawn: int = 1_000_000
+    rounded_off: int = 10
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeuristicLimits:
+    """How long designs are looked for, which proves nothing: the better they are, the fewer boxes a proof takes.
+
+    Parameters
+    ----------
+    seeker : SeekerLimits
+        In boxes, and beside designs that are known.
+    dives : DiveLimits
+        In a few combinations to the bottom.
+    settle : SettleLimits
+        Among designs that tie.
+    parts : PartSampling
+        By drawing parts.
+    conflicts : ConflictLimits
+        Where nothing is feasible.
+    joint : JointHeuristics
+        Of questions that are asked together.
+    """
+
+    seeker: SeekerLimits = field(default_factory=SeekerLimits)
+    dives: DiveLimits = field(default_factory=DiveLimits)
+    settle: SettleLimits = field(default_factory=SettleLimits)
+    parts: PartSampling = field(default_factory=PartSampling)
+    conflicts: ConflictLimits = field(default_factory=ConflictLimits)
+    joint: JointHeuristics = field(default_factory=JointHeuristics)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointLimits:
+    """How far one search for several questions goes; what needs more is easier alone.
+
+    Parameters
+    ----------
+    turns : tuple of (int, int, int)
+        Boxes per question, by turns: with plain boxes; with boxes that carry what limits share; and the same where no
+        design is known, as there may be none to be found.
+    nearly_closed : float
+        Share of the boxes looked into: if fewer are open, as much again is worth it.
+    given_parts : int
+        Boxes per question whose parts are given.
+    most_boxes : int
+        Boxes of all questions: a quarter of them may have to be kept at a time.
+    tie : int
+        Boxes per question, to settle the next objective.
+    front_points : int
+        Designs of a front that are sought together; where there are more, questions are answered sooner one by one.
+    places : int
+        Questions of which a rough picture of the front is made.
+    levels : int
+        Caps of that picture.
+    """
+
+    turns: tuple[tuple[int, int, int], ...] = (
+        (5_000, 5_000, 5_000),
+        (5_000, 20_000, 10_000),
+        (5_000, 250_000, 20_000),
+    )
+    nearly_closed: float = 0.1
+    given_parts: int = 20_000
+    most_boxes: int = 12_000_000
+    tie: int = 200
+    front_points: int = 8
+    places: int = 8
+    levels: int = 12
+
+
+@dataclass(frozen=True, kw_only=True)
+class BranchingSettings:
+    """Along what boxes are split. It steers the search and never excludes anything.
+
+    Parameters
+    ----------
+    samples : int
+        Random points at which is measured what limits and objectives depend on.
+    step : float
+        Relative: how far an input is moved for that.
+    largest_influence : float
+        A limit that is steeper counts as this steep, as a slope between logarithms.
+    least : float
+        Influence and weight of what seems to matter to nothing: it must be split some day as well.
+    least_in_conflict : float
+        The same where nothing feasible is known: limits that nearly agree are told apart in very small boxes.
+    most_bits : int
+        Objectives that are told apart when weights are learned.
+    some : float
+        Share of the multipliers of all objectives from which one counts as asked for.
+    enough : int
+        Problems solved before their own weights are believed.
+    parts_first : float
+        How much more it counts to tell parts apart: until then the columns of a cluster are bounded as if they belonged
+        to no row.
+    questions_first : float
+        The same for questions that are answered together: each has a best value of its own.
+    anywhere : float
+        What influences anywhere count beside those at the designs known.
+    pivot_of : int
+        Variables that an inner node depends on to be worth carrying along with boxes.
+    most_pivots : int
+        Inner nodes that are carried.
+    """
+
+    samples: int = 256
+    step: float = 1e-4
+    largest_influence: float = 50.0
+    least: float = 1e-3
+    least_in_conflict: float = 1e-6
+    most_bits: int = 3
+    some: float = 1e-3
+    enough: int = 8
+    parts_first: float = 3.0
+    questions_first: float = 6.0
+    anywhere: float = 0.1
+    pivot_of: int = 2
+    most_pivots: int = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompilingLimits:
+    """From when on a question is worth compiling code for, which takes seconds.
+
+    What decides is the question, never what happens to be compiled already: the last digits with and without compiled
+    code differ, and the same question must go the same way.
+
+    Parameters
+    ----------
+    combinations : int
+        Of all questions of a kind, from which code is compiled at once.
+    boxes : float
+        Of a question, after which it is compiled all the same; NumPy does as many in about a tenth of a second.
+    work : float
+        Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
+    """
+
+    combinations: int = 5000
+    boxes: float = 20_000
+    work: float = 150_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArraySizes:
+    """How much arrays over boxes or points hold at a time. The result is the same for any number.
+
+    Parameters
+    ----------
+    boxes : int
+        That are tightened over arrays at a time, and points that are evaluated.
+    capped : int
+        Boxes that are compared with all designs known at a time, for three objectives or more.
+    compared : int
+        Designs that are compared with all others at a time.
+    steps : int
+        Boxes that are compared with all steps of a front that is being proven at a time, for three objectives or more.
+    """
+
+    boxes: int = 4096
+    capped: int = 512
+    compared: int = 256
+    steps: int = 1024
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tuning:
+    """All numbers that steer a search.
+
+    Parameters
+    ----------
+    tolerances : Tolerances
+    tree : TreeLimits
+    joint : JointLimits
+    heuristics : HeuristicLimits
+    branching : BranchingSettings
+    compiling : CompilingLimits
+    arrays : ArraySizes
+    """
+
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    tree: TreeLimits = field(default_factory=TreeLimits)
+    joint: JointLimits = field(default_factory=JointLimits)
+    heuristics: HeuristicLimits = field(default_factory=HeuristicLimits)
+    branching: BranchingSettings = field(default_factory=BranchingSettings)
+    compiling: CompilingLimits = field(default_factory=CompilingLimits)
+    arrays: ArraySizes = field(default_factory=ArraySizes)
+
+
+TUNING = Tuning()
