@@ -207,7 +207,7 @@ def test_few_designs_of_two_objectives_are_searched_together() -> None:
 
 def test_there_are_numbers_for_every_level_of_every_question(monkeypatch: pytest.MonkeyPatch) -> None:
     questions = struts(3, 10, 20)
-    numbers = together_fronts.PLACES * together_fronts.LEVELS * questions[0].instance.combinations.count
+    numbers = TUNING.joint.places * TUNING.joint.levels * questions[0].instance.combinations.count
     monkeypatch.setattr(together_fronts, "LARGEST", numbers)
     assert joint_groups(questions) == [[0, 1]]
     monkeypatch.setattr(together_fronts, "LARGEST", numbers - 1)
