@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from synth import scatter
 from synth.comparison import Comparison, FamilyOutcome
 from synth.deadline import Stopped, until
 from synth.errors import InputError
@@ -30,6 +29,7 @@ from synth.robust import NOTHING_STANDS, robust_front
 from synth.search import FrontSearch, Question, pose
 from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
 from synth.tables import Catalogs
+from synth.uncertainty import RATE, Uncertainty, read_remaining
 from synth.units import format_quantity
 
 SAME = 1e-9  # relative; objectives closer than this are the same
@@ -137,7 +137,7 @@ class _Member:
         if stopped:
             raise Stopped(stopped)
         rated = [replace(d, frame=self.front.frame, robust=r) for d, r in zip(designs, ratings, strict=True)]
-        return [d for d in rated if d.robust["holds"] or self.rater.asked.mode == scatter.RATE]
+        return [d for d in rated if d.robust["holds"] or self.rater.asked.mode == RATE]
 
 
 class _Kept:
@@ -226,7 +226,7 @@ class _Comparing:
             limit = max((self.deadline - time.monotonic()) / (count - number), 1e-3)
         shown, kept = self._shown(one.label, number, count), list[_Kept]()
 
-        def ask(block: scatter.Asked | None) -> _Kept:
+        def ask(block: Uncertainty | None) -> _Kept:
             problem = posed(one.problem, block, asked["limits"])
             question = pose(
                 problem, asked["requirements"], self.objectives, settings["points"], self.tables, asked["parts"],
@@ -236,7 +236,7 @@ class _Comparing:
             kept.append(_Kept(question))
             return kept[-1]
 
-        block, rater = scatter.read_remaining(asked["robust"] or None), None
+        block, rater = read_remaining(asked["robust"] or None), None
         if block is None:
             front = ask(None).answer(settings["workers"], shown, limit)
         else:

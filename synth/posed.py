@@ -21,8 +21,9 @@ import casadi as ca
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.description import declared_ranges
 from synth.problem import DesignProblem
-from synth.scatter import LEAST, MOST, RATE, SLIDING, Asked, Member, Scattered, read_remaining, scattered
+from synth.scatter import LEAST, MOST, SLIDING, Member, Scattered, scattered
 from synth.structure import Shape, classify
+from synth.uncertainty import RATE, Uncertainty, read_remaining
 from synth.user_limits import check_number_of_limits, read_limits
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def posed(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None)
     Parameters
     ----------
     problem : DesignProblem
-    robust : mapping, Asked or None
+    robust : mapping, Uncertainty or None
         What scatters, as for ``synthesize``.
     limits : mapping or None
         The user's own limits, which are to hold over the range as well.
@@ -63,13 +64,13 @@ class RobustProblem(DesignProblem):
     Parameters
     ----------
     base : DesignProblem
-    asked : Asked
+    asked : Uncertainty
         What scatters.
     limits : mapping
         The user's own limits.
     """
 
-    def __init__(self, base: DesignProblem, asked: Asked, limits: Mapping[str, Any]) -> None:
+    def __init__(self, base: DesignProblem, asked: Uncertainty, limits: Mapping[str, Any]) -> None:
         self.name, self.title, self.sources = base.name, base.title, base.sources
         super().__init__(**base.options)
         self.base, self.asked, self.own_limits = base, asked, limits

@@ -24,9 +24,10 @@ from synth.instance import Instance
 from synth.problem import DesignProblem
 from synth.program import OP_SELECT
 from synth.results import Design
-from synth.scatter import Asked, Member, check_values, scattered
+from synth.scatter import Member, check_values, scattered
 from synth.tables import Catalogs
 from synth.tape import Tape
+from synth.uncertainty import Uncertainty
 
 PROVEN, BOUNDED, SAMPLED = "proven", "bounded", "sampled"
 PARTS = 48  # boxes that a range is cut into where a limit is not monotone
@@ -45,7 +46,7 @@ class Rater:
     catalogs : Catalogs
     limits : mapping or None
         The user's own limits.
-    asked : Asked
+    asked : Uncertainty
         What scatters.
 
     Raises
@@ -60,7 +61,7 @@ class Rater:
         requirements: Mapping[str, Any],
         catalogs: Catalogs,
         limits: Mapping[str, Any] | None,
-        asked: Asked,
+        asked: Uncertainty,
     ) -> None:
         self.instance = Instance(problem, requirements, catalogs, limits=limits, restrict=False)
         self.model, self.asked = self.instance.model, asked

@@ -23,7 +23,8 @@ from synth.problem import load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, design_columns, design_row
-from synth.scatter import LIMITS, Asked, check_rows, read_block
+from synth.scatter import check_rows
+from synth.uncertainty import LIMITS, Uncertainty, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -192,7 +193,7 @@ class Asks(Protocol):
 
 
 def robust_front(
-    pose: Callable[[Asked], Asks],
+    pose: Callable[[Uncertainty], Asks],
     rater: Rater,
     workers: int = 1,
     progress: Progress | None = None,
@@ -221,7 +222,7 @@ def robust_front(
     """
     deadline = math.inf if time_limit is None else time.monotonic() + time_limit
 
-    def ask(asked: Asked, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
+    def ask(asked: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
         question = pose(asked)
         check_rows(rater.things, question.instance.selection.slots)
         if front is None:
@@ -249,7 +250,7 @@ def robust_front(
 class _Answer:
     """A front with the ratings of its designs, and what stopped the work if something did."""
 
-    asked: Asked
+    asked: Uncertainty
     front: ParetoFront
     ratings: list[dict[str, Any]]
     stopped: str

@@ -8,7 +8,7 @@ from synth.console import plain_table
 from synth.rated import shown_at
 from synth.results import Design
 from synth.robust import taken_off, told_of
-from synth.scatter import LIMITS
+from synth.uncertainty import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What scatters around a design: the ``robust`` block of a question, read and put into numbers or formulas.
+"""What scatters around a design: the ``robust`` block of a question, put into numbers or formulas of a problem.
 
 Every thing that scatters has a position in its range: 0 is the lower end, 1 the upper one. The same rule moves numbers
 (samples), intervals (proofs) and symbols (limits at a corner), so that all three speak of the same range.
@@ -10,33 +10,26 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from types import MappingProxyType
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from synth.declaration import Declaration
-from synth.errors import InputError, at, whole_number
-from synth.input_limits import INPUT_LIMITS
+from synth.errors import InputError, at
 from synth.margins import within
+from synth.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_of_ranges, words_of
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 if TYPE_CHECKING:
     from synth.combinations import SlotRows
 
-LIMITS, RATE = "limits", "rate"
-NONE = "none"  # in place of a range: does not scatter here
 CATALOGUE, NEW_AND_WORN = "catalogue range", "new and worn"
 # Columns of a table of friction pairs: what slides, and the ends of its scatter; mu_static moves with it in proportion.
 SLIDING, LEAST, MOST = "mu_dynamic", "mu_min", "mu_max"
 WORN = re.compile(r"^(?:.*_)?wear$")
-SAMPLES, LEAST_SAMPLES = 4096, 64
-CONFIDENCE = 0.95
 AROUND = re.compile(r"^\s*(?:\+\s*/?\s*-|±)\s*(.+)$", re.DOTALL)
 NUMBER = re.compile(r"^\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\s*$")
-KEYS = ("friction", "wear", "tolerance", "mode", "samples", "seed", "confidence", "scenarios")
-EXAMPLE = "'+-5 %', '+-0.1 mm' or '10 .. 20 mm'"
 
 
 @dataclass(frozen=True)
@@ -118,169 +111,10 @@ class Scattered:
         return f"{self.name} {words.get(position) or f'at {position:.6g} of its range'}"
 
 
-# ---- the block ------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Asked:
-    """A ``robust`` block: what scatters and by how much, as it was written, and what is to be done about it.
-
-    ``scenarios`` are further points of the range at which single limits are posed: name of the limit -> positions.
-    """
-
-    ranges: Mapping[str, Any]
-    tolerance: Mapping[str, Any] = field(default_factory=dict)
-    mode: str = LIMITS
-    samples: int = SAMPLES
-    seed: int = 0
-    confidence: float = CONFIDENCE
-    scenarios: Mapping[str, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Return what scatters, as the block names it, in the order of the positions of scenarios."""
-        return (*self.ranges, *self.tolerance)
-
-    def block(self) -> dict[str, Any]:
-        """Return the block again, as it may stand in a spec."""
-        block: dict[str, Any] = dict(self.ranges)
-        if self.tolerance:
-            block["tolerance"] = dict(self.tolerance)
-        block |= {"mode": self.mode, "samples": self.samples, "seed": self.seed, "confidence": self.confidence}
-        if self.scenarios:
-            block["scenarios"] = {name: [list(p) for p in points] for name, points in self.scenarios.items()}
-        return block
-
-    def with_scenarios(self, more: Mapping[str, Sequence[tuple[float, ...]]]) -> Asked:
-        """Return the same with more points at which limits are posed."""
-        every = {name: self.scenarios.get(name, ()) for name in dict.fromkeys([*self.scenarios, *more])}
-        joined = {name: tuple(dict.fromkeys([*known, *more.get(name, ())])) for name, known in every.items()}
-        return replace(self, scenarios=MappingProxyType(joined))
-
-
-def read_block(robust: Any, where: str = "robust") -> Asked:
-    """Read a ``robust`` block.
-
-    Parameters
-    ----------
-    robust : mapping or Asked
-        What scatters (``friction``, ``wear``, ``tolerance``, a requirement, a ``slot.column``) with its range, and
-        ``mode``, ``samples``, ``seed``, ``confidence``.
-    where : str
-        Its name, for messages.
-
-    Raises
-    ------
-    InputError
-        When something is not understood.
-    """
-    if isinstance(robust, Asked):
-        return robust
-    if not isinstance(robust, Mapping):
-        raise InputError(where, robust, "names with ranges, for example {'friction': 'catalogue range'}", ("robust",))
-    block = {str(key): value for key, value in robust.items()}
-    tolerance = block.get("tolerance") or {}
-    if not isinstance(tolerance, Mapping):
-        expected = "variables with tolerances, for example {'length': '+-0.1 mm'}"
-        raise InputError(f"{where}: tolerance", tolerance, expected, ("robust", "tolerance"))
-    ranges = {key: value for key, value in block.items() if key not in KEYS[2:]}
-    for key, value in [*ranges.items(), *((f"tolerance: {k}", v) for k, v in tolerance.items())]:
-        if not isinstance(value, str):
-            path = ("robust", *key.split(": ", 1)) if key not in ranges else ("robust", key)
-            raise InputError(f"{where}: {key}", value, f"a range with its unit, for example {EXAMPLE}", path)
-    if not ranges and not tolerance:
-        right = "at least one range, for example 'friction: catalogue range'"
-        raise InputError(where, "nothing that scatters", right, ("robust",))
-    _check_number(len(ranges) + len(tolerance), where)
-    mode = block.get("mode", LIMITS)
-    if mode not in (LIMITS, RATE):
-        right = f"{LIMITS} (limits hold over the range) or {RATE} (designs are rated)"
-        raise InputError(f"{where}: mode", mode, right, ("robust", "mode"))
-    with at("robust", "samples"):
-        samples = _samples(block.get("samples", SAMPLES), f"{where}: samples")
-    seed = whole_number(block.get("seed", 0), f"{where}: seed", INPUT_LIMITS.seed, least=0, path=("robust", "seed"))
-    with at("robust", "confidence"):
-        confidence = _confidence(block.get("confidence", CONFIDENCE), f"{where}: confidence")
-    with at("robust", "scenarios"):
-        scenarios = _scenarios(block.get("scenarios") or {}, f"{where}: scenarios")
-    return Asked(
-        MappingProxyType(ranges), MappingProxyType({str(k): v for k, v in tolerance.items()}), mode, samples, seed,
-        confidence, scenarios,
-    )  # fmt: skip
-
-
-def read_remaining(robust: Any, where: str = "robust") -> Asked | None:
-    """Read a block without what has "none" for a range; None where there is none, or nothing is left that scatters.
-
-    Raises
-    ------
-    InputError
-        When something is not understood.
-    """
-    if robust is None:
-        return None
-    if not isinstance(robust, Mapping):
-        return read_block(robust, where)
-    block = _scattering(robust)
-    if isinstance(block.get("tolerance"), Mapping):
-        block["tolerance"] = _scattering(block["tolerance"])
-    left = {**block.get("tolerance", {}), **{k: v for k, v in block.items() if k not in KEYS[2:]}}
-    return None if block != robust and not left else read_block(block, where)
-
-
-def _scattering(ranges: Mapping[str, Any]) -> dict[str, Any]:
-    return {k: v for k, v in ranges.items() if not (isinstance(v, str) and _words(v) == NONE)}
-
-
-def name_in_block(key: str, names: Mapping[str, str]) -> str:
-    """Return what a key of a block means, by its public name; ``names`` has those of a problem by all spellings."""
-    if key in KEYS:
-        return key
-    slot, dot, column = key.partition(".")
-    return f"{names.get(slot, slot)}.{column}" if dot else names.get(key, key)
-
-
-def _check_number(ranges: int, where: str) -> None:
-    if ranges > INPUT_LIMITS.scattered:
-        right = f"at most {INPUT_LIMITS.scattered} things that scatter"
-        raise InputError(where, f"{ranges} ranges", right, ("robust",))
-
-
-def _samples(value: Any, field: str) -> int:
-    number = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not number or not LEAST_SAMPLES <= value <= INPUT_LIMITS.samples or value & (value - 1):
-        right = f"a power of 2 from {LEAST_SAMPLES} to {INPUT_LIMITS.samples}, such as {SAMPLES}"
-        raise InputError(field, value, right)
-    return int(value)
-
-
-def _confidence(value: Any, field: str) -> float:
-    confidence = parse_quantity(value, "-", field)
-    if not 0.5 <= confidence <= 0.9999:
-        raise InputError(field, value, "a share from 50 % to 99.99 %, for example 95 %")
-    return confidence
-
-
-def _scenarios(value: Any, field: str) -> Mapping[str, tuple[tuple[float, ...], ...]]:
-    expected = "limits with lists of positions from 0 to 1 in the ranges, as a result repeats them"
-    if not isinstance(value, Mapping):
-        raise InputError(field, value, expected)
-    found = {}
-    for name, points in value.items():
-        if not isinstance(points, (list, tuple)) or not all(
-            isinstance(p, (list, tuple))
-            and all(isinstance(x, (int, float)) and not isinstance(x, bool) and 0 <= x <= 1 for x in p)
-            for p in points
-        ):
-            raise InputError(f"{field}: {name}", points, expected, (str(name),))
-        found[str(name)] = tuple(tuple(float(x) for x in p) for p in points)
-    return MappingProxyType(found)
-
-
 # ---- what the block means for a problem -----------------------------------------------------------------------------
 
 
-def scattered(asked: Asked, d: Declaration, where: str = "robust") -> list[Scattered]:
+def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list[Scattered]:
     """Return what scatters in a problem, in the order of the block, tolerances last.
 
     Raises
@@ -301,7 +135,7 @@ def scattered(asked: Asked, d: Declaration, where: str = "robust") -> list[Scatt
     for key, text in asked.tolerance.items():
         with at("robust", "tolerance", key):
             found.append(reader.tolerance(key, text))
-    _check_number(len(found), where)  # friction may be that of several slots
+    check_number_of_ranges(len(found), where)  # friction may be that of several slots
     keys = [(member.key, x.name) for x in found for member in x.members]
     for k, (moved, name) in enumerate(keys):
         if any(moved == other for other, _ in keys[:k]):
@@ -337,7 +171,7 @@ class _Reader:
         for part in slots:
             field = f"{self.where}: friction"
             words = f"'{CATALOGUE}' or "
-            span = Range("columns") if _words(text) == CATALOGUE else self._range(text, "-", field, words)
+            span = Range("columns") if words_of(text) == CATALOGUE else self._range(text, "-", field, words)
             largest = float(np.nanmax(self.d.catalogs.table(part.table).number(SLIDING)))
             if (span.kind == "ends" and span.low <= 0) or (span.kind == "offset" and span.high >= largest):
                 raise InputError(field, text, f"{words}a range above zero, for example '+-10 %' or '0.08 .. 0.12'")
@@ -355,7 +189,7 @@ class _Reader:
             expected = f"a family with a requirement such as lining_wear; {self.d.problem} has none"
             raise InputError(field, text, expected)
         unit = self.d.requirements[names[0]].unit
-        worn = _words(text) == NEW_AND_WORN
+        worn = words_of(text) == NEW_AND_WORN
         span = Range("share", -1.0, 0.0) if worn else self._range(text, unit, field, f"'{NEW_AND_WORN}' or ")
         return Scattered("wear", unit, span, tuple(Member("requirement", name) for name in names), text)
 
@@ -422,10 +256,6 @@ class _Reader:
         if not span.low < span.high or (span.kind == "share" and span.low <= -1):
             raise InputError(field, text, f"{words}a range from a smaller to a larger value, for example {EXAMPLE}")
         return span
-
-
-def _words(text: str) -> str:
-    return " ".join(text.lower().split())
 
 
 def _difference(unit: str) -> str:

@@ -43,6 +43,7 @@ from synth.seeker import Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 from synth.tuning import TUNING, TreeLimits, Tuning
+from synth.uncertainty import read_remaining
 
 LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from synth import scatter
+from synth import uncertainty
 from synth.declaration import Declaration
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
@@ -179,12 +179,12 @@ def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
             # Under a family what concerns it alone may stand as well, by symbols too.
             known = {*_known(one, key), *(one.declaration.requirements if key in ("requirements", "robust") else ())}
             for word in one.own[key]:
-                name = scatter.name_in_block(word, names) if key == "robust" else names.get(word, word)
+                name = uncertainty.name_in_block(word, names) if key == "robust" else names.get(word, word)
                 if name not in known:
                     expected = f"a name that {one.label} knows{_hint(word, known)}"
                     raise InputError(f"family {one.label}: {key}", word, expected)
         if one.own["robust"]:
-            scatter.read_remaining(one.asked(sheet)["robust"], f"family {one.label}: robust")
+            uncertainty.read_remaining(one.asked(sheet)["robust"], f"family {one.label}: robust")
 
 
 def _known(one: Applicant, key: str) -> Iterable[str]:
@@ -198,7 +198,7 @@ def _known(one: Applicant, key: str) -> Iterable[str]:
         "limits": quantities,
         "fix": quantities | set(d.choices) | set(d.slots),
         "parts": d.slots,
-        "robust": {*scatter.KEYS, *understands, *d.variables, *columns},
+        "robust": {*uncertainty.KEYS, *understands, *d.variables, *columns},
     }[key]
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from synth.console import plain_table
 from synth.robust import taken_off, told_of
 from synth.robust_console import percent
-from synth.scatter import RATE
 from synth.study import Break, Composition, Step, best_design
+from synth.uncertainty import RATE
 from synth.units import format_quantity
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
-from synth import scatter
 from synth.analysis import chosen_objectives
 from synth.count_domain import entries
 from synth.errors import InputError
@@ -17,8 +16,10 @@ from synth.posed import posed
 from synth.problem import DesignProblem, load
 from synth.rating import Rater
 from synth.results import Design
+from synth.scatter import check_rows
 from synth.search import Question, pose
 from synth.tables import Catalogs
+from synth.uncertainty import RATE, Uncertainty, name_in_block, read_remaining
 from synth.user_limits import SENSES
 from synth.vary import Value, Varied, read_vary
 
@@ -39,7 +40,7 @@ class Asked:
     gap: float = 1e-3
     grid: bool = True
     seed: int = 0
-    robust: scatter.Asked | None = None
+    robust: Uncertainty | None = None
 
     def pose(self, problem: DesignProblem) -> Question:
         """Check the question to the problem with its limits posed where they are worst, if anything scatters."""
@@ -85,17 +86,17 @@ class Asked:
         others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
         return type(problem)(**{**others, name: word})
 
-    def _scattering(self, name: str, text: str) -> scatter.Asked | None:
+    def _scattering(self, name: str, text: str) -> Uncertainty | None:
         """Return what scatters, with one thing over another range or, for "none", without it."""
         names = self._names()
 
         def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
-            return {key: value for key, value in ranges.items() if scatter.name_in_block(key, names) != name}
+            return {key: value for key, value in ranges.items() if name_in_block(key, names) != name}
 
         block = {} if self.robust is None else others(self.robust.block())
         if "tolerance" in block:
             block["tolerance"] = others(block["tolerance"])
-        return scatter.read_remaining({**block, name: text})
+        return read_remaining({**block, name: text})
 
     def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
         """Return what is given by name or symbol, without one name."""
@@ -146,7 +147,7 @@ class Steps:
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
         self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}
-        self._learned: dict[tuple[str, ...], scatter.Asked] = {}
+        self._learned: dict[tuple[str, ...], Uncertainty] = {}
         self.raters: list[Rater | None] = []  # by step; None where nothing scatters
         self.questions = self._posed()
         self.combinations = max(q.instance.combinations.count for q in self.questions)  # of the largest step
@@ -186,12 +187,12 @@ class Steps:
         whole = len(self) * self.combinations
         return replace(question, alike=-(-whole // max(question.instance.combinations.count, 1)))
 
-    def question(self, position: int, robust: scatter.Asked) -> Question:
+    def question(self, position: int, robust: Uncertainty) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""
         asked = replace(self._at(self.values[position]), robust=robust)
         return replace(self._pose(asked), alike=len(self))
 
-    def learn(self, robust: scatter.Asked) -> None:
+    def learn(self, robust: Uncertainty) -> None:
         """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
         known = self._learned.get(robust.names)
         self._learned[robust.names] = robust if known is None else known.with_scenarios(robust.scenarios)
@@ -199,7 +200,7 @@ class Steps:
     def stands(self, values: Sequence[Value], design: Design) -> bool:
         """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
         rater = self._at(values).rater()
-        return rater is None or rater.asked.mode == scatter.RATE or bool(rater.one(design)["holds"])
+        return rater is None or rater.asked.mode == RATE or bool(rater.one(design)["holds"])
 
     def _with_learned(self, asked: Asked) -> Asked:
         if asked.robust is None or asked.robust.names not in self._learned:
@@ -237,7 +238,7 @@ class Steps:
                 asked = self._at(values)
                 rater, question = asked.rater(), self._pose(asked)
                 if rater is not None:
-                    scatter.check_rows(rater.things, question.instance.selection.slots)
+                    check_rows(rater.things, question.instance.selection.slots)
                 questions.append(replace(question, alike=len(self)))
                 self.raters.append(rater)
             except InputError as error:
@@ -262,5 +263,5 @@ def steps_of(
 ) -> Steps:
     """Return the questions of a study; the arguments are those of ``synth.whatif``."""
     problem = load(p)
-    block, tables = scatter.read_remaining(robust), catalogs_for(problem, catalogs)
+    block, tables = read_remaining(robust), catalogs_for(problem, catalogs)
     return Steps(Asked(problem, requirements, tables, robust=block, **settings), vary)

@@ -8,11 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from synth import scatter
 from synth.errors import InputError, at, shortened
 from synth.input_limits import INPUT_LIMITS
 from synth.model import Model
 from synth.problem import DesignProblem
+from synth.scatter import AROUND
+from synth.uncertainty import KEYS, name_in_block
 from synth.units import parse_quantity
 
 DIGITS = 12
@@ -155,9 +156,9 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
                 raise InputError(f"vary {key}", label, "one of " + ", ".join(d.options[name].choices))
         return Varied("option", name, "", "", words)
     if place == "robust":
-        if word in scatter.KEYS[2:]:
+        if word in KEYS[2:]:
             raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
-        return Varied("scatter", scatter.name_in_block(word, d.names()), "", "", _ranges(key, values))
+        return Varied("scatter", name_in_block(word, d.names()), "", "", _ranges(key, values))
     if sign:
         name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity", ())
         unit = model.units[name]
@@ -330,7 +331,7 @@ def _ranges(key: str, values: Any) -> tuple[Value, ...]:
 
 def _one_range(field: str, text: str, unit: str) -> tuple[list[str], str]:
     """Return the ranges that one entry stands for, and their unit; ``unit`` is that of the entry behind it."""
-    around = scatter.AROUND.match(text)
+    around = AROUND.match(text)
     if around is None:
         end = re.split(r"\.\.|:", text)[-1]
         match = NUMBER.match(end)

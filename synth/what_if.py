@@ -25,12 +25,12 @@ from synth.problem import DesignProblem
 from synth.rating import Rater
 from synth.results import Design, ParetoFront
 from synth.robust import robust_front
-from synth.scatter import read_block
 from synth.search import Question, check_settings
 from synth.study import Break, Step, Study
 from synth.study_questions import Steps, steps_of
 from synth.study_store import FORMAT, RECORD, StudyStore, joined
 from synth.together_fronts import joint_answers, joint_groups
+from synth.uncertainty import read_block
 
 INTERRUPTED = "interrupted"
 

@@ -7,7 +7,8 @@ import synth
 from synth.instance import Instance, as_catalogs
 from synth.posed import posed
 from synth.rating import Rater
-from synth.scatter import CATALOGUE, LEAST, MOST, SLIDING, read_block
+from synth.scatter import CATALOGUE, LEAST, MOST, SLIDING
+from synth.uncertainty import read_block
 from synth.units import format_quantity
 from tests.conformance.cases import CASES
 

@@ -9,7 +9,8 @@ import synth
 from synth.instance import as_catalogs
 from synth.rating import Rater
 from synth.robust_console import percent
-from synth.scatter import Asked, read_block, scattered
+from synth.scatter import scattered
+from synth.uncertainty import Uncertainty, read_block
 from tests.unit.shaft_brake import CATALOGS, NEEDED, PAIRS, ShaftBrake
 
 
@@ -221,7 +222,7 @@ def test_a_column_scatters_by_its_name_and_a_block_reads_back():
     assert told["limits"]["pressure"]["limit"] == pytest.approx(0.9e6)
     block = {"friction": "+-5 %", "tolerance": {"radius": "+-1 mm"}, "mode": "rate", "seed": 2}
     asked = read_block(block)
-    assert isinstance(asked, Asked)
+    assert isinstance(asked, Uncertainty)
     assert read_block(asked.block()) == asked
     more = asked.with_scenarios({"grip": [(0.5, 1.0)]})
     assert read_block(more.block()) == more

@@ -10,7 +10,7 @@ import synth.robust
 from synth.instance import as_catalogs
 from synth.posed import RobustProblem, posed
 from synth.rating import Rater
-from synth.scatter import read_block
+from synth.uncertainty import read_block
 from tests.unit.shaft_brake import CATALOGS, FACE, NEEDED, PAIRS, ShaftBrake
 
 RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "tolerance": {"radius": "+-1 mm"}}
