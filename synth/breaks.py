@@ -245,7 +245,7 @@ class _Oracle:
             question = self._question(w, alone=True)
         except InputError:
             return None
-        front = question.answer(self.workers, None, seconds, ideas, explained=False)
+        front = question.within(seconds).answer(None, ideas, explained=False)
         if front.interrupted == INTERRUPTED:
             raise Stopped(front.interrupted)
         if front.interrupted:

@@ -108,11 +108,13 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
     from synth.choice_console import comparison_explanation, print_comparison
     from synth.comparing import compare
     from synth.console import output, progress_display
+    from synth.spec_keys import ASKED, SEARCHED
     from synth.tables import Catalogs
 
     place = place_for_stopped(folder, FRONT)  # finished families are kept there until all are
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        settings = asked.search_settings()
+        apart = ("family", "options", "requirements", "catalogs")
+        stated = asked.stated([key for key in (*ASKED, *SEARCHED) if key not in apart])
         found = compare(
             asked.family if isinstance(asked.family, str) else list(asked.family),
             asked.requirements,
@@ -120,7 +122,7 @@ def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> Non
             options=asked.options,
             progress=progress,
             finished=lambda label, front: front.save(place / label),
-            **settings,
+            **stated,
         )
     texts = {**found.files(), **found.family_files()}
     if not found.designs and not found.interrupted:

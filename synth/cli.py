@@ -47,16 +47,6 @@ if TYPE_CHECKING:
     from synth.results import ParetoFront
     from synth.spec import Spec
 
-EXPLAINED = (
-    "parts",
-    "limits",
-    "fix",
-    "grid",
-    "seed",
-    "time_limit",
-    "robust",
-)  # what counts when a question is explained
-
 app = typer.Typer(
     name="clutchsynth",
     help="Design synthesis for clutches and shaft couplings: requirement in, ranked Pareto designs out.",
@@ -242,8 +232,7 @@ def explain(
 ) -> None:
     """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
     from synth.console import output, print_explanation, progress_display
-    from synth.explanation import explain as explain_question
-    from synth.instance import catalogs_for
+    from synth.explanation import explanation_of
     from synth.spec import read_spec
 
     asked = read_spec(spec).merged(time_limit=time_limit)
@@ -252,14 +241,10 @@ def explain(
     if folder is not None:
         claim_output(folder, EXPLANATION)
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        problem = _load(asked.family, asked.options)
-        settings = {k: v for k, v in asked.search_settings().items() if k in EXPLAINED}
-        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-        found = explain_question(
-            problem, asked.requirements, catalogs=catalogs, progress=progress, physics=physics, **settings
-        )
+        request = asked.request()
+        found = explanation_of(request, asked.settings(), progress, physics)
     if not quiet:
-        print_explanation(found, problem.title, output())
+        print_explanation(found, request.problem.title, output())
     if folder is not None:
         files = found.save(folder)
         if not quiet:
@@ -418,20 +403,17 @@ def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> Pa
     """Search the designs for a spec; the time limit counts from ``begun``, and ``more`` is where to go on from."""
     from synth.console import progress_display
     from synth.improvement import improve_for
-    from synth.instance import catalogs_for
     from synth.loading import load_front
-    from synth.search import synthesize, time_left
+    from synth.search import find_front
 
     given = None if more is None else load_front(more)
     with blamed_on(asked.file), progress_display(quiet) as progress:
-        problem = _load(asked.family, asked.options)
-        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
-        settings = {**asked.search_settings(), "catalogs": catalogs, "progress": progress}
+        request = asked.request()
         try:
-            settings["time_limit"] = time_left(asked.time_limit, begun)
+            settings = asked.settings().since(begun)
             if given is not None:
-                return improve_for(given, problem, asked.requirements, "--more", **settings)
-            return synthesize(problem, asked.requirements, **settings)
+                return improve_for(given, request, settings, "--more", progress)
+            return find_front(request, settings, progress)
         except KeyboardInterrupt:
             tell("stopped before the search began; nothing is written")
             raise typer.Exit(STOPPED) from None

@@ -21,15 +21,15 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.instance import Instance
 from synth.pareto import rank, spread_subset
-from synth.posed import posed
 from synth.rating import Rater
 from synth.resolution import rounded_up
 from synth.results import Certificate, Design, ParetoFront
 from synth.robust import NOTHING_STANDS, robust_front
 from synth.search import FrontSearch, Question, pose
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
 from synth.tables import Catalogs
-from synth.uncertainty import RATE, Uncertainty, read_remaining
+from synth.uncertainty import RATE, Uncertainty
 from synth.units import format_quantity
 
 SAME = 1e-9  # relative; objectives closer than this are the same
@@ -91,18 +91,16 @@ def compare(
     InputError
         When something is wrong for every family: a name that none knows, a sheet that none can serve.
     """
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
     sheet = sheet_of(options=options, requirements=requirements, limits=limits, fix=fix, parts=parts, robust=robust)
     tables = catalogs if isinstance(catalogs, Catalogs) else Catalogs(catalogs)
     found = applicants(families, sheet, tables)
     refuse_all(found, sheet)
     chosen = common_objectives(found, objectives)
     refuse_all(found, sheet)
-    settings = {
-        "points": points, "weights": weights, "gap": gap, "grid": grid, "workers": workers, "seed": seed,
-        "time_limit": time_limit,
-    }  # fmt: skip
-    run = _Comparing(found, sheet, chosen, tables, settings, progress)
-    return run.run(finished)
+    ranked = {"objectives": chosen, "weights": weights, "grid": grid}
+    return _Comparing(found, sheet, ranked, tables, settings, progress).run(finished)
 
 
 @dataclass
@@ -152,10 +150,15 @@ class _Kept:
         """The model with its requirements and restrictions."""
         return self.question.instance
 
-    def answer(self, *args: Any, **settings: Any) -> ParetoFront:
+    def within(self, seconds: float | None) -> _Kept:
+        """Limit the time of what is asked next."""
+        self.question = self.question.within(seconds)
+        return self
+
+    def answer(self, progress: Progress | None = None, known: Sequence[Design] = ()) -> ParetoFront:
         """Search the designs; the arguments are those of ``Question.search``."""
-        self.search = self.question.search(*args, **settings)
-        return self.search.run(list(self.question.weights.values()), self.question.settings)
+        self.search = self.question.search(progress, known)
+        return self.search.run(list(self.question.weights.values()), self.question.record())
 
 
 class _Comparing:
@@ -165,17 +168,18 @@ class _Comparing:
         self,
         found: Sequence[Applicant],
         sheet: Sheet,
-        objectives: Mapping[str, str],
+        ranked: Mapping[str, Any],
         tables: Catalogs,
-        settings: Mapping[str, Any],
-        progress: Callable[[Mapping[str, Any]], None] | None,
+        settings: SearchSettings,
+        progress: Progress | None,
     ) -> None:
         self.started = time.monotonic()
-        self.found, self.sheet, self.objectives, self.tables = found, sheet, dict(objectives), tables
+        self.found, self.sheet, self.ranked, self.tables = found, sheet, ranked, tables
+        self.objectives: dict[str, str] = dict(ranked["objectives"])
         self.settings, self.progress = settings, progress
-        limit = settings["time_limit"]
+        limit = settings.time_limit
         self.deadline = math.inf if limit is None else self.started + limit
-        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in objectives.values()])
+        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in self.objectives.values()])
         self.members: list[_Member] = []
         self.faults: dict[str, InputError] = {}
         self.interrupted = ""
@@ -220,32 +224,26 @@ class _Comparing:
 
     def _searched(self, one: Applicant, number: int, count: int) -> _Member:
         """Search one family, in its share of the time that is left."""
-        asked, settings = one.asked(self.sheet), self.settings
         limit = None
         if math.isfinite(self.deadline):
             limit = max((self.deadline - time.monotonic()) / (count - number), 1e-3)
         shown, kept = self._shown(one.label, number, count), list[_Kept]()
 
+        request, rater = one.request(self.sheet, self.tables, **self.ranked), None
+
         def ask(block: Uncertainty | None) -> _Kept:
-            problem = posed(one.problem, block, asked["limits"])
-            question = pose(
-                problem, asked["requirements"], self.objectives, settings["points"], self.tables, asked["parts"],
-                asked["limits"], asked["fix"], settings["weights"], settings["gap"], settings["grid"],
-                settings["seed"],
-            )  # fmt: skip
-            kept.append(_Kept(question))
+            kept.append(_Kept(pose(replace(request, robust=block), self.settings)))
             return kept[-1]
 
-        block, rater = read_remaining(asked["robust"] or None), None
-        if block is None:
-            front = ask(None).answer(settings["workers"], shown, limit)
+        if request.robust is None:
+            front = ask(None).within(limit).answer(shown)
         else:
-            rater = Rater(one.problem, asked["requirements"], self.tables, asked["limits"], block)
-            front = robust_front(ask, rater, settings["workers"], shown, limit)
+            rater = Rater(one.problem, request.requirements, self.tables, request.limits, request.robust)
+            front = robust_front(ask, rater, shown, limit)
         search = next(k.search for k in reversed(kept) if k.search is not None)
         return _Member(one, search, front, list(front.designs), rater)
 
-    def _shown(self, label: str, number: int, count: int) -> Callable[[Mapping[str, Any]], None] | None:
+    def _shown(self, label: str, number: int, count: int) -> Progress | None:
         progress = self.progress
         if progress is None:
             return None
@@ -305,7 +303,7 @@ class _Comparing:
 
     def _spread(self, owners: Sequence[_Member], signed: np.ndarray) -> list[int]:
         """Return designs that spread best, at most so many as asked for; no family is left out that has one."""
-        most = int(self.settings["points"])
+        most = self.settings.points
         taken = [int(k) for k in spread_subset(signed, most)]
         kept = [owners[k].one.label for k in taken]
         for label in dict.fromkeys(m.one.label for m in owners):
@@ -327,7 +325,7 @@ class _Comparing:
     def _compared(self) -> Comparison:
         listed, every = self._listed()
         certificate = self._certificate(bool(listed))
-        weights = [float((self.settings["weights"] or {}).get(n, 1.0)) for n in self.objectives]
+        weights = [float((self.ranked["weights"] or {}).get(n, 1.0)) for n in self.objectives]
         designs: list[Design] = []
         owners: list[str] = []
         if listed:
@@ -349,7 +347,16 @@ class _Comparing:
                     )
                 )
         outcomes = [self._outcome(one, designs, owners, every) for one in self.found]
-        settings = {**self.settings, "sheet": {key: _plain(self.sheet[key]) for key in self.sheet}}
+        settings = {
+            "points": self.settings.points,
+            "weights": self.ranked["weights"],
+            "gap": self.settings.gap,
+            "grid": self.ranked["grid"],
+            "workers": self.settings.workers,
+            "seed": self.settings.seed,
+            "time_limit": self.settings.time_limit,
+            "sheet": {key: _plain(self.sheet[key]) for key in self.sheet},
+        }
         return Comparison(
             self.objectives, designs, owners, outcomes, certificate, settings, self.interrupted,
             time.monotonic() - self.started,
@@ -361,7 +368,7 @@ class _Comparing:
         kind = KINDS[weakest] if not self.interrupted else KINDS[0]
         if kind == "global" and not self.proven:
             kind = KINDS[0]
-        gap = float(self.settings["gap"]) if kind == "global" and any_design else None
+        gap = self.settings.gap if kind == "global" and any_design else None
         amounts = self._amounts() if gap is not None else {}
         units = {name: next(c.units[name] for c in own if name in c.units) for name in amounts}
         return Certificate(
@@ -378,7 +385,7 @@ class _Comparing:
             unit = next((c.units[name] for c in told if name in c.resolution), None)
             if unit is not None:
                 # In some families the share of a value, in others an amount: the largest of them all serves every one.
-                own = [c.resolution.get(name, float(self.settings["gap"]) * float(values[:, k].max())) for c in told]
+                own = [c.resolution.get(name, self.settings.gap * float(values[:, k].max())) for c in told]
                 least = max(*own, *(float(m.search.against[k]) for m in self.members))
                 result[name] = rounded_up(least, unit)
         return result

@@ -20,18 +20,19 @@ from synth.description import declared_ranges
 from synth.errors import InputError, RefusedError
 from synth.files import frame_csv
 from synth.fired_guards import FiredGuard, columns_of, fired_guards, requirements_of
-from synth.instance import Instance, as_mapping, catalogs_for
+from synth.instance import Instance
 from synth.output_folder import EXPLANATION, save_result
 from synth.posed import nominal, posed
-from synth.problem import DesignProblem, load
+from synth.problem import DesignProblem
 from synth.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
+from synth.request import Request
 from synth.results import Design
-from synth.search import check_settings, one_best
+from synth.search import one_best
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.spec_patch import patched
 from synth.special import expanded
 from synth.structure import classify
-from synth.tables import Catalogs
-from synth.units import format_quantity, from_si, outward, parse_unit
+from synth.units import Quantity, format_quantity, from_si, outward, parse_unit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -269,7 +270,24 @@ def explain(
         For everything that is wrong with the input, in one sentence.
     """
     begin = time.monotonic()
-    asking = _Question(load(p), requirements, catalogs, parts, limits, fix, grid, seed, progress, time_limit, robust)
+    settings = SearchSettings(points=1, gap=GAP, seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    request = Request.of(p, requirements, catalogs, robust, parts=parts, limits=limits, fix=fix, grid=grid)
+    return explanation_of(request, settings.since(begin), progress, physics)
+
+
+def explanation_of(
+    request: Request, settings: SearchSettings, progress: Progress | None = None, physics: bool = False
+) -> Explanation:
+    """Tell why nothing is feasible; of the settings the seed and the time limit count.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the request, in one sentence.
+    """
+    begin = time.monotonic()
+    asking = _Explaining(request, settings, progress)
     result = Explanation(guards=tuple(asking.guards))
     try:
         with until(asking.deadline):
@@ -284,7 +302,7 @@ def explain(
     return result
 
 
-def _explain(asking: _Question, result: Explanation, physics: bool) -> None:
+def _explain(asking: _Explaining, result: Explanation, physics: bool) -> None:
     asking.say("guards", 0.0, "what is refused outright")
     result.fired = fired_guards(asking.instance)
     if not result.fired:
@@ -352,40 +370,33 @@ class _Change:
     given: str
 
 
-class _Question:
-    """The question that is explained, and its relaxed form."""
+class _Explaining:
+    """The request that is explained, and its relaxed form."""
 
     def __init__(
         self,
-        problem: DesignProblem,
-        requirements: Mapping[str, Any],
-        catalogs: Any,
-        parts: Mapping[str, Any] | None,
-        limits: Mapping[str, Any] | None,
-        fix: Mapping[str, Any] | None,
-        grid: bool,
-        seed: int,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-        time_limit: float | None,
-        robust: Mapping[str, Any] | None,
+        request: Request,
+        settings: SearchSettings,
+        progress: Progress | None,
     ) -> None:
-        check_settings(1, GAP, grid, 1, seed, progress, time_limit)
-        self.progress, self.seed, self.grid, self.robust = progress, seed, grid, robust
-        self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
-        stated = {"requirements": requirements, "limits": limits, "fix": fix, "parts": parts}
-        self.spec = {key: dict(as_mapping(given, key, "")) for key, given in stated.items()}
-        self.catalogs: Catalogs = catalogs_for(problem, catalogs)
-        self.base, whole = problem, posed(problem, robust, limits)
-        self.instance = Instance(whole, requirements, self.catalogs, parts, limits, fix, grid, refuse=False)
+        self.request, self.progress = request, progress
+        self.settings = replace(settings, points=1, gap=GAP, workers=1)
+        self.deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
+        self.catalogs = request.catalogs
+        whole = posed(request.problem, request.robust, request.limits)
+        asked = (
+            whole, request.requirements, request.catalogs, request.parts, request.limits, request.fix, request.grid,
+        )  # fmt: skip
+        self.instance = Instance(*asked, refuse=False)
         model, d = self.instance.model, self.instance.model.declaration
         self.names = d.names()
         variables = {v.name for v in model.variables}
         # What is asked of counts bounds them here as well; limits on variables may give way.
         self.own = [*self.instance.own, *(x for x in self.instance.bounding if x.quantity in variables)]
         self.bounded = {name: asked for name, asked in self.instance.limited.items() if name in d.counts}
-        kept = model.by_name(self.spec["fix"], "fix", list(self.names.values()), "a name")
+        kept = model.by_name(request.fix, "fix", list(self.names.values()), "a name")
         self.fix = {name: value for name, value in kept.items() if name not in d.derived}
-        self.parts = model.by_name(self.spec["parts"], "parts", list(d.slots), "a slot")
+        self.parts = model.by_name(request.parts, "parts", list(d.slots), "a slot")
         self.pins = self._pins(kept)
         self.constraints = (*model.constraints, *self.own)
         self.limits = [x.name for x in self.constraints]
@@ -399,13 +410,13 @@ class _Question:
         slots = d.slots.values()
         self.columns = {f"{part.slot}.{key}": part for part in slots for key in part.columns}
         self.given = {
-            name: float(from_si(value, parse_unit(d.requirements[name].unit)))
+            name: Quantity(value, d.requirements[name].unit)
             for name, value in self.instance.requirements.items()
             if name in self.instance.given
         }
         if not fired_guards(self.instance):
             # What is refused only because several refusals leave out all rows between them.
-            Instance(whole, requirements, self.catalogs, parts, limits, fix, grid)
+            Instance(*asked)
 
     def _pins(self, fix: Mapping[str, Any]) -> dict[str, _Pin]:
         """Return what is pinned to a number, and the counts of which comparisons leave some values."""
@@ -460,10 +471,10 @@ class _Question:
         bounds |= {AMOUNT: f"<= {most!r}"} if most < MOST else {}
         parts = {name: rule for name, rule in self.parts.items() if name not in loose}
         try:
-            instance = Instance(relaxed, self.given, self.catalogs, parts, bounds, fix, self.grid)
+            instance = Instance(relaxed, self.given, self.catalogs, parts, bounds, fix, self.request.grid)
         except RefusedError:
             return _Answer(None, True)
-        front = one_best(instance, AMOUNT, GAP, EFFORT, self.seed, None if left == math.inf else left)
+        front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), EFFORT)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return _Answer(front.designs[0] if front.designs else None, front.certificate.kind == "global")
@@ -818,7 +829,7 @@ class _Question:
 
     def _word(self, key: str, name: str) -> str:
         """Return what the user calls something under a key of the spec; its name where it does not stand there."""
-        return next((str(word) for word in self.spec[key] if self.names.get(str(word)) == name), name)
+        return next((str(word) for word in getattr(self.request, key) if self.names.get(str(word)) == name), name)
 
     def _requirement_patch(self, name: str, text: str) -> Mapping[str, Any]:
         return {"requirements": {self._word("requirements", name): text}}
@@ -860,13 +871,18 @@ class _Question:
                 return patch(text), text
         return None, texts[0]
 
+    def _with(self, patch: Mapping[str, Any]) -> Request:
+        """Return the request with a patch."""
+        stated = {key: getattr(self.request, key) for key in ("requirements", "limits", "fix", "parts")}
+        return replace(self.request, **patched(stated, patch))
+
     def _works(self, patch: Mapping[str, Any], found: Design) -> bool:
         """Tell whether a design is one of the question with a patch."""
-        spec = patched(self.spec, patch)
+        asked = self._with(patch)
         try:
-            problem = posed(nominal(self.base), self.robust, spec["limits"])
+            problem = posed(nominal(asked.problem), asked.robust, asked.limits)
             instance = Instance(
-                problem, spec["requirements"], self.catalogs, spec["parts"], spec["limits"], spec["fix"], self.grid
+                problem, asked.requirements, asked.catalogs, asked.parts, asked.limits, asked.fix, asked.grid
             )
             design = self._as_asked(found, patch)
             instance.combinations.number(design)
@@ -892,9 +908,10 @@ class _Question:
         """Return a design of the relaxed question as one of the question itself, or of that with a patch."""
         kinds = {name: kind for name, kind in found.frame.kinds.items() if name != AMOUNT}
         own = replace(found, frame=replace(found.frame, kinds=kinds))
-        spec = patched(self.spec, patch or {})
-        problem = self.instance.problem if patch is None else posed(nominal(self.base), self.robust, spec["limits"])
-        return evaluate(problem, spec["requirements"], own, catalogs=self.catalogs, limits=spec["limits"])
+        asked, problem = self._with(patch or {}), self.instance.problem
+        if patch is not None:
+            problem = posed(nominal(asked.problem), asked.robust, asked.limits)
+        return evaluate(problem, asked.requirements, own, catalogs=asked.catalogs, limits=asked.limits)
 
 
 def _percent(amount: float) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from synth.errors import InputError
+from synth.spec_keys import refuse_several, refuse_values
 
 if TYPE_CHECKING:
     from synth.problem import DesignProblem
@@ -15,20 +16,12 @@ if TYPE_CHECKING:
 
 def must_be_one_family(asked: Spec) -> None:
     """Refuse a spec of several families."""
-    if asked.compares:
-        right = "one family (clutchsynth run compares several)"
-        raise InputError(f"{asked.file}: family", asked.shown_family, right, ("family",))
+    refuse_several(asked.family, asked.file)
 
 
 def must_be_a_question(asked: Spec) -> None:
     """Refuse a spec with values."""
-    if asked.values is not None:
-        raise InputError(
-            f"{asked.file}: values",
-            ", ".join(asked.values),
-            "a question without values; clutchsynth check reads a given design",
-            ("values",),
-        )
+    refuse_values(asked.values, asked.file)
 
 
 def must_be_a_design(asked: Spec) -> None:

@@ -11,8 +11,10 @@ from synth.errors import InputError
 from synth.question import problem_of
 
 if TYPE_CHECKING:
+    from synth.request import Request
     from synth.results import ParetoFront
     from synth.search import Question
+    from synth.search_settings import Progress, SearchSettings
 
 SAME = 1e-12  # relative: requirements are written with all their digits
 
@@ -52,64 +54,61 @@ def improve(
     InputError
         When the question cannot be posed again.
     """
-    from synth.search import pose, time_left  # the search knows results
+    from synth.request import Request  # costly to import
+    from synth.search import pose
+    from synth.search_settings import SearchSettings, check_progress
 
     begun = time.monotonic()
+    check_progress(progress)
     if problem is None and catalogs is None and front.question is not None:
         problem, catalogs = front.question.problem, front.question.catalogs
     own, tables = problem_of(front, problem, catalogs)
-    settings, frame = front.settings, front.frame
-    question = pose(
-        own, frame.requirements, dict(frame.objectives), settings["points"], tables, settings["parts"],
-        settings["limits"], settings["fix"], settings["weights"], settings["gap"], settings["grid"], settings["seed"],
+    kept, frame = front.settings, front.frame
+    settings = SearchSettings(
+        points=kept["points"], gap=kept["gap"], workers=workers, seed=kept["seed"], time_limit=time_limit
+    )
+    request = Request(
+        problem=own, requirements=frame.requirements, catalogs=tables, objectives=dict(frame.objectives),
+        parts=kept["parts"], limits=kept["limits"], fix=kept["fix"], weights=kept["weights"], grid=kept["grid"],
     )  # fmt: skip
-    return go_on(front, question, "front", time_left(time_limit, begun), workers, progress)
+    question = pose(request, settings)
+    return go_on(front, question.within(settings.since(begun).time_limit), "front", progress)
 
 
 def improve_for(
     front: ParetoFront,
-    problem: Any,
-    requirements: Mapping[str, Any],
+    request: Request,
+    settings: SearchSettings,
     name: str,
-    *,
-    time_limit: float | None = None,
-    workers: int = 1,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
-    robust: Any = None,
-    **settings: Any,
+    progress: Progress | None = None,
 ) -> ParetoFront:
-    """Answer a question as ``synthesize`` does, from the front of an earlier search of the same one.
+    """Answer a request as ``synthesize`` does, from the front of an earlier search of the same one.
 
     Parameters
     ----------
     front : ParetoFront
-    problem, requirements, time_limit, workers, progress, robust, settings
-        As for ``synthesize``.
+    request : Request
+    settings : SearchSettings
     name : str
         Of the place where the front was named, for messages.
+    progress
+        As for ``synthesize``.
 
     Raises
     ------
     InputError
         For everything that is wrong with the input; where the front is one of another question.
     """
-    from synth.search import pose, time_left
+    from synth.search import pose
 
-    if robust is not None:
+    if request.robust is not None:
         raise InputError("robust", "a robust block", "none: no search goes on with one")
     begun = time.monotonic()
-    question = pose(problem, requirements, **settings)
-    return go_on(front, question, name, time_left(time_limit, begun), workers, progress)
+    question = pose(request, settings)
+    return go_on(front, question.within(settings.since(begun).time_limit), name, progress)
 
 
-def go_on(
-    front: ParetoFront,
-    question: Question,
-    name: str,
-    time_limit: float | None = None,
-    workers: int = 1,
-    progress: Callable[[Mapping[str, Any]], None] | None = None,
-) -> ParetoFront:
+def go_on(front: ParetoFront, question: Question, name: str, progress: Progress | None = None) -> ParetoFront:
     """Answer a question from the front of an earlier search of the same one.
 
     Parameters
@@ -118,7 +117,7 @@ def go_on(
     question : Question
     name : str
         Of the place where the front was named, for messages.
-    time_limit, workers, progress
+    progress
         As for ``synthesize``.
 
     Raises
@@ -128,10 +127,10 @@ def go_on(
     """
     must_be_the_same(front, question, name)
     certificate, settings = front.certificate, question.settings
-    enough = front.complete or len(front.designs) == settings["points"]
-    if certificate.kind == "global" and (not front.designs or ((certificate.gap or 1.0) <= settings["gap"] and enough)):
+    enough = front.complete or len(front.designs) == settings.points
+    if certificate.kind == "global" and (not front.designs or ((certificate.gap or 1.0) <= settings.gap and enough)):
         return front
-    return question.answer(workers, progress, time_limit, given=front)
+    return question.answer(progress, given=front)
 
 
 def must_be_the_same(front: ParetoFront, question: Question, name: str) -> None:
@@ -160,9 +159,10 @@ def difference(front: ParetoFront, question: Question) -> str:
         return f"requirement {more[0]}, which only one of them has"
     if dict(question.chosen) != dict(frame.objectives):
         return f"the objectives: {', '.join(frame.objectives)} there, {', '.join(question.chosen)} here"
+    asked = question.record()
     for key in ("parts", "limits", "fix", "grid"):
-        if question.settings[key] != front.settings[key]:
-            return f"{key}: {front.settings[key]} there, {question.settings[key]} here"
+        if asked[key] != front.settings[key]:
+            return f"{key}: {front.settings[key]} there, {asked[key]} here"
     for design in front.designs:
         try:
             instance.combinations.number(design)

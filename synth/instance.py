@@ -26,7 +26,7 @@ from synth.problem import DesignProblem
 from synth.slot_comparison import SlotComparison, comparisons_of
 from synth.special import expanded
 from synth.tables import Catalogs, Table
-from synth.units import format_quantity, from_si, parse_quantity, parse_unit
+from synth.units import Quantity, format_quantity, from_si, parse_quantity, parse_unit
 from synth.user_limits import check_number_of_limits, contradict, read_limits
 
 MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
@@ -312,9 +312,7 @@ class Instance:
         """Return this question with another value of a requirement, as :meth:`moved`, whether it is refused or not."""
         other, declared = copy.copy(self), self.model.declaration.requirements
         values = {n: self.requirements[n] for n in self.given} | {name: value}
-        other.requirements = other._requirement_values(
-            {n: format_quantity(v, declared[n].unit, None) for n, v in values.items()}
-        )
+        other.requirements = other._requirement_values({n: Quantity(v, declared[n].unit) for n, v in values.items()})
         other.given = self.given | {name}
         return other
 

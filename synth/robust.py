@@ -24,12 +24,12 @@ from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.scatter import check_rows
+from synth.search_settings import Progress
 from synth.uncertainty import LIMITS, Uncertainty, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Progress = Callable[[Mapping[str, Any]], None]
 SEARCHES = 5  # at most so many, each with more points at which limits are posed
 SCENARIOS = 4  # new points per limit
 SHORTEST, GRACE = 1e-3, 2.0  # seconds
@@ -181,13 +181,11 @@ class Asks(Protocol):
         """The model with its requirements and restrictions."""
         ...
 
-    def answer(
-        self,
-        workers: int = 1,
-        progress: Progress | None = None,
-        time_limit: float | None = None,
-        known: Sequence[Design] = (),
-    ) -> ParetoFront:
+    def within(self, seconds: float | None) -> Asks:
+        """Return the same with another time limit; None: without any."""
+        ...
+
+    def answer(self, progress: Progress | None = None, known: Sequence[Design] = ()) -> ParetoFront:
         """Search the designs."""
         ...
 
@@ -195,7 +193,6 @@ class Asks(Protocol):
 def robust_front(
     pose: Callable[[Uncertainty], Asks],
     rater: Rater,
-    workers: int = 1,
     progress: Progress | None = None,
     time_limit: float | None = None,
     known: Sequence[Design] = (),
@@ -213,7 +210,7 @@ def robust_front(
         Returns the question with the limits posed that a block asks for.
     rater : Rater
         Rates designs of the nominal problem.
-    workers, progress, time_limit
+    progress, time_limit
         As for ``synthesize``.
     known : list of Design
         Where to look first.
@@ -227,7 +224,7 @@ def robust_front(
         check_rows(rater.things, question.instance.selection.slots)
         if front is None:
             left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
-            front = question.answer(workers, progress, left, known)
+            front = question.within(left).answer(progress, known)
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         more = len(question.instance.model.limits) - len(rater.model.limits)

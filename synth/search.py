@@ -20,32 +20,28 @@ from synth.count_domain import stated
 from synth.cover import Covered, best, cover
 from synth.dives import dive
 from synth.elasticity import elasticities
-from synth.errors import InputError, whole_number
+from synth.errors import InputError
 from synth.feasibility import Status
 from synth.formulation import Archive, Boxes, Candidate, Formulation, rows_of
-from synth.gap import GAP_EXPECTED, is_gap
-from synth.input_limits import INPUT_LIMITS
-from synth.instance import Instance, as_mapping, catalogs_for
+from synth.instance import Instance
 from synth.outer import search_parts, study_file
 from synth.pareto import extremes, rank, spread_subset
 from synth.posed import posed
-from synth.problem import DesignProblem, load
+from synth.problem import DesignProblem
 from synth.propagation import Lessons
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover, Purpose, Staircase, Tabled
 from synth.rating import Rater
 from synth.recall import recall
+from synth.request import Request
 from synth.resolution import ROOM, ranges, rounded_up
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.robust import robust_front
-from synth.scatter import read_remaining
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.seeker import Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 from synth.tuning import TUNING, TreeLimits, Tuning
-from synth.uncertainty import read_remaining
-
-LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
 
 
 def synthesize(
@@ -114,48 +110,68 @@ def synthesize(
         For everything that is wrong with the input, in one sentence.
     """
     begun = time.monotonic()
-    check_settings(points, gap, grid, workers, seed, progress, time_limit)
-
-    def asked(problem: Any) -> Question:
-        return pose(problem, requirements, objectives, points, catalogs, parts, limits, fix, weights, gap, grid, seed)
-
-    block = read_remaining(robust)
-    if block is None:
-        question = asked(p)
-        return question.answer(workers, progress, time_left(time_limit, begun))
-    problem = load(p)
-    catalogs = catalogs_for(problem, catalogs)
-    rater = Rater(problem, requirements, catalogs, limits, block)
-    return robust_front(
-        lambda wanted: asked(posed(problem, wanted, limits)), rater, workers, progress, time_left(time_limit, begun)
-    )
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    request = Request.of(
+        p, requirements, catalogs, robust, objectives=objectives, parts=parts, limits=limits, fix=fix, weights=weights,
+        grid=grid,
+    )  # fmt: skip
+    return find_front(request, settings.since(begun), progress)
 
 
-def time_left(time_limit: float | None, begun: float) -> float | None:
-    """Return what is left of a time limit, in seconds, that began at a time as of ``time.monotonic``."""
-    return None if time_limit is None else max(time_limit - (time.monotonic() - begun), LEAST_SECONDS)
+def find_front(request: Request, settings: SearchSettings, progress: Progress | None = None) -> ParetoFront:
+    """Find the ranked Pareto designs for a request; where something scatters, those that stand it, or all rated.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the request, in one sentence.
+    """
+    begun = time.monotonic()
+    if request.robust is None:
+        question = pose(request, settings)
+        return question.within(settings.since(begun).time_limit).answer(progress)
+    rater = Rater(request.problem, request.requirements, request.catalogs, request.limits, request.robust)
+    left = settings.since(begun).time_limit
+    return robust_front(lambda wanted: pose(replace(request, robust=wanted), settings), rater, progress, left)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Question:
-    """A question that has been checked: everything that can be wrong with it has been said.
+    """A request that has been checked against its model: everything that can be wrong with it has been said.
 
-    ``alike``: how many questions of its kind are asked; code that is compiled for one serves them all. ``tuning``: what
-    its search goes by.
+    ``chosen`` are the objectives with their sense, ``weights`` those of all of them. ``alike``: how many questions of
+    its kind are asked; code that is compiled for one serves them all. ``tuning``: what its search goes by.
     """
 
+    request: Request
+    settings: SearchSettings
     instance: Instance
     chosen: Mapping[str, str]
     weights: Mapping[str, float]
-    settings: Mapping[str, Any]
     alike: int = 1
     tuning: Tuning = TUNING
 
+    def within(self, seconds: float | None) -> Question:
+        """Return the same with another time limit; None: without any."""
+        return replace(self, settings=self.settings.within(seconds))
+
+    def record(self) -> dict[str, Any]:
+        """Return what a front keeps of the question beside its frame, as files keep it."""
+        return {
+            "points": self.settings.points,
+            "gap": self.settings.gap,
+            "grid": self.request.grid,
+            "seed": self.settings.seed,
+            "weights": self.weights,
+            "parts": self.request.rules(),
+            "limits": stated(self.request.limits),
+            "fix": stated(self.request.fix),
+        }
+
     def answer(
         self,
-        workers: int = 1,
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
-        time_limit: float | None = None,
+        progress: Progress | None = None,
         known: Sequence[Design] = (),
         explained: bool = True,
         lessons: Lessons | None = None,
@@ -167,92 +183,69 @@ class Question:
         prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
         where nothing is feasible. ``given`` is the front of an earlier search of this very question, to go on from.
         """
-        search = self.search(workers, progress, time_limit, known, lessons)
+        search = self.search(progress, known, lessons)
         if given is not None:
             search.begin_from(given)
-        return search.run(list(self.weights.values()), self.settings, explained)
+        return search.run(list(self.weights.values()), self.record(), explained)
 
-    def experience(self, time_limit: float | None = None) -> tuple[ParetoFront, Lessons | None]:
+    def experience(self) -> tuple[ParetoFront, Lessons | None]:
         """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
-        search = self.search(time_limit=time_limit)
-        front = search.run(list(self.weights.values()), self.settings, explained=False)
+        search = self.search()
+        front = search.run(list(self.weights.values()), self.record(), explained=False)
         # What was learned where nothing was feasible does not help where something is.
         return front, search.form.propagation.lessons() if front.designs and not search.in_conflict else None
 
     def search(
-        self,
-        workers: int = 1,
-        progress: Callable[[Mapping[str, Any]], None] | None = None,
-        time_limit: float | None = None,
-        known: Sequence[Design] = (),
-        lessons: Lessons | None = None,
+        self, progress: Progress | None = None, known: Sequence[Design] = (), lessons: Lessons | None = None
     ) -> FrontSearch:
         """Return the search that answers."""
-        points, gap, seed = (self.settings[name] for name in ("points", "gap", "seed"))
         return FrontSearch(
-            self.instance, self.chosen, points, gap, seed, progress, time_limit, int(workers),
-            known=known, alike=self.alike, lessons=lessons, tuning=self.tuning,
+            self.instance, self.chosen, self.settings, progress, known=known, alike=self.alike, lessons=lessons,
+            tuning=self.tuning,
         )  # fmt: skip
 
 
 def pose(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    objectives: Any = None,
-    points: int = 30,
-    catalogs: Any = None,
-    parts: Mapping[str, Any] | None = None,
-    limits: Mapping[str, Any] | None = None,
-    fix: Mapping[str, Any] | None = None,
-    weights: Mapping[str, float] | None = None,
-    gap: float = 1e-3,
-    grid: bool = True,
-    seed: int = 0,
-    tuning: Tuning = TUNING,
+    request: Request, settings: SearchSettings, problem: DesignProblem | None = None, tuning: Tuning = TUNING
 ) -> Question:
-    """Check a question to ``synthesize``; its arguments are those of the same names there.
+    """Check a request against its model.
 
-    ``tuning``: what its search goes by.
+    Parameters
+    ----------
+    request : Request
+    settings : SearchSettings
+    problem : DesignProblem, optional
+        Its problem with the limits posed over the range of what scatters, where that is done already.
+    tuning : Tuning
+        What its search goes by.
 
     Raises
     ------
     InputError
-        For everything that is wrong with the input, in one sentence.
+        For everything that is wrong with the request, in one sentence.
     """
-    problem = load(p)
-    check_settings(points, gap, grid, 1, seed, None, None)
-    instance = Instance(problem, requirements, catalogs_for(problem, catalogs), parts, limits, fix, grid)
-    chosen = chosen_objectives(instance.model, objectives)
-    weight_of = dict(zip(chosen, _weights(instance, chosen, weights), strict=True))
-    settings = {
-        "points": points,
-        "gap": gap,
-        "grid": grid,
-        "seed": seed,
-        "weights": weight_of,
-        "parts": {k: v if isinstance(v, str) else list(v) for k, v in (parts or {}).items()},
-        "limits": stated(limits),
-        "fix": stated(fix),
-    }
-    return Question(instance, chosen, weight_of, settings, tuning=tuning)
+    if problem is None:
+        problem = posed(request.problem, request.robust, request.limits)
+    instance = Instance(
+        problem, request.requirements, request.catalogs, request.parts, request.limits, request.fix, request.grid
+    )
+    chosen = chosen_objectives(instance.model, request.objectives)
+    weights = dict(zip(chosen, _weights(instance, chosen, request.weights), strict=True))
+    return Question(
+        request=request, settings=settings, instance=instance, chosen=chosen, weights=weights, tuning=tuning
+    )
 
 
 def one_best(
-    instance: Instance,
-    objective: str,
-    gap: float,
-    effort: int,
-    seed: int = 0,
-    time_limit: float | None = None,
-    tuning: Tuning = TUNING,
+    instance: Instance, objective: str, settings: SearchSettings, effort: int, tuning: Tuning = TUNING
 ) -> ParetoFront:
     """Return the best design for one objective, for questions that the engine asks itself.
 
     Where there is none nothing is explained; what ``effort`` boxes leave open is left open.
     """
     chosen = chosen_objectives(instance.model, [objective])
-    search = FrontSearch(instance, chosen, 1, gap, seed, None, time_limit, 1, effort, tuning=tuning)
-    return search.run([1.0], {"points": 1, "gap": gap}, explained=False)
+    search = FrontSearch(instance, chosen, settings, effort=effort, tuning=tuning)
+    return search.run([1.0], {"points": settings.points, "gap": settings.gap}, explained=False)
 
 
 def distinct(
@@ -275,34 +268,8 @@ def distinct(
     return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]
 
 
-def check_settings(points: Any, gap: Any, grid: Any, workers: Any, seed: Any, progress: Any, time_limit: Any) -> None:
-    """Refuse what is no setting of a search.
-
-    Raises
-    ------
-    InputError
-        One of them is not what ``synthesize`` takes.
-    """
-
-    def real(value: Any) -> bool:
-        return isinstance(value, (int, float, np.floating)) and not isinstance(value, bool) and math.isfinite(value)
-
-    whole_number(points, "points", INPUT_LIMITS.points, path=("points",))
-    if not is_gap(gap):
-        raise InputError("gap", gap, GAP_EXPECTED, ("gap",))
-    if not isinstance(grid, (bool, np.bool_)):
-        raise InputError("grid", grid, "true or false", ("grid",))
-    if progress is not None and not callable(progress):
-        raise InputError("progress", progress, "a function of one mapping, or none")
-    whole_number(workers, "workers", INPUT_LIMITS.workers, path=("workers",))
-    whole_number(seed, "seed", INPUT_LIMITS.seed, least=0, path=("seed",))
-    if time_limit is not None and (not real(time_limit) or time_limit <= 0):
-        raise InputError("time_limit", time_limit, "a positive number of seconds", ("time_limit",))
-
-
-def _weights(instance: Instance, chosen: Mapping[str, str], weights: Mapping[str, float] | None) -> list[float]:
+def _weights(instance: Instance, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
     values = dict.fromkeys(chosen, 1.0)
-    asked = as_mapping(weights, "weights", "{'mass': 2}")
     for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
         number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan
         if not (math.isfinite(number) and number >= 0):
@@ -332,12 +299,8 @@ class FrontSearch:
         self,
         instance: Instance,
         chosen: Mapping[str, str],
-        points: int,
-        gap: float,
-        seed: int,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-        time_limit: float | None,
-        workers: int,
+        settings: SearchSettings,
+        progress: Progress | None = None,
         effort: int | None = None,
         known: Sequence[Design] = (),
         alike: int = 1,
@@ -349,17 +312,18 @@ class FrontSearch:
         self.thorough = effort is None
         self.effort = _effort(instance, len(chosen), self.limits) if effort is None else effort
         self.alike = alike
-        self.instance, self.chosen, self.points, self.gap = instance, dict(chosen), points, gap
+        self.instance, self.chosen, self.settings = instance, dict(chosen), settings
+        self.points, self.gap, self.workers = settings.points, settings.gap, settings.workers
         self.started = time.monotonic()
-        self.workers, self.m = workers, len(chosen)
+        self.m = len(chosen)
         self.form = self._formulation(conflict=False)
-        self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
-        self.budget = (
-            self.limits.further.seconds if time_limit is None else math.inf
-        )  # s for what a first effort leaves open
+        limit = settings.time_limit
+        self.clock = Clock(math.inf if limit is None else self.started + limit, self._working)
+        # s left for what a first effort leaves open
+        self.budget = self.limits.further.seconds if limit is None else math.inf
         self.budget_spent = self.reporting = False
         self.stage, self.done = "", 0.0
-        self.seed, self.rng = seed, np.random.default_rng(seed)
+        self.rng = np.random.default_rng(settings.seed)
         self.outer_trials = 0
         self.progress = progress
         self.stage_seconds: dict[str, float] = {}
@@ -502,10 +466,10 @@ class FrontSearch:
         compiler takes.
         """
         with switched_off(), deadline.until(self.clock.deadline, ready):
+            alone = replace(self.settings, workers=1, time_limit=None)
             aside = FrontSearch(
-                self.instance, self.chosen, self.points, self.gap, self.seed, self.progress, None, 1,
-                self.effort, self.recalled, tuning=self.tuning,
-            )  # fmt: skip
+                self.instance, self.chosen, alone, self.progress, self.effort, self.recalled, tuning=self.tuning
+            )
             for c in (*self.form.archive, *self.meanwhile):
                 aside.form.archive.add(*rows_of([c]))
             found = aside.run(*self.to_report)
@@ -695,10 +659,10 @@ class FrontSearch:
         self.closed = False
         self.unresolved += len(left)
         if self.thorough and not solved and not self._solve_few(left, purpose):
-            journal = study_file(self.instance, self.chosen, self.seed, self.tuning)
+            seed, trials = self.settings.seed, self.tuning.heuristics.parts.trials
+            journal = study_file(self.instance, self.chosen, seed, self.tuning)
             self._say("parts", 0.0)
-            trials = self.tuning.heuristics.parts.trials
-            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, self.seed, trials)
+            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, seed, trials)
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
         if len(purpose.columns) == self.m:

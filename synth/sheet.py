@@ -11,23 +11,21 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from synth import uncertainty
+from synth import request, uncertainty
 from synth.declaration import Declaration
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs, as_mapping
 from synth.problem import DesignProblem, families, load
+from synth.request import Request
 from synth.tables import Catalogs
 from synth.units import parse_unit
 
 ANY = "any"
 KEYS = ("options", "requirements", "limits", "fix", "parts", "robust")
 EXAMPLES = {
+    **request.EXAMPLES,
     "options": "{'friction_basis': 'worst_case'}",
-    "requirements": "{'mass': '20 kg'}",
-    "limits": "{'mass': '<= 20 kg'}",
-    "fix": "{'mass': '20 kg'}",
-    "parts": "{'slot': ['designation', 'designation']}",
     "robust": "{'friction': '+-10 %'}",
 }
 LEAST_OBJECTIVES, MOST_OBJECTIVES = 2, 3
@@ -46,9 +44,15 @@ class Applicant:
     declaration: Declaration
     misfits: list[str] = field(default_factory=list)
 
-    def asked(self, sheet: Sheet) -> dict[str, dict[str, Any]]:
-        """Return what it is asked: the sheet of all, and its own."""
-        return {key: {**sheet[key], **self.own[key]} for key in KEYS if key != "options"}
+    def robust(self, sheet: Sheet) -> dict[str, Any]:
+        """Return what scatters: by the sheet of all, and its own."""
+        return {**sheet["robust"], **self.own["robust"]}
+
+    def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
+        """Return what it is asked: the sheet of all and its own, and by what designs are ranked."""
+        asked: dict[str, Any] = {key: {**sheet[key], **self.own[key]} for key in ("limits", "fix", "parts")}
+        requirements = {**sheet["requirements"], **self.own["requirements"]}
+        return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **asked, **ranked)
 
 
 def sheet_of(**given: Any) -> Sheet:
@@ -184,7 +188,7 @@ def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
                     expected = f"a name that {one.label} knows{_hint(word, known)}"
                     raise InputError(f"family {one.label}: {key}", word, expected)
         if one.own["robust"]:
-            uncertainty.read_remaining(one.asked(sheet)["robust"], f"family {one.label}: robust")
+            uncertainty.read_remaining(one.robust(sheet), f"family {one.label}: robust")
 
 
 def _known(one: Applicant, key: str) -> Iterable[str]:

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-import difflib
 import json
-import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from synth.errors import InputError, at, whole_number
+from synth.errors import InputError, at
 from synth.files import read_bytes
-from synth.gap import GAP_EXPECTED, is_gap
-from synth.input_limits import INPUT_LIMITS
+from synth.spec_keys import (
+    ASKED,
+    FIELDS,
+    SEARCHED,
+    Described,
+    asks_several,
+    hint_at_key,
+    read_keys,
+    shown_families,
+)
+
+if TYPE_CHECKING:
+    from synth.request import Request
+    from synth.search_settings import SearchSettings
 
 LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
 
@@ -53,13 +62,12 @@ class Spec:
     @property
     def compares(self) -> bool:
         """Tell whether several families are asked."""
-        return not isinstance(self.family, str) or self.family == "any"
+        return asks_several(self.family)
 
     @property
     def shown_family(self) -> str:
         """Return the family or the families in words."""
-        entries = [self.family] if isinstance(self.family, str) else self.family
-        return ", ".join(str(x["family"]) if isinstance(x, Mapping) else str(x) for x in entries)
+        return shown_families(self.family)
 
     def merged(self, **flags: Any) -> Spec:
         """Return the spec with some of its keys replaced; flags that are None change nothing.
@@ -77,247 +85,31 @@ class Spec:
         given = {key: value for key, value in flags.items() if value is not None}
         for key, value in given.items():
             if key not in FIELDS:
-                raise InputError("flag", key, _hint(key))
+                raise InputError("flag", key, hint_at_key(key))
             with at(key):
                 given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
         return replace(self, **given)
 
-    def search_settings(self) -> dict[str, Any]:
-        """Return the arguments of ``synthesize`` that the spec states, requirements and catalogues apart."""
-        names = (
-            "objectives",
-            "limits",
-            "fix",
-            "parts",
-            "weights",
-            "robust",
-            "points",
-            "gap",
-            "grid",
-            "seed",
-            "time_limit",
-            "workers",
-        )
-        stated = {name: getattr(self, name) for name in names}
-        return {name: value for name, value in stated.items() if value is not None and value != {}}
+    def request(self) -> Request:
+        """Return what the spec asks of its one family."""
+        from synth.problem import load  # NumPy comes with it; --help does without
+        from synth.request import Request
 
+        asked = self.stated(ASKED)
+        family, options = asked.pop("family"), asked.pop("options", {})
+        requirements = asked.pop("requirements", {})
+        return Request.of(load(family, **options), requirements, folder=self.folder, **asked)
 
-# ---- what each key may hold -----------------------------------------------------------------------------------------
+    def settings(self, **usual: Any) -> SearchSettings:
+        """Return how the spec is searched; ``usual`` counts where it states nothing."""
+        from synth.search_settings import SearchSettings
 
+        return SearchSettings(**{**usual, **self.stated(SEARCHED)})
 
-class _Described:
-    """Stands for a value in a message: ``got a list`` says more than the list itself."""
-
-    def __init__(self, text: str) -> None:
-        self._text = text
-
-    def __repr__(self) -> str:
-        return self._text
-
-
-def _kind(value: Any) -> Any:
-    """Return what to show of a value that is of the wrong kind."""
-    if value is None:
-        return _Described("nothing")
-    if isinstance(value, Mapping):
-        return _Described("a mapping")
-    if isinstance(value, (list, tuple)):
-        return _Described("a list")
-    return value
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _text(where: str, value: Any) -> str:
-    if not isinstance(value, str) or not value.strip():
-        raise InputError(where, _kind(value), "a name")
-    return value
-
-
-def _family(where: str, value: Any) -> Any:
-    """Return a name, or several: names, and mappings with what concerns one family alone."""
-    if not isinstance(value, (list, tuple)):
-        return _text(where, value)
-    if not value:
-        raise InputError(where, _kind(value), "a name, 'any', or a list with at least one name")
-    entries = []
-    for k, entry in enumerate(value):
-        with at(k):
-            entries.append(_one_family(f"{where}, entry {k + 1}", entry))
-    return tuple(entries)
-
-
-def _one_family(where: str, entry: Any) -> Any:
-    if not isinstance(entry, Mapping):
-        return _text(where, entry)
-    for key in entry:
-        if key not in OWN:
-            raise InputError(f"{where}: key", key, f"one of {', '.join(OWN)}", (str(key),))
-    if entry.get("family") is None:
-        raise InputError(f"{where}: family", None, "the name of a family", ("family",))
-    checked = {}
-    for key, value in entry.items():
-        with at(key):
-            checked[key] = _text(where, value) if key == "family" else FIELDS[key](f"{where}: {key}", value)
-    return MappingProxyType(checked)
-
-
-def _mapping(example: str) -> Callable[[str, Any], Mapping[str, Any]]:
-    def check(where: str, value: Any) -> Mapping[str, Any]:
-        if value is None:
-            return MappingProxyType({})  # a key with nothing under it: all its lines are commented out
-        if not isinstance(value, Mapping):
-            raise InputError(where, _kind(value), f"a mapping, for example '{example}'")
-        for key in value:
-            if not isinstance(key, str):
-                right = "names on the left of the colons (in quotes if YAML takes them for a number)"
-                raise InputError(where, key, right, (str(key),))
-        return MappingProxyType(dict(value))
-
-    return check
-
-
-def _options(where: str, value: Any) -> Mapping[str, str]:
-    options = dict(_mapping("guide_model: cz")(where, value))
-    for name, chosen in options.items():
-        if isinstance(chosen, bool):
-            options[name] = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
-        elif not isinstance(chosen, str):
-            right = "one of the words that clutchsynth describe lists"
-            raise InputError(f"{where}: {name}", _kind(chosen), right, (name,))
-    return MappingProxyType(options)
-
-
-def _scalars(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
-    """Return a check of names with one value; ``sets``: or a list of numbers and texts."""
-
-    def check(where: str, value: Any) -> Mapping[str, Any]:
-        checked = _mapping(example)(where, value)
-        for name, entry in checked.items():
-            if sets and isinstance(entry, (list, tuple)) and all(isinstance(x, str) or _is_number(x) for x in entry):
-                continue
-            if isinstance(entry, (Mapping, list, tuple)):
-                raise InputError(f"{where}: {name}", _kind(entry), f"one value, for example '{example}'", (name,))
-        return checked
-
-    return check
-
-
-def _lists(example: str, sets: bool = False) -> Callable[[str, Any], Mapping[str, Any]]:
-    """Return a check of names with a text or a list of texts; ``sets``: numbers may stand in lists as well."""
-
-    def check(where: str, value: Any) -> Mapping[str, Any]:
-        checked = _mapping(example)(where, value)
-        for name, entry in checked.items():
-            listed = isinstance(entry, (list, tuple))
-            entries = entry if listed else [entry]
-            if not entries or not all(isinstance(x, str) or (sets and listed and _is_number(x)) for x in entries):
-                right = f"text or a list of texts, for example '{example}'"
-                raise InputError(f"{where}: {name}", _kind(entry), right, (name,))
-        return checked
-
-    return check
-
-
-def _objectives(where: str, value: Any) -> Any:
-    example = "names, for example '[mass, actuation_force]', or names with min or max, for example '{mass: min}'"
-    if value is None:
-        return None
-    if isinstance(value, str):
-        value = [value]
-    if isinstance(value, Mapping):
-        if not all(isinstance(k, str) and isinstance(v, str) for k, v in value.items()):
-            raise InputError(where, _kind(value), example)
-        return MappingProxyType(dict(value))
-    if not isinstance(value, (list, tuple)) or not all(isinstance(x, str) for x in value):
-        raise InputError(where, _kind(value), example)
-    return tuple(value)
-
-
-def _catalogs(where: str, value: Any) -> Any:
-    if value is None or isinstance(value, str):
-        return value
-    expected = "a folder, or a mapping such as 'friction_materials: my_materials.csv' or 'core_plates: [+, more.csv]'"
-    if not isinstance(value, Mapping):
-        raise InputError(where, _kind(value), expected)
-    for table, source in value.items():
-        entries = source if isinstance(source, (list, tuple)) else [source]
-        if not isinstance(table, str) or not all(isinstance(x, str) for x in entries):
-            raise InputError(f"{where}: {table}", _kind(source), expected, (str(table),))
-    return MappingProxyType(dict(value))
-
-
-def _weights(where: str, value: Any) -> Mapping[str, float]:
-    weights = _mapping("mass: 2")(where, value)
-    for name, weight in weights.items():
-        if not _is_number(weight) or weight < 0:
-            raise InputError(f"{where}: {name}", _kind(weight), "a number, zero or more", (name,))
-    return weights
-
-
-def _whole(least: int, most: int) -> Callable[[str, Any], int | None]:
-    def check(where: str, value: Any) -> int | None:
-        return None if value is None else whole_number(_kind(value), where, most, least)
-
-    return check
-
-
-def _gap(where: str, value: Any) -> float | None:
-    if value is None:
-        return None
-    if not is_gap(value):
-        raise InputError(where, _kind(value), GAP_EXPECTED)
-    return float(value)
-
-
-def _grid(where: str, value: Any) -> bool | None:
-    if value is None or isinstance(value, bool):
-        return value
-    raise InputError(where, _kind(value), "true (makeable sizes) or false")
-
-
-def _seconds(where: str, value: Any) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, str):
-        from synth.units import parse_quantity  # NumPy comes with it; --help does without
-
-        value = parse_quantity(value, "s", where)
-    if not _is_number(value) or value <= 0:
-        raise InputError(where, _kind(value), "a time above zero, in seconds or with a unit such as '2 min'")
-    return float(value)
-
-
-FIELDS: dict[str, Callable[[str, Any], Any]] = {
-    "family": _family,
-    "options": _options,
-    "requirements": _scalars("load_torque: 600 N*m"),
-    "objectives": _objectives,
-    "limits": _lists("outer_diameter: '<= 260 mm'", sets=True),
-    "fix": _scalars("ramp_time: 2 s", sets=True),
-    "parts": _lists("friction_pair: [designation]"),
-    "catalogs": _catalogs,
-    "weights": _weights,
-    "robust": _mapping("friction: catalogue range"),
-    "values": _scalars("friction_surfaces: 10"),
-    "points": _whole(1, INPUT_LIMITS.points),
-    "gap": _gap,
-    "grid": _grid,
-    "seed": _whole(0, INPUT_LIMITS.seed),
-    "time_limit": _seconds,
-    "workers": _whole(1, INPUT_LIMITS.workers),
-}
-
-
-# What may concern one family of several alone.
-OWN = ("family", "options", "requirements", "limits", "fix", "parts", "robust")
-
-
-def _hint(key: Any) -> str:
-    close = difflib.get_close_matches(str(key), FIELDS, n=1, cutoff=0.6)
-    return f"{close[0]}" if close else "one of " + ", ".join(FIELDS)
+    def stated(self, keys: Collection[str]) -> dict[str, Any]:
+        """Return what the spec states under some keys, without those under which it states nothing."""
+        values = {name: getattr(self, name) for name in keys}
+        return {name: value for name, value in values.items() if value is not None and value != {}}
 
 
 def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
@@ -337,20 +129,7 @@ def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
     InputError
         When a key is unknown or missing, or a value is not of its kind.
     """
-    if not isinstance(content, Mapping):
-        raise InputError(file, _kind(content), "a spec: lines such as 'family: multi_plate_clutch'")
-    for key in content:
-        if key not in FIELDS:
-            raise InputError(f"{file}: key", key, _hint(key), (str(key),))
-    if content.get("family") is None:
-        right = "the name of a family; clutchsynth families lists them"
-        raise InputError(f"{file}: family", None, right, ("family",))
-    checked: dict[str, Any] = {"values": None}
-    for key, check in FIELDS.items():
-        if key != "values" or key in content:
-            with at(key):
-                checked[key] = check(f"{file}: {key}", content.get(key))
-    return Spec(**checked, file=file, folder=folder)
+    return Spec(**read_keys(content, file, FIELDS), file=file, folder=folder)
 
 
 # ---- reading the file -----------------------------------------------------------------------------------------------
@@ -415,7 +194,7 @@ def read_spec(path: str | Path) -> Spec:
     content = read_content(path, "spec")
     shown = str(path)
     if content is None:
-        raise InputError(shown, _Described("an empty file"), "a spec: lines such as 'family: multi_plate_clutch'")
+        raise InputError(shown, Described("an empty file"), "a spec: lines such as 'family: multi_plate_clutch'")
     return spec_from_mapping(content, shown, Path(path).parent)
 
 
@@ -474,11 +253,11 @@ def _parse_json(text: str, shown: str) -> Any:
     except InputError:
         raise
     except json.JSONDecodeError as error:
-        raise InputError(f"{shown}, line {error.lineno}", _Described(error.msg), "JSON") from error
+        raise InputError(f"{shown}, line {error.lineno}", Described(error.msg), "JSON") from error
     except RecursionError as error:
-        raise InputError(shown, _Described("brackets nested too deeply"), "JSON of a spec") from error
+        raise InputError(shown, Described("brackets nested too deeply"), "JSON of a spec") from error
     except ValueError as error:  # of a number
-        raise InputError(shown, _Described("a number of thousands of digits"), "numbers that can be meant") from error
+        raise InputError(shown, Described("a number of thousands of digits"), "numbers that can be meant") from error
 
 
 def _parse_yaml(text: str, shown: str) -> Any:
@@ -486,13 +265,13 @@ def _parse_yaml(text: str, shown: str) -> Any:
         # The loader is a SafeLoader that reads less than its parent, not more.
         return yaml.load(text, Loader=_StrictLoader)
     except RecursionError as error:
-        raise InputError(shown, _Described("brackets nested too deeply"), "YAML of a spec") from error
+        raise InputError(shown, Described("brackets nested too deeply"), "YAML of a spec") from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:
         mark = getattr(error, "problem_mark", None)
         where = shown if mark is None else f"{shown}, line {mark.line + 1}"
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
         problem = problem.replace("but found another document", "a second document after ---")
-        raise InputError(where, _Described(problem), _yaml_advice(text, mark, problem)) from error
+        raise InputError(where, Described(problem), _yaml_advice(text, mark, problem)) from error
 
 
 def _yaml_advice(text: str, mark: Any, problem: str) -> str:

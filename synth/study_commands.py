@@ -78,10 +78,8 @@ def whatif(
 
 def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool) -> Study:
     from synth.console import progress_display
-    from synth.instance import catalogs_for
-    from synth.problem import load
     from synth.vary import split_text
-    from synth.what_if import whatif as answer
+    from synth.what_if import POINTS, study_of
 
     wanted: dict[str, Any] = {}
     for text in vary:
@@ -90,14 +88,10 @@ def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool
             raise InputError("--vary", text, "each thing once")
         wanted[name] = values
     with blamed_on(asked.file):
-        problem = load(asked.family, **asked.options)
-        catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+        request, settings = asked.request(), asked.settings(points=POINTS)
         with progress_display(quiet) as progress:
             try:
-                return answer(
-                    problem, asked.requirements, wanted, catalogs=catalogs, progress=progress, breaks=breaks,
-                    folder=folder, **asked.search_settings(),
-                )  # fmt: skip
+                return study_of(request, settings, wanted, progress, breaks, folder)
             except KeyboardInterrupt:
                 tell("stopped before the first step was begun; nothing is written")
                 raise typer.Exit(STOPPED) from None

@@ -4,120 +4,100 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
 from synth.analysis import chosen_objectives
 from synth.count_domain import entries
+from synth.declaration import Declaration
 from synth.errors import InputError
-from synth.instance import catalogs_for
 from synth.posed import posed
-from synth.problem import DesignProblem, load
+from synth.problem import DesignProblem
 from synth.rating import Rater
+from synth.request import Request
 from synth.results import Design
 from synth.scatter import check_rows
 from synth.search import Question, pose
-from synth.tables import Catalogs
+from synth.search_settings import SearchSettings
 from synth.uncertainty import RATE, Uncertainty, name_in_block, read_remaining
 from synth.user_limits import SENSES
 from synth.vary import Value, Varied, read_vary
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What ``synthesize`` is asked, before a study varies it; the arguments are those of the same names."""
+def at_value(request: Request, varied: Varied, value: Value) -> Request:
+    """Return a request with one thing at a value, which takes the place of what was said of it before."""
+    name, asked = varied.name, varied.asked(value)
+    if varied.kind == "requirement":
+        return replace(request, requirements={**_without(request, request.requirements, name), name: asked})
+    if varied.kind == "weight":
+        return replace(request, weights={**_without(request, request.weights, name), name: asked})
+    if varied.kind == "part":
+        return replace(request, parts={**_without(request, request.parts, name), name: asked})
+    if varied.kind == "option":
+        return replace(request, problem=_with_option(request, name, str(value)))
+    if varied.kind == "scatter":
+        return replace(request, robust=_scattering(request, name, str(value)))
+    kept = _other_limits(request, varied)
+    return replace(request, limits={**_without(request, request.limits, name), name: [*kept, f"{varied.sign} {asked}"]})
 
-    problem: DesignProblem
-    requirements: Mapping[str, Any]
-    catalogs: Catalogs
-    objectives: Any = None
-    points: int = 30
-    parts: Mapping[str, Any] | None = None
-    limits: Mapping[str, Any] | None = None
-    fix: Mapping[str, Any] | None = None
-    weights: Mapping[str, float] | None = None
-    gap: float = 1e-3
-    grid: bool = True
-    seed: int = 0
-    robust: Uncertainty | None = None
 
-    def pose(self, problem: DesignProblem) -> Question:
-        """Check the question to the problem with its limits posed where they are worst, if anything scatters."""
-        return pose(
-            problem, self.requirements, self.objectives, self.points, self.catalogs, self.parts, self.limits, self.fix,
-            self.weights, self.gap, self.grid, self.seed,
-        )  # fmt: skip
+def _rater_of(request: Request) -> Rater | None:
+    """Return what rates designs over the range; None where nothing scatters.
 
-    def rater(self) -> Rater | None:
-        """Return what rates designs over the range; None where nothing scatters.
+    Raises
+    ------
+    InputError
+        When the range does not fit what is asked.
+    """
+    if request.robust is None:
+        return None
+    return Rater(request.problem, request.requirements, request.catalogs, request.limits, request.robust)
 
-        Raises
-        ------
-        InputError
-            When the range does not fit what is asked.
-        """
-        if self.robust is None:
-            return None
-        return Rater(self.problem, self.requirements, self.catalogs, self.limits, self.robust)
 
-    def at(self, varied: Varied, value: Value) -> Asked:
-        """Return the question with one thing at a value, which takes the place of what was said of it before."""
-        asked = varied.asked(value)
-        if varied.kind == "requirement":
-            return replace(self, requirements={**self.without(self.requirements, varied.name), varied.name: asked})
-        if varied.kind == "weight":
-            return replace(self, weights={**self.without(self.weights, varied.name), varied.name: asked})
-        if varied.kind == "part":
-            return replace(self, parts={**self.without(self.parts, varied.name), varied.name: asked})
-        if varied.kind == "option":
-            return replace(self, problem=self._with_option(varied.name, str(value)))
-        if varied.kind == "scatter":
-            return replace(self, robust=self._scattering(varied.name, str(value)))
-        kept = self._other_limits(varied)
-        return replace(
-            self, limits={**self.without(self.limits, varied.name), varied.name: [*kept, f"{varied.sign} {asked}"]}
-        )
+def _with_option(request: Request, name: str, word: str) -> DesignProblem:
+    """Return the problem with another word for an option."""
+    problem = request.problem
+    option = _declared(request).options[name]
+    others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
+    return type(problem)(**{**others, name: word})
 
-    def _with_option(self, name: str, word: str) -> DesignProblem:
-        """Return the problem with another word for an option."""
-        problem = self.problem
-        option = problem.model(frozenset(), self.catalogs).declaration.options[name]
-        others = {n: w for n, w in problem.options.items() if n not in (name, option.symbol)}
-        return type(problem)(**{**others, name: word})
 
-    def _scattering(self, name: str, text: str) -> Uncertainty | None:
-        """Return what scatters, with one thing over another range or, for "none", without it."""
-        names = self._names()
+def _scattering(request: Request, name: str, text: str) -> Uncertainty | None:
+    """Return what scatters, with one thing over another range or, for "none", without it."""
+    names = _declared(request).names()
 
-        def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
-            return {key: value for key, value in ranges.items() if name_in_block(key, names) != name}
+    def others(ranges: Mapping[str, Any]) -> dict[str, Any]:
+        return {key: value for key, value in ranges.items() if name_in_block(key, names) != name}
 
-        block = {} if self.robust is None else others(self.robust.block())
-        if "tolerance" in block:
-            block["tolerance"] = others(block["tolerance"])
-        return read_remaining({**block, name: text})
+    block = {} if request.robust is None else others(request.robust.block())
+    if "tolerance" in block:
+        block["tolerance"] = others(block["tolerance"])
+    return read_remaining({**block, name: text})
 
-    def without(self, given: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
-        """Return what is given by name or symbol, without one name."""
-        spellings = self._names()
-        return {word: value for word, value in (given or {}).items() if spellings.get(str(word)) != name}
 
-    def _names(self) -> dict[str, str]:
-        return self.problem.model(frozenset(), self.catalogs).declaration.names()
+def _without(request: Request, given: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Return what is given by name or symbol, without one name."""
+    spellings = _declared(request).names()
+    return {word: value for word, value in given.items() if spellings.get(str(word)) != name}
 
-    def _other_limits(self, varied: Varied) -> list[str]:
-        """Return the limits on the quantity of a varied one that point another way."""
-        spellings, kept = self._names(), list[str]()
-        for word, texts in (self.limits or {}).items():
-            if spellings.get(str(word)) == varied.name:
-                for text in entries(texts):
-                    low, dots, high = str(text).partition("..")
-                    for one in [f">= {low.strip()}", f"<= {high.strip()}"] if dots else [str(text)]:
-                        sign = re.match(r"^\s*(<=|>=|==|=|<|>)", one)
-                        if sign is None or SENSES[sign.group(1)] != SENSES[varied.sign]:
-                            kept.append(one)
-        return kept
+
+def _declared(request: Request) -> Declaration:
+    return request.problem.model(frozenset(), request.catalogs).declaration
+
+
+def _other_limits(request: Request, varied: Varied) -> list[str]:
+    """Return the limits on the quantity of a varied one that point another way."""
+    spellings, kept = _declared(request).names(), list[str]()
+    for word, texts in request.limits.items():
+        if spellings.get(str(word)) == varied.name:
+            for text in entries(texts):
+                low, dots, high = str(text).partition("..")
+                for one in [f">= {low.strip()}", f"<= {high.strip()}"] if dots else [str(text)]:
+                    sign = re.match(r"^\s*(<=|>=|==|=|<|>)", one)
+                    if sign is None or SENSES[sign.group(1)] != SENSES[varied.sign]:
+                        kept.append(one)
+    return kept
 
 
 class Steps:
@@ -125,8 +105,10 @@ class Steps:
 
     Parameters
     ----------
-    asked : Asked
+    request : Request
         What stays.
+    settings : SearchSettings
+        How every step is searched; the time limit is that of the whole study.
     vary : mapping
         What does not.
 
@@ -136,14 +118,13 @@ class Steps:
         For whatever is wrong at any step, before anything is searched.
     """
 
-    def __init__(self, asked: Asked, vary: Any) -> None:
-        self.asked = asked
-        names = asked.requirements if isinstance(asked.requirements, Mapping) else {}
-        spellings = asked.problem.model(frozenset(), asked.catalogs).declaration
+    def __init__(self, request: Request, settings: SearchSettings, vary: Any) -> None:
+        self.request, self.settings = request, settings
+        d = _declared(request)
         keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
-        given = {spellings.names().get(str(w)) for w in [*names, *keys]} & set(spellings.requirements)
-        model = asked.problem.model(frozenset(n for n in given if n is not None), asked.catalogs)
-        self.varied = read_vary(vary, asked.problem, model, list(chosen_objectives(model, asked.objectives)))
+        given = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
+        model = request.problem.model(frozenset(n for n in given if n is not None), request.catalogs)
+        self.varied = read_vary(vary, request.problem, model, list(chosen_objectives(model, request.objectives)))
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
         self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}
@@ -177,12 +158,12 @@ class Steps:
         pins : mapping
             Counts and choices -> the value that they must have.
         """
-        asked = replace(self._at(values), objectives=dict(objective), points=1, weights=None, gap=gap)
+        asked = replace(self._at(values), objectives=dict(objective), weights={})
         for slot, rows in slots.items():
-            asked = replace(asked, parts={**asked.without(asked.parts, slot), slot: rows})
+            asked = replace(asked, parts={**_without(asked, asked.parts, slot), slot: rows})
         for name, value in pins.items():
-            asked = replace(asked, fix={**asked.without(asked.fix, name), name: value})
-        question = self._pose(self._with_learned(asked))
+            asked = replace(asked, fix={**_without(asked, asked.fix, name), name: value})
+        question = self._pose(self._with_learned(asked), replace(self.settings, points=1, gap=gap))
         # The same code as for the whole question, however few combinations are left.
         whole = len(self) * self.combinations
         return replace(question, alike=-(-whole // max(question.instance.combinations.count, 1)))
@@ -190,7 +171,7 @@ class Steps:
     def question(self, position: int, robust: Uncertainty) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""
         asked = replace(self._at(self.values[position]), robust=robust)
-        return replace(self._pose(asked), alike=len(self))
+        return replace(self._pose(asked, self.settings), alike=len(self))
 
     def learn(self, robust: Uncertainty) -> None:
         """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
@@ -199,35 +180,35 @@ class Steps:
 
     def stands(self, values: Sequence[Value], design: Design) -> bool:
         """Tell whether a design keeps its limits over the whole range, if that is asked at some values."""
-        rater = self._at(values).rater()
+        rater = _rater_of(self._at(values))
         return rater is None or rater.asked.mode == RATE or bool(rater.one(design)["holds"])
 
-    def _with_learned(self, asked: Asked) -> Asked:
+    def _with_learned(self, asked: Request) -> Request:
         if asked.robust is None or asked.robust.names not in self._learned:
             return asked
         return replace(asked, robust=asked.robust.with_scenarios(self._learned[asked.robust.names].scenarios))
 
-    def _pose(self, asked: Asked) -> Question:
+    def _pose(self, asked: Request, settings: SearchSettings) -> Question:
         """Return a question; limits that are posed alike at several steps are traced once."""
         key = asked.problem, repr((asked.robust, asked.limits))
         if key not in self._with_limits:
             self._with_limits[key] = posed(asked.problem, asked.robust, asked.limits)
-        return asked.pose(self._with_limits[key])
+        return pose(asked, settings.within(None), self._with_limits[key])
 
     def stated(self, values: Sequence[Value]) -> str:
         """Return the values of a step for people."""
         return ", ".join(x.stated(v) for x, v in zip(self.varied, values, strict=True))
 
-    def _at(self, values: Sequence[Value]) -> Asked:
-        asked = self.asked
+    def _at(self, values: Sequence[Value]) -> Request:
+        asked = self.request
         for varied, value in zip(self.varied, values, strict=True):
             if varied.kind == "option":
                 # One problem per word, so that each is traced once.
                 if value not in self._problems:
-                    self._problems[value] = asked.at(varied, value).problem
+                    self._problems[value] = at_value(asked, varied, value).problem
                 asked = replace(asked, problem=self._problems[value])
             else:
-                asked = asked.at(varied, value)
+                asked = at_value(asked, varied, value)
         return asked
 
     def _posed(self) -> list[Question]:
@@ -236,7 +217,7 @@ class Steps:
         for k, values in enumerate(self.values):
             try:
                 asked = self._at(values)
-                rater, question = asked.rater(), self._pose(asked)
+                rater, question = _rater_of(asked), self._pose(asked, self.settings)
                 if rater is not None:
                     check_rows(rater.things, question.instance.selection.slots)
                 questions.append(replace(question, alike=len(self)))
@@ -251,17 +232,3 @@ class Steps:
             raise fault
         where = f"vary, {self.stated(self.values[first])}: {fault.field}"
         raise InputError(where, fault.value, fault.expected, fault.path)
-
-
-def steps_of(
-    p: str | type[DesignProblem] | DesignProblem,
-    requirements: Mapping[str, Any],
-    vary: Any,
-    catalogs: Any,
-    robust: Any = None,
-    **settings: Any,
-) -> Steps:
-    """Return the questions of a study; the arguments are those of ``synth.whatif``."""
-    problem = load(p)
-    block, tables = read_remaining(robust), catalogs_for(problem, catalogs)
-    return Steps(Asked(problem, requirements, tables, robust=block, **settings), vary)

@@ -980,6 +980,21 @@ class Catalogs:
                 result[name] = ["+", *paths] if extends else paths[0]
         return result
 
+    def stated(self) -> dict[str, Any]:
+        """Return the user's own tables as :meth:`files`, all of them.
+
+        Raises
+        ------
+        InputError
+            When one is in memory.
+        """
+        files = self.files()
+        for name in self._spec:
+            if name not in files:
+                right = "a file that can be named"
+                raise InputError(f"catalogs: {name}", "a table in memory", right, ("catalogs", name))
+        return files
+
     def digest(self) -> str:
         """SHA-256 of everything in these tables: shipped files byte by byte, a user's own row by row."""
         total = hashlib.sha256()

@@ -101,8 +101,8 @@ def alike(question: Question) -> tuple[Any, ...]:
         tuple((s.slot, tuple(s.table.hashes[int(r)] for r in s.rows)) for s in selection.slots),
         tuple((n, v.tobytes()) for n, v in (*selection.counts.items(), *selection.choices.items())),
         tuple(question.chosen.items()),
-        settings["gap"],
-        settings["seed"],
+        settings.gap,
+        settings.seed,
         question.tuning,
     )
 

@@ -30,7 +30,7 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
         joint = questions[group[0]].tuning.joint
         sizes: dict[int, list[int]] = {}
         for k in group:
-            sizes.setdefault(int(questions[k].settings["points"]), []).append(k)
+            sizes.setdefault(questions[k].settings.points, []).append(k)
         # Every level of every question has combinations of its own, which must be numbered.
         most = LARGEST // (joint.levels * questions[group[0]].instance.combinations.count)
         few = (own for points, own in sizes.items() if 2 <= points <= joint.front_points)
@@ -82,7 +82,7 @@ class FrontsSearch:
         self.questions, self.workers, self.progress = list(questions), workers, progress
         self.tuning, self.joint = questions[0].tuning, questions[0].tuning.joint
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
-        self.between = int(questions[0].settings["points"]) - 2
+        self.between = questions[0].settings.points - 2
         moving = different([q.instance for q in questions])
         self.others: list[tuple[TogetherSearch, np.ndarray]] = []  # with the positions of the questions that each asks
         self.wider, self.reverse = (Wider(questions, moving, first) for first in questions[0].chosen)

@@ -120,7 +120,7 @@ class TogetherSearch:
         self.tuning, self.joint = first.tuning, first.tuning.joint
         self.wider, self.workers, self.sought = wider, workers, sought
         self.together = Together([q.instance for q in questions], () if wider is None else wider.moving, caps)
-        self.gap = float(first.settings["gap"])
+        self.gap = first.settings.gap
         self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
         self.form = self._prepared()
         self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
@@ -129,7 +129,7 @@ class TogetherSearch:
         self.known = self._none_known()
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
-        self.rng = np.random.default_rng(first.settings["seed"])
+        self.rng = np.random.default_rng(first.settings.seed)
         self.pool = self.form.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
         self.look = Lookout(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
@@ -336,7 +336,7 @@ class TogetherSearch:
                 statistics=statistics,
                 certificate=Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded)),
                 explanation=None,
-                settings=question.settings,
+                settings=question.record(),
                 interrupted="",
                 question=question.instance,
             )

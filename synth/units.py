@@ -613,12 +613,36 @@ def _is_unit(text: str) -> bool:
     return True
 
 
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number that is known in SI: it stands wherever a user may type one, and is taken as it is.
+
+    Parameters
+    ----------
+    si : float
+        SI value.
+    unit : str
+        Unit in which people are shown it.
+    """
+
+    si: float
+    unit: str
+
+    def __str__(self) -> str:
+        """Return it as a user would type it: as many digits as are read back as the same number."""
+        return format_quantity(self.si, self.unit, None)
+
+    def __repr__(self) -> str:
+        """Return it as messages show what was typed."""
+        return repr(str(self))
+
+
 def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> float:
     """SI value of what a user gave for a quantity.
 
     Parameters
     ----------
-    value : float, int or str
+    value : float, int, str or Quantity
         A number in the declared unit, or text: ``600``, ``"600"``, ``"600 N*m"``, ``"254 rpm"``.
     declared_unit : str or Unit
         Unit of a bare number; any other unit must be of the same kind.
@@ -652,6 +676,9 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
                 unit = _resolve(rest, unit.kind)
             except _Refused as refusal:
                 raise InputError(field, value, refusal.expected) from None
+    elif isinstance(value, Quantity):
+        number = ""
+        unit = parse_unit(value.unit, unit.kind)
     elif isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise InputError(
             field, value, f"a number, or text such as '600 {unit.text}'" if unit.text != "-" else "a number"
@@ -664,7 +691,7 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
         if not math.isfinite(plain):
             raise InputError(field, value, "a finite number")
         number = repr(plain)
-    si = number_to_si(number, unit)
+    si = value.si if isinstance(value, Quantity) else number_to_si(number, unit)
     if not math.isfinite(si):
         raise InputError(field, value, "a number that a computer can hold (below 1e308 in SI units)")
     if unit.kind == "temperature" and si < 0.0:

@@ -23,16 +23,19 @@ from synth.output_folder import claimed
 from synth.pareto import rank
 from synth.problem import DesignProblem
 from synth.rating import Rater
+from synth.request import Request
 from synth.results import Design, ParetoFront
 from synth.robust import robust_front
-from synth.search import Question, check_settings
+from synth.search import Question
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.study import Break, Step, Study
-from synth.study_questions import Steps, steps_of
+from synth.study_questions import Steps
 from synth.study_store import FORMAT, RECORD, StudyStore, joined
 from synth.together_fronts import joint_answers, joint_groups
 from synth.uncertainty import read_block
 
 INTERRUPTED = "interrupted"
+POINTS = 3  # of every step: the best in each objective and, of two, one between
 
 
 def whatif(
@@ -40,7 +43,7 @@ def whatif(
     requirements: Mapping[str, Any],
     vary: Mapping[str, Any],
     objectives: Any = None,
-    points: int = 3,
+    points: int = POINTS,
     catalogs: Any = None,
     parts: Mapping[str, Any] | None = None,
     limits: Mapping[str, Any] | None = None,
@@ -91,14 +94,33 @@ def whatif(
     InputError
         For everything that is wrong with the input at any step, before the first is searched.
     """
-    check_settings(points, gap, grid, workers, seed, progress, time_limit)
-    steps = steps_of(
-        p, requirements, vary, catalogs, objectives=objectives, points=points, parts=parts, limits=limits, fix=fix,
-        weights=weights, gap=gap, grid=grid, seed=seed, robust=robust,
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    request = Request.of(
+        p, requirements, catalogs, robust, objectives=objectives, parts=parts, limits=limits, fix=fix, weights=weights,
+        grid=grid,
     )  # fmt: skip
-    place = None if folder is None else Path(folder)
-    with nullcontext() if place is None else claimed(place):
-        return _Run(steps, int(workers), progress, time_limit, place).study(breaks)
+    return study_of(request, settings, vary, progress, breaks, None if folder is None else Path(folder))
+
+
+def study_of(
+    request: Request,
+    settings: SearchSettings,
+    vary: Any,
+    progress: Progress | None = None,
+    breaks: bool = True,
+    folder: Path | None = None,
+) -> Study:
+    """Answer a request at many values of what is varied; the arguments are those of :func:`whatif`.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong at any step, before the first is searched.
+    """
+    steps = Steps(request, settings, vary)
+    with nullcontext() if folder is None else claimed(folder):
+        return _Run(steps, progress, settings.time_limit, folder).study(breaks)
 
 
 class _Run:
@@ -107,12 +129,11 @@ class _Run:
     def __init__(
         self,
         steps: Steps,
-        workers: int,
-        progress: Callable[[Mapping[str, Any]], None] | None,
+        progress: Progress | None,
         time_limit: float | None,
         folder: Path | None,
     ) -> None:
-        self.steps, self.workers, self.progress = steps, workers, progress
+        self.steps, self.workers, self.progress = steps, steps.settings.workers, progress
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit
         self.folder = folder
@@ -206,11 +227,10 @@ class _Run:
         shown = self._shown(says, position * share, share)
         if rater is not None:
             front = robust_front(
-                lambda block: self.steps.question(position, block), rater, self.workers, shown, self._left(), known,
-                front,
-            )  # fmt: skip
+                lambda block: self.steps.question(position, block), rater, shown, self._left(), known, front
+            )
         elif front is None:
-            front = question.answer(self.workers, shown, self._left(), known)
+            front = question.within(self._left()).answer(shown, known)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return front
@@ -242,7 +262,7 @@ class _Run:
             raise Stopped("time limit")
         return left
 
-    def _shown(self, says: str, begin: float, share: float) -> Callable[[Mapping[str, Any]], None] | None:
+    def _shown(self, says: str, begin: float, share: float) -> Progress | None:
         """Return what makes of the progress of one part that of the study; ``begin`` and ``share`` of the whole."""
         tell = self.progress
         if tell is None:
@@ -282,7 +302,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
         replace(front.designs[k], rank=place + 1, score=float(ranking.scores[k]), note=ranking.notes[k])
         for place, k in enumerate(ranking.order)
     ]
-    return replace(front, designs=designs, settings={**front.settings, **question.settings})
+    return replace(front, designs=designs, settings={**front.settings, **question.record()})
 
 
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
@@ -292,7 +312,7 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
     formulas = instance.model.function(
         "fingerprint", lambda: hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest()
     )
-    settings = {k: v for k, v in question.settings.items() if weights or k != "weights"}
+    settings = {k: v for k, v in question.record().items() if weights or k != "weights"}
     content = {
         "format": FORMAT,
         "family": instance.problem.name,

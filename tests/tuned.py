@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 import synth
-from synth.search import pose
 from synth.tuning import TUNING, Tuning
+from tests.asking import pose
 
 
 def tuned(**changes: Mapping[str, Any]) -> Tuning:
@@ -16,8 +16,6 @@ def tuned(**changes: Mapping[str, Any]) -> Tuning:
     return replace(TUNING, **{name: replace(getattr(TUNING, name), **own) for name, own in changes.items()})
 
 
-def synthesize(
-    tuning: Tuning, *question: Any, workers: int = 1, progress: Any = None, time_limit: float | None = None, **more: Any
-) -> synth.ParetoFront:
+def synthesize(tuning: Tuning, *question: Any, progress: Any = None, **more: Any) -> synth.ParetoFront:
     """Do what ``synth.synthesize`` does, with these numbers."""
-    return pose(*question, **more, tuning=tuning).answer(workers, progress, time_limit)
+    return pose(*question, **more, tuning=tuning).answer(progress)

@@ -30,7 +30,8 @@ from synth.jobs.table import read_table
 from synth.output_folder import claimed, settle
 from synth.plain_text import as_meant
 from synth.problem import families, load
-from synth.search import check_settings
+from synth.request import check_grid
+from synth.search_settings import SearchSettings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -196,9 +197,8 @@ class BatchJob:
         database: str | None,
         settings: Mapping[str, Any],
     ) -> None:
-        check_settings(
-            settings["points"], settings["gap"], settings["grid"], 1, settings["seed"], None, settings["time_limit"]
-        )
+        SearchSettings(**{name: settings[name] for name in ("points", "gap", "seed", "time_limit")})
+        check_grid(settings["grid"])
         if folder.exists() and not folder.is_dir():
             raise InputError("--output", str(folder), "a folder; this is a file")
         self.folder = self.place = folder

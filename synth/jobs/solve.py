@@ -90,7 +90,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
         known, lessons = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
     try:
         posed = _posed(question, settings, shared)
-        front = posed.answer(time_limit=settings["time_limit"], known=known, lessons=lessons)
+        front = posed.answer(known=known, lessons=lessons)
     except InputError as refusal:
         # The rows were checked; what only the search can see is still said in its words.
         seconds = time.monotonic() - begin
@@ -102,21 +102,21 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 
 def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
     """Check a question as a whole."""
+    from synth.request import Request
     from synth.search import pose
+    from synth.search_settings import SearchSettings
 
-    return pose(
-        _problem(shared, question["family"], tuple(sorted(question["options"].items()))), question["requirements"],
-        catalogs=_catalogs(shared), parts=question["parts"], limits=question["limits"], fix=question["fix"],
-        **{name: settings[name] for name in ("objectives", "points", "gap", "grid", "seed")},
-    )  # fmt: skip
+    problem = _problem(shared, question["family"], tuple(sorted(question["options"].items())))
+    content = {**{key: value for key, value in question.items() if key != LIKE}, **settings}
+    request = Request.from_json(content, problem=problem, catalogs=_catalogs(shared))
+    return pose(request, SearchSettings.from_json(content))
 
 
 @lru_cache(maxsize=8)
 def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], Lessons | None]:
     """Return what the search for a similar question has found and learned; nothing where it fails."""
-    stated = json.loads(settings)
     try:
-        front, lessons = _posed(json.loads(question), stated, shared).experience(stated["time_limit"])
+        front, lessons = _posed(json.loads(question), json.loads(settings), shared).experience()
     except Exception:  # its own row tells why
         return (), None
     if front.interrupted == "interrupted":

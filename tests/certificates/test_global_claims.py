@@ -16,11 +16,11 @@ import pytest
 import synth
 from synth import search
 from synth.effort import SearchEffort
-from synth.search import pose
 from synth.steps import cover_by_steps
 from synth.tables import Catalogs
 from synth.together import alike
 from synth.together_fronts import FrontsSearch
+from tests.asking import pose
 from tests.certificates.__main__ import tried
 from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference
 from tests.certificates.kinks import KINKS

@@ -28,7 +28,7 @@ import synth
 import synth.results
 from synth import cli, terminal
 from synth.description import describe
-from synth.spec import FIELDS
+from synth.spec_keys import FIELDS
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]

@@ -10,7 +10,7 @@ import pytest
 import synth
 from synth.formulation import Formulation
 from synth.problem import load
-from synth.search import pose
+from tests.asking import pose
 
 DUTY = {
     "load_torque": "600 N*m",

@@ -6,8 +6,8 @@ import pytest
 
 import synth
 from synth.elasticity import elasticities
-from synth.search import pose
 from synth.together_search import TogetherSearch
+from tests.asking import pose
 from tests.unit.strut import RODS, Strut
 
 STEP = 1e-3

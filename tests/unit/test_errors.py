@@ -16,7 +16,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.instance import Instance, as_catalogs
 from synth.sheet import applicants, sheet_of
 from synth.spec import read_spec, spec_from_mapping
-from synth.study_questions import steps_of
+from tests.asking import steps_of
 
 HUGE = ("x" * 1_000_000, "x " * 500_000, "5 " + "N" * 1_000_000)
 # Twice the share of a field and the value, and our own words about what is right.

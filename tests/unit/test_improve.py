@@ -12,8 +12,8 @@ from synth.effort import SearchEffort
 from synth.improvement import go_on
 from synth.instance import catalogs_for
 from synth.loading import load_front
-from synth.search import pose
 from synth.tuning import TUNING, PartSampling
+from tests.asking import pose
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut
 

@@ -9,6 +9,7 @@ from synth.formulation import Formulation
 from synth.instance import Instance, catalogs_for
 from synth.margins import above, below, within
 from synth.search import one_best
+from synth.search_settings import SearchSettings
 from tests.tuned import synthesize, tuned
 
 OVER_ARRAYS = tuned(compiling={"boxes": 1e9})
@@ -96,7 +97,8 @@ def test_thin_boxes_of_any_sign_are_kept_and_split(code):
 
 def test_what_falls_without_end_beside_a_pole_is_not_proven():
     problem = synth.load(Pole)
-    front = one_best(Instance(problem, {}, catalogs_for(problem, None)), "cost", 1e-3, 3000, tuning=OVER_ARRAYS)
+    instance = Instance(problem, {}, catalogs_for(problem, None))
+    front = one_best(instance, "cost", SearchSettings(points=1), 3000, tuning=OVER_ARRAYS)
     assert front.statistics["boxes"] > 3000
     assert front.certificate.kind != "global"
 

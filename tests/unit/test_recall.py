@@ -8,7 +8,8 @@ import pytest
 import synth
 from synth.recall import recall
 from synth.results import Design
-from synth.search import Question, pose
+from synth.search import Question
+from tests.asking import pose
 from tests.unit.strut import NEEDED, RODS, Strut
 
 PROBLEM = Strut()

@@ -14,7 +14,8 @@ from synth.breaks import NOT_ROBUST
 from synth.rated import COLUMNS
 from synth.results import ParetoFront
 from synth.study import Study
-from synth.study_questions import Steps, steps_of
+from synth.study_questions import Steps
+from tests.asking import steps_of
 from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 
 RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "tolerance": {"radius": "+-1 mm"}}

@@ -6,10 +6,10 @@ import pytest
 import synth
 from synth import DesignProblem
 from synth.formulation import Candidate
-from synth.search import pose
 from synth.settle import settle_discrete
 from synth.together_search import TogetherSearch
 from synth.tuning import TUNING, SettleLimits
+from tests.asking import pose
 from tests.tuned import tuned
 from tests.unit.strut import RODS, Strut
 

@@ -11,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
-from synth.spec import FIELDS, read_spec, spec_from_mapping
+from synth.search_settings import SearchSettings
+from synth.spec import read_spec, spec_from_mapping
+from synth.spec_keys import FIELDS
 
 SMALL = "family: multi_plate_clutch\nrequirements:\n  load_torque: 600 N*m\n"
 
@@ -35,7 +37,8 @@ def test_a_small_spec_is_read(tmp_path: Path) -> None:
     assert spec.requirements == {"load_torque": "600 N*m"}
     assert spec.folder == tmp_path
     assert (spec.points, spec.gap, spec.grid, spec.time_limit, spec.values) == (7, 0.01, False, 120.0, None)
-    assert spec.search_settings() == {"points": 7, "gap": 0.01, "grid": False, "time_limit": 120.0}
+    assert spec.settings(seed=3) == SearchSettings(points=7, gap=0.01, seed=3, time_limit=120.0)
+    assert not spec.request().grid
 
 
 def test_json_says_the_same_as_yaml(tmp_path: Path) -> None:
@@ -53,7 +56,7 @@ def test_json_says_the_same_as_yaml(tmp_path: Path) -> None:
 
 def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> None:
     spec = read_spec(write(tmp_path, SMALL + "limits:\nfix:\nobjectives:\npoints:\n"))
-    assert spec.search_settings() == {}
+    assert spec.settings() == SearchSettings()
 
 
 @pytest.mark.parametrize(

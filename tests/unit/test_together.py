@@ -21,11 +21,12 @@ from synth.feasibility import Status
 from synth.formulation import Formulation
 from synth.problem import DesignProblem
 from synth.results import Design, ParetoFront
-from synth.search import Question, pose
+from synth.search import Question
 from synth.tables import Catalogs
 from synth.together import BestOfEach, Each, Together, different, groups_of
 from synth.together_search import TogetherSearch, Wider
 from synth.tuning import TUNING
+from tests.asking import pose
 from tests.tuned import tuned
 from tests.unit.ropes import Made, Ropes, best_ropes, ropes
 from tests.unit.shaft_brake import CATALOGS as PAIRS_TABLE

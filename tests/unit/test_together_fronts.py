@@ -14,11 +14,12 @@ from synth import together_fronts
 from synth.clock import Stopped
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront
-from synth.search import Question, pose
+from synth.search import Question
 from synth.tables import Catalogs
 from synth.together_fronts import FrontsSearch, joint_answers, joint_groups
 from synth.together_search import TogetherSearch
 from synth.tuning import TUNING
+from tests.asking import pose
 from tests.unit.ropes import Ropes, ropes
 from tests.unit.strut import RODS, Strut
 
@@ -61,10 +62,10 @@ def answered(points: int, objectives: tuple[str, str]) -> tuple[list[Question], 
 
 def check_front(question: Question, front: ParetoFront) -> None:
     """Check what a front says of itself, and its designs against a finer front of the question alone."""
-    names, points = list(question.chosen), question.settings["points"]
+    names, points = list(question.chosen), question.settings.points
     assert len(front.designs) == points
     assert (front.status, front.complete, front.certificate.kind) == (Status.OPTIMAL, False, "global")
-    assert front.certificate.gap == question.settings["gap"]
+    assert front.certificate.gap == question.settings.gap
     certificate, statistics = front.certificate, front.statistics
     assert certificate.combinations == question.instance.combinations.count
     assert certificate.excluded_by_bound + certificate.solved == certificate.combinations
@@ -81,7 +82,7 @@ def check_front(question: Question, front: ParetoFront) -> None:
         assert not np.any(np.all(other < row * (1 - 1.01 * GAP), axis=1)), "beaten by more than the gap"
         assert not np.any(np.all(found <= row, axis=1) & np.any(found < row, axis=1)), "beaten by its neighbour"
     for design in front.designs:
-        assert (design.status, design.gap) == (Status.OPTIMAL, question.settings["gap"])
+        assert (design.status, design.gap) == (Status.OPTIMAL, question.settings.gap)
         assert set(design.elasticity) <= set(names)
 
 

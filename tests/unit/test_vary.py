@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 import synth
 from synth.errors import InputError
-from synth.study_questions import Steps, steps_of
+from synth.study_questions import Steps
 from synth.vary import Varied, split_text
+from tests.asking import steps_of
 from tests.unit.ropes import Ropes, ropes
 
 TABLE = ropes((10, 2), (20, 1), (35, 0.5))
@@ -272,7 +273,7 @@ def test_the_best_of_one_objective_among_given_parts() -> None:
     study = steps({"load": "5, 15 kN"}, weights={"cost": 2}, parts={"rope": ["rope a", "rope b"]})
     question = study.one_best((15.0,), {"cost": "min"}, 1e-5, {"rope": ["rope c"]}, {"strands": 2.0, "end": "clamp"})
     assert question.instance.combinations.count == 1
-    assert question.settings["gap"] == 1e-5
+    assert question.settings.gap == 1e-5
     assert dict(question.chosen) == {"cost": "min"}
     (design,) = question.answer().designs
     assert design.values["cost"] == pytest.approx(35 * 2 * 1.5 + 0.5 * 15, rel=1e-4)

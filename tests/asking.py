@@ -1,0 +1,31 @@
+"""Questions as tests state them: in one line, with the arguments of ``synth.synthesize``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from synth import search
+from synth.request import Request
+from synth.search_settings import SearchSettings
+from synth.spec_keys import SEARCHED
+from synth.study_questions import Steps
+from synth.tuning import TUNING, Tuning
+
+
+def pose(
+    p: Any, requirements: Mapping[str, Any], objectives: Any = None, points: int = 30, catalogs: Any = None,
+    parts: Any = None, tuning: Tuning = TUNING, **more: Any,
+) -> search.Question:  # fmt: skip
+    """Return a question that has been checked."""
+    how = {name: more.pop(name) for name in SEARCHED if name in more}
+    request = Request.of(p, requirements, catalogs, objectives=objectives, parts=parts, **more)
+    return search.pose(request, SearchSettings(points=points, **how), tuning=tuning)
+
+
+def steps_of(
+    p: Any, requirements: Mapping[str, Any], vary: Any, catalogs: Any = None, robust: Any = None, **more: Any
+) -> Steps:
+    """Return the questions of a study."""
+    how = {name: more.pop(name) for name in SEARCHED if name in more}
+    return Steps(Request.of(p, requirements, catalogs, robust, **more), SearchSettings(**how), vary)
