@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from synth.count_domain import stated
-from synth.declaration import Variable
+from synth.declaration import VariableRecord
 from synth.errors import InputError, RefusedError, at
 from synth.feasibility import Status, utilisation
 from synth.inputs import inputs_of_design, part_value
@@ -215,7 +215,7 @@ def _message(code: str, message: str, source: str) -> str:
     return f"{code}: {message}" + (f" [{source}]" if source else "")
 
 
-def off_grid(variables: Sequence[Variable], points: np.ndarray) -> list[dict[str, str]]:
+def off_grid(variables: Sequence[VariableRecord], points: np.ndarray) -> list[dict[str, str]]:
     """Return, per design, the variables that are off their grid, with the nearest makeable value."""
     result: list[dict[str, str]] = [{} for _ in points]
     for variable, values in zip(variables, points.T, strict=True):

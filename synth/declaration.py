@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, overload
 
 import casadi as ca
 import numpy as np
@@ -18,6 +18,9 @@ from synth.units import parse_unit, to_si
 
 if TYPE_CHECKING:
     from synth.tables import Catalogs
+
+# A CasADi symbol or an expression of symbols, in SI; no class that formulas could be checked against exists for both.
+Quantity: TypeAlias = Any
 
 # Formulas are plain NumPy functions; in this mode NumPy calls on symbols return plain symbols.
 ca.GlobalOptions.setNumpyMode(-1)
@@ -36,7 +39,7 @@ class DeclarationError(TypeError):
 
 
 @dataclass(frozen=True)
-class Requirement:
+class RequirementRecord:
     """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None."""
 
     name: str
@@ -53,7 +56,7 @@ class Requirement:
 
 
 @dataclass(frozen=True)
-class Option:
+class OptionRecord:
     """A structural choice of the user, fixed before the search."""
 
     name: str
@@ -66,7 +69,7 @@ class Option:
 
 
 @dataclass(frozen=True)
-class Variable:
+class VariableRecord:
     """An unknown of the search with bounds in SI; ``grid`` holds the makeable values in SI, or is empty."""
 
     name: str
@@ -273,6 +276,189 @@ class Setting:
     table: str = ""
 
 
+class BlockField(Protocol):
+    """What may stand in a :class:`Block`: it declares itself under the name of the attribute."""
+
+    @property
+    def default(self) -> Any:
+        """Value where the user states none; a function of the block for one that follows from fields above."""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Any:
+        """Declare the field under a name; return what the attribute of the block is."""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
+
+    ``default`` may be a function that takes the block and returns the default from fields that stand above.
+    """
+
+    unit: str
+    default: Any = None
+    lower: float | None = None
+    upper: float | None = None
+    optional: bool = False
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
+        """Declare the requirement; return its symbol, or None for an optional one that is not given."""
+        return d.requirement(
+            name, self.unit, default, self.lower, self.upper, self.optional, self.symbol, self.text, self.source
+        )
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Requirement: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option as field of a :class:`Block`, whose attribute is the word chosen; see :meth:`Declaration.option`.
+
+    The choices are words, or the designations of a ``table``.
+    """
+
+    choices: tuple[str, ...] = ()
+    default: str | Callable[[Any], str] = ""
+    table: str = ""
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> str:
+        """Declare the option; return the chosen word."""
+        choices = d.designations(self.table) if self.table else self.choices
+        return d.option(name, choices, default, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Option: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> str: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable as field of a :class:`Block`; see :meth:`Declaration.variable`."""
+
+    unit: str
+    lower: float
+    upper: float
+    grid: float | str | Sequence[float] | None = None
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    default = None
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
+        """Declare the variable; return its symbol."""
+        if default is not None:
+            raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
+        return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Variable: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A slot as field of a :class:`Block`; see :meth:`Declaration.part`."""
+
+    table: str
+    where: str | tuple[str, ...] = ()
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    default = None
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Part:
+        """Declare the slot; return the part whose columns are symbols."""
+        if default is not None:
+            raise DeclarationError(f"{d.problem}: slot {name} has no default, it is what the search decides")
+        return d.part(name, self.table, self.where, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Slot: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Part: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+def _field_of(own: Any, block: Block | None) -> Any:
+    """Return the field to who asks the class, as it has no value there yet."""
+    if block is None:
+        return own
+    raise AttributeError("this field of the block is declared further down")
+
+
+class Block:
+    """Quantities that are declared together, each once: its attribute is its field and its public name.
+
+    ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
+    the block, whose attributes are then the symbols. Properties may say what follows from them.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    defaults : mapping
+        Defaults that this use of the block decides, by field.
+
+    Raises
+    ------
+    DeclarationError
+        When a default is meant for a field that the block does not have.
+
+    Examples
+    --------
+    >>> class Duty(Block):
+    ...     torque = Requirement("N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit")
+    ...     peak_torque = Requirement("N*m", lambda duty: 2 * duty.torque, upper=1e7, text="Shock")
+    >>> from synth.tables import Catalogs
+    >>> d = Declaration("shaft", {}, frozenset(), Catalogs())
+    >>> duty = d.block(Duty)
+    >>> duty.torque, d.requirements["peak_torque"].default
+    (SX(torque), SX((2.*torque)))
+    """
+
+    def __init__(self, d: Declaration, defaults: Mapping[str, Any]) -> None:
+        fields = self.fields()
+        for name in defaults:
+            if name not in fields:
+                raise DeclarationError(f"{d.problem}: block {type(self).__name__} has no field {name!r}")
+        for name, own in fields.items():
+            default = defaults.get(name, own.default)
+            if callable(default):
+                default = default(self)
+            self.__dict__[name] = own.declared(d, name, default)
+
+    @classmethod
+    def fields(cls) -> dict[str, BlockField]:
+        """Return what the block declares, by name and in order."""
+        everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
+        return {name: value for name, value in everything if isinstance(value, (Requirement, Option, Variable, Slot))}
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{type(self).__name__}.{name} is what was declared; it cannot be set")
+
+
+AnyBlock = TypeVar("AnyBlock", bound=Block)
+
+
 class Declaration:
     """Collects what a problem declares, for one set of options and of optional requirements given.
 
@@ -293,9 +479,9 @@ class Declaration:
         self.catalogs = catalogs
         self._asked_options = dict(options)
         self._given = given
-        self.requirements: dict[str, Requirement] = {}
-        self.options: dict[str, Option] = {}
-        self.variables: dict[str, Variable] = {}
+        self.requirements: dict[str, RequirementRecord] = {}
+        self.options: dict[str, OptionRecord] = {}
+        self.variables: dict[str, VariableRecord] = {}
         self.counts: dict[str, Count] = {}
         self.choices: dict[str, Choice] = {}
         self.slots: dict[str, Part] = {}
@@ -325,6 +511,23 @@ class Declaration:
 
     # -- verbs ---------------------------------------------------------------------------------
 
+    def block(self, kind: type[AnyBlock], **defaults: Any) -> AnyBlock:
+        """Declare the fields of a block and return it.
+
+        Parameters
+        ----------
+        kind : subclass of Block
+        **defaults
+            Defaults that this use of the block decides, by field: numbers in the unit of the field, expressions in SI,
+            words for options.
+
+        Returns
+        -------
+        Block
+            Its attributes are the symbols, None for optional requirements that are not given, words for options.
+        """
+        return kind(self, defaults)
+
     def requirement(
         self,
         name: str,
@@ -347,7 +550,7 @@ class Declaration:
         parsed = parse_unit(unit)
         numeric = default is None or isinstance(default, (int, float))
         given = name in self._given
-        record = Requirement(
+        record = RequirementRecord(
             name=name,
             unit=unit,
             symbol=symbol,
@@ -385,12 +588,21 @@ class Declaration:
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
         if chosen not in labels:
             raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
-        self.options[name] = Option(name, symbol, text, source, labels, default, chosen)
+        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen)
         return str(chosen)
 
     def designations(self, table: str) -> tuple[str, ...]:
         """Return the designations of a catalogue table, for options that are rows of a table."""
         return tuple(self.catalogs.table(table).designations)
+
+    def cell(self, table: str, designation: str, column: str) -> str:
+        """Return a text of a catalogue table; empty where a user's own table does not have the column."""
+        found = self.catalogs.table(table)
+        return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+
+    def numbers(self, table: str, column: str) -> np.ndarray:
+        """Return a column of a catalogue table in SI, not-a-number where a row has no value."""
+        return self.catalogs.table(table).number(column)
 
     def variable(
         self,
@@ -411,7 +623,7 @@ class Declaration:
         makeable = grid_values(grid, lower, upper)
         if grid is not None and not len(makeable):
             raise DeclarationError(f"{self.problem}: the grid of variable {name} has no value from {lower} to {upper}")
-        record = Variable(
+        record = VariableRecord(
             name=name,
             unit=unit,
             symbol=symbol,

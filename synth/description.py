@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
-from synth.declaration import Declaration, Part, Requirement, Variable
+from synth.declaration import Declaration, Part, RequirementRecord, VariableRecord
 from synth.inputs import fixed_designation, fixed_row_values, part_value
 from synth.instance import Instance, as_catalogs, number
 from synth.model import DataInput, Model
@@ -191,7 +191,7 @@ def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:
     return row | known
 
 
-def _requirement(r: Requirement, fixed_rows: Mapping[str, float]) -> dict[str, Any]:
+def _requirement(r: RequirementRecord, fixed_rows: Mapping[str, float]) -> dict[str, Any]:
     default = r.default
     if isinstance(default, float):
         default = from_si(default, r.unit)
@@ -226,7 +226,7 @@ def _closes_last(text: str) -> bool:
     return False
 
 
-def _variable(v: Variable) -> dict[str, Any]:
+def _variable(v: VariableRecord) -> dict[str, Any]:
     grid = np.asarray(from_si(v.grid, v.unit)) if len(v.grid) else v.grid
     return _row("variable", v, lower=_bound(v.lower, v.unit), upper=_bound(v.upper, v.unit), choices=_values(grid))
 

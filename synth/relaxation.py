@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from synth.constraint import Constraint
-from synth.declaration import Limit, Objective, Variable
+from synth.declaration import Limit, Objective, VariableRecord
 from synth.feasibility import SMALLEST
 from synth.fired_guards import wanted
 from synth.instance import Instance
@@ -72,7 +72,7 @@ class Relaxed(DesignProblem):
     def _traced(self) -> Model:
         original = self._instance.model
         source = original.declaration
-        amount = Variable(
+        amount = VariableRecord(
             AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
         )
         before, after = self._moved_inputs(amount.sx)

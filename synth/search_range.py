@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.declaration import Count, Variable
+from synth.declaration import Count, VariableRecord
 from synth.errors import InputError
 from synth.units import format_quantity
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 END = 1e-9  # relative: what is this close to the end of a range is within it
 
 
-def shown_range(unknown: Variable | Count) -> str:
+def shown_range(unknown: VariableRecord | Count) -> str:
     """Return the range in which an unknown is searched, in words.
 
     Examples
@@ -113,12 +113,12 @@ def refuse_not_computable(
             raise InputError(f"values: {', '.join(told)}", "; ".join(told.values()), expected, path)
 
 
-def widened(unknowns: Sequence[Variable], factor: float) -> tuple[np.ndarray, np.ndarray]:
+def widened(unknowns: Sequence[VariableRecord], factor: float) -> tuple[np.ndarray, np.ndarray]:
     """Return ranges that reach further than what is searched, by a factor or by as many spans; signs are kept.
 
     Parameters
     ----------
-    unknowns : list of Variable
+    unknowns : list of VariableRecord
     factor : float
         How much further.
     """
@@ -129,15 +129,17 @@ def widened(unknowns: Sequence[Variable], factor: float) -> tuple[np.ndarray, np
     return least, most
 
 
-def _unknowns(model: Model) -> list[Variable | Count]:
+def _unknowns(model: Model) -> list[VariableRecord | Count]:
     return [*model.variables, *model.declaration.counts.values()]
 
 
-def _ends(unknown: Variable | Count) -> tuple[float, float]:
+def _ends(unknown: VariableRecord | Count) -> tuple[float, float]:
     steps = _steps(unknown)
-    return (unknown.lower, unknown.upper) if isinstance(unknown, Variable) else (float(steps[0]), float(steps[-1]))
+    return (
+        (unknown.lower, unknown.upper) if isinstance(unknown, VariableRecord) else (float(steps[0]), float(steps[-1]))
+    )
 
 
-def _steps(unknown: Variable | Count) -> np.ndarray:
+def _steps(unknown: VariableRecord | Count) -> np.ndarray:
     """Return the values of a count; a variable has none."""
-    return np.empty(0) if isinstance(unknown, Variable) else unknown.values
+    return np.empty(0) if isinstance(unknown, VariableRecord) else unknown.values

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from problems.centrifugal import DERIVED, DRIVE, S4, TYPICAL, Duty, SpringSet
 from problems.mechanics import centrifugal
 from problems.mechanics.contact import contact_modulus
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration, Part
+from synth.declaration import Block, Declaration, Part, Requirement
 
 # Least share of the axial force that friction must leave when the balls come back; at 0 the ramp locks.
 RETURN_SHARE_MIN = 0.2
@@ -39,13 +37,35 @@ class Balls:
         return self.part.diameter / 2
 
 
-@dataclass(frozen=True)
-class ForceLimits:
+class ForceLimits(Block):
     """Requirements that the devices with ramps (and their lever sister) have beside the duty."""
 
-    contact_speed_min: Any
-    clamp_force_limit: Any
-    pocket_gap: Any
+    contact_speed_min = Requirement(
+        "1/min",
+        lower=1,
+        upper=60000,
+        symbol="omega_contact_min",
+        text="The plates touch at this speed at the earliest",
+        source=DRIVE,
+    )
+    clamp_force_limit = Requirement(
+        "N",
+        4500,
+        lower=1,
+        upper=1e6,
+        symbol="F_N_cap",
+        text="Largest clamp force, for the release bearing",
+        source="practice",
+    )
+    pocket_gap = Requirement(
+        "mm",
+        4,
+        lower=0,
+        upper=50,
+        symbol="c_gap",
+        text="Gap between balls and spring pockets around the circle",
+        source="practice",
+    )
 
 
 def declare_force_limits(d: Declaration, duty: Duty) -> ForceLimits:
@@ -63,20 +83,7 @@ def declare_force_limits(d: Declaration, duty: Duty) -> ForceLimits:
     ForceLimits
         Symbols of the block.
     """
-    wants = ForceLimits(
-        contact_speed_min=d.requirement(
-            "contact_speed_min", "1/min", lower=1, upper=60000, symbol="omega_contact_min",
-            text="The plates touch at this speed at the earliest", source=DRIVE,
-        ),
-        clamp_force_limit=d.requirement(
-            "clamp_force_limit", "N", 4500, lower=1, upper=1e6, symbol="F_N_cap",
-            text="Largest clamp force, for the release bearing", source="practice",
-        ),
-        pocket_gap=d.requirement(
-            "pocket_gap", "mm", 4, lower=0, upper=50, symbol="c_gap",
-            text="Gap between balls and spring pockets around the circle", source="practice",
-        ),
-    )  # fmt: skip
+    wants = d.block(ForceLimits)
     d.refuse(
         "contact_window_reversed",
         wants.contact_speed_min > duty.contact_speed_max,

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from problems.centrifugal.sources import DRIVE, TYPICAL
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Requirement
 
 # What a sheet for several families may state.
 COMMON = (
@@ -27,27 +24,122 @@ COMMON = (
 )
 
 
-@dataclass(frozen=True)
-class Duty:
+class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
-    required_torque: Any
-    torque_reserve: Any
-    idle_speed: Any
-    full_torque_speed: Any
-    top_speed: Any
-    idle_margin_min: Any
-    contact_speed_max: Any
-    driven_inertia: Any
-    engagement_heat_limit: Any
-    hub_radius: Any
-    rim_width: Any
-    wall_thickness: Any
-    plate_thickness: Any
-    outer_diameter_limit: Any
-    ring_ratio_min: Any
-    ring_ratio_max: Any
-    steel_density: Any
+    required_torque = Requirement(
+        "N*m", lower=0.1, upper=1e5, symbol="M_req", text="Torque to transmit from full_torque_speed on", source=DRIVE
+    )
+    torque_reserve = Requirement(
+        "-",
+        1.2,
+        lower=1,
+        upper=5,
+        symbol="k_M",
+        text="Torque of the clutch over required_torque",
+        source="practice, 1.1 to 2.5",
+    )
+    idle_speed = Requirement(
+        "1/min",
+        lower=10,
+        upper=60000,
+        symbol="omega_idle",
+        text="Idle speed of the driver; the clutch is released",
+        source=DRIVE,
+    )
+    full_torque_speed = Requirement(
+        "1/min",
+        lower=10,
+        upper=60000,
+        symbol="omega_full",
+        text="From this speed of the driver on the clutch carries its full torque",
+        source=DRIVE,
+    )
+    top_speed = Requirement(
+        "1/min", lower=10, upper=60000, symbol="omega_max", text="Highest speed of the driver", source=DRIVE
+    )
+    idle_margin_min = Requirement(
+        "-",
+        1.15,
+        lower=1,
+        upper=3,
+        symbol="S_idle",
+        text="Least release speed (lever types: contact speed) over idle_speed",
+        source="practice, 1.05 to 1.5",
+    )
+    contact_speed_max = Requirement(
+        "1/min",
+        lower=10,
+        upper=60000,
+        symbol="omega_contact_max",
+        text="The plates touch at this speed at the latest",
+        source=DRIVE,
+    )
+    driven_inertia = Requirement(
+        "kg*m2",
+        0.5,
+        lower=0,
+        upper=1e4,
+        symbol="J_load",
+        text=f"Inertia on the driven side that an engagement brings up to speed ({TYPICAL})",
+        source=TYPICAL,
+    )
+    engagement_heat_limit = Requirement(
+        "J/mm2",
+        lower=0.001,
+        upper=20,
+        optional=True,
+        symbol="q_A_allow",
+        text="Largest work per engagement and friction area, usually 0.5 to 0.7; takes the place of "
+        "friction_pair.q_single_allow",
+        source="practice",
+    )
+    hub_radius = Requirement(
+        "mm", 20, lower=1, upper=500, symbol="r_hub", text=f"Radius of shaft and hub ({TYPICAL})", source=TYPICAL
+    )
+    rim_width = Requirement("mm", 3, lower=0, upper=50, symbol="c_o", text="Rim outside the lining", source="practice")
+    wall_thickness = Requirement(
+        "mm", 5, lower=0, upper=50, symbol="c_w", text=f"Wall outside the flyweights ({TYPICAL})", source=TYPICAL
+    )
+    equivalent_plate_thickness = Requirement(
+        "mm",
+        25,
+        lower=1,
+        upper=200,
+        symbol="t_plates",
+        text=f"Steel thickness that all plates together amount to, for mass and inertia ({TYPICAL})",
+        source=TYPICAL,
+    )
+    outer_diameter_limit = Requirement(
+        "mm", lower=20, upper=3000, optional=True, symbol="D_max", text="Largest outside diameter", source=DRIVE
+    )
+    ring_ratio_min = Requirement(
+        "-",
+        0.55,
+        lower=0.1,
+        upper=0.95,
+        symbol="c_min",
+        text="Least inner over outer radius of the lining",
+        source="practice",
+    )
+    ring_ratio_max = Requirement(
+        "-",
+        0.80,
+        lower=0.1,
+        upper=0.99,
+        symbol="c_max",
+        text="Largest inner over outer radius of the lining",
+        source="practice",
+    )
+    steel_density = Requirement(
+        "kg/m3",
+        7850,
+        lower=1000,
+        upper=20000,
+        symbol="rho_steel",
+        text="Density of plates and weights",
+        source="material constant",
+    )
 
     @property
     def torque_to_carry(self) -> Any:
@@ -68,78 +160,7 @@ def declare_duty(d: Declaration) -> Duty:
     Duty
         Symbols of the block.
     """
-    duty = Duty(
-        required_torque=d.requirement(
-            "required_torque", "N*m", lower=0.1, upper=1e5, symbol="M_req",
-            text="Torque to transmit from full_torque_speed on", source=DRIVE,
-        ),
-        torque_reserve=d.requirement(
-            "torque_reserve", "-", 1.2, lower=1, upper=5, symbol="k_M",
-            text="Torque of the clutch over required_torque", source="practice, 1.1 to 2.5",
-        ),
-        idle_speed=d.requirement(
-            "idle_speed", "1/min", lower=10, upper=60000, symbol="omega_idle",
-            text="Idle speed of the driver; the clutch is released", source=DRIVE,
-        ),
-        full_torque_speed=d.requirement(
-            "full_torque_speed", "1/min", lower=10, upper=60000, symbol="omega_full",
-            text="From this speed of the driver on the clutch carries its full torque", source=DRIVE,
-        ),
-        top_speed=d.requirement(
-            "top_speed", "1/min", lower=10, upper=60000, symbol="omega_max",
-            text="Highest speed of the driver", source=DRIVE,
-        ),
-        idle_margin_min=d.requirement(
-            "idle_margin_min", "-", 1.15, lower=1, upper=3, symbol="S_idle",
-            text="Least release speed (lever types: contact speed) over idle_speed", source="practice, 1.05 to 1.5",
-        ),
-        contact_speed_max=d.requirement(
-            "contact_speed_max", "1/min", lower=10, upper=60000, symbol="omega_contact_max",
-            text="The plates touch at this speed at the latest", source=DRIVE,
-        ),
-        driven_inertia=d.requirement(
-            "driven_inertia", "kg*m2", 0.5, lower=0, upper=1e4, symbol="J_load",
-            text=f"Inertia on the driven side that an engagement brings up to speed ({TYPICAL})", source=TYPICAL,
-        ),
-        engagement_heat_limit=d.requirement(
-            "engagement_heat_limit", "J/mm2", lower=0.001, upper=20, optional=True, symbol="q_A_allow",
-            text="Largest work per engagement and friction area, usually 0.5 to 0.7; takes the place of "
-            "friction_pair.q_single_allow", source="practice",
-        ),
-        hub_radius=d.requirement(
-            "hub_radius", "mm", 20, lower=1, upper=500, symbol="r_hub",
-            text=f"Radius of shaft and hub ({TYPICAL})", source=TYPICAL,
-        ),
-        rim_width=d.requirement(
-            "rim_width", "mm", 3, lower=0, upper=50, symbol="c_o",
-            text="Rim outside the lining", source="practice",
-        ),
-        wall_thickness=d.requirement(
-            "wall_thickness", "mm", 5, lower=0, upper=50, symbol="c_w",
-            text=f"Wall outside the flyweights ({TYPICAL})", source=TYPICAL,
-        ),
-        plate_thickness=d.requirement(
-            "equivalent_plate_thickness", "mm", 25, lower=1, upper=200, symbol="t_plates",
-            text=f"Steel thickness that all plates together amount to, for mass and inertia ({TYPICAL})",
-            source=TYPICAL,
-        ),
-        outer_diameter_limit=d.requirement(
-            "outer_diameter_limit", "mm", lower=20, upper=3000, optional=True, symbol="D_max",
-            text="Largest outside diameter", source=DRIVE,
-        ),
-        ring_ratio_min=d.requirement(
-            "ring_ratio_min", "-", 0.55, lower=0.1, upper=0.95, symbol="c_min",
-            text="Least inner over outer radius of the lining", source="practice",
-        ),
-        ring_ratio_max=d.requirement(
-            "ring_ratio_max", "-", 0.80, lower=0.1, upper=0.99, symbol="c_max",
-            text="Largest inner over outer radius of the lining", source="practice",
-        ),
-        steel_density=d.requirement(
-            "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_steel",
-            text="Density of plates and weights", source="material constant",
-        ),
-    )  # fmt: skip
+    duty = d.block(Duty)
     _refuse_contradictions(d, duty)
     return duty
 

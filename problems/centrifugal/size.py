@@ -49,7 +49,7 @@ def declare_size(
         symbol="D", text="Outside diameter over lining and flyweights, whichever reaches further", source="geometry",
     )  # fmt: skip
     spring_mass: Any = sum(spring_set.mass for spring_set in springs)
-    plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.plate_thickness)
+    plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.equivalent_plate_thickness)
     d.derive(
         "mass", "kg", plates + flyweights.mass + spring_mass, symbol="m",
         text="Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs", source="geometry",

@@ -13,7 +13,7 @@ from problems.cone import formulas as cone
 from problems.friction import startup_curves
 from problems.mechanics import heat
 from synth import DesignProblem
-from synth.declaration import Declaration, Part
+from synth.declaration import Block, Declaration, Part, Requirement
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,16 +31,63 @@ ANGLES_SHOWN = (4.0, 30.0)
 FRICTION_SHOWN = (0.1, 0.2, 0.3, 0.4, 0.5)
 
 
-@dataclass(frozen=True)
-class Wants:
+class Wants(Block):
     """Requirements of the cone, all in SI; None where an optional one is not given."""
 
-    ratio_min: Any
-    ratio_max: Any
-    locking_margin: Any
-    seating_factor: Any
-    bearing_force_limit: Any
-    temperature_rise_limit: Any
+    ring_ratio_min = Requirement(
+        "-",
+        0.15,
+        lower=0.02,
+        upper=0.9,
+        symbol="c_min",
+        text="Least generator length over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
+    ring_ratio_max = Requirement(
+        "-",
+        0.20,
+        lower=0.02,
+        upper=0.9,
+        symbol="c_max",
+        text="Largest generator length over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
+    locking_margin = Requirement(
+        "-",
+        1.05,
+        lower=0.5,
+        upper=2,
+        symbol="k_lock",
+        text="Least tan(alpha) over static friction; below 1 the cones may lock",
+        source=DERIVED,
+    )
+    seating_pressure_factor = Requirement(
+        "-",
+        2.5,
+        lower=1,
+        upper=10,
+        symbol="k_seat",
+        text="Largest pressure after seating over p_allow of the lining",
+        source="premise of the cone model",
+    )
+    bearing_force_limit = Requirement(
+        "N",
+        lower=1,
+        upper=1e6,
+        optional=True,
+        symbol="F_bearing_max",
+        text="Largest axial load of the shaft bearings",
+        source="requirement of the drive",
+    )
+    temperature_rise_limit = Requirement(
+        "K",
+        100,
+        lower=1,
+        upper=1000,
+        symbol="dT_allow",
+        text=f"Largest temperature rise of a shell in one engagement ({TYPICAL})",
+        source=TYPICAL,
+    )
 
 
 @dataclass(frozen=True)
@@ -134,35 +181,10 @@ class ConeClutch(DesignProblem):
             d.objective(name, default=False)
 
     def _declare_requirements(self, d: Declaration) -> Wants:
-        wants = Wants(
-            ratio_min=d.requirement(
-                "ring_ratio_min", "-", 0.15, lower=0.02, upper=0.9, symbol="c_min",
-                text="Least generator length over mean diameter", source=f"{S1}, empirical range of c",
-            ),
-            ratio_max=d.requirement(
-                "ring_ratio_max", "-", 0.20, lower=0.02, upper=0.9, symbol="c_max",
-                text="Largest generator length over mean diameter", source=f"{S1}, empirical range of c",
-            ),
-            locking_margin=d.requirement(
-                "locking_margin", "-", 1.05, lower=0.5, upper=2, symbol="k_lock",
-                text="Least tan(alpha) over static friction; below 1 the cones may lock", source=DERIVED,
-            ),
-            seating_factor=d.requirement(
-                "seating_pressure_factor", "-", 2.5, lower=1, upper=10, symbol="k_seat",
-                text="Largest pressure after seating over p_allow of the lining", source="premise of the cone model",
-            ),
-            bearing_force_limit=d.requirement(
-                "bearing_force_limit", "N", lower=1, upper=1e6, optional=True, symbol="F_bearing_max",
-                text="Largest axial load of the shaft bearings", source="requirement of the drive",
-            ),
-            temperature_rise_limit=d.requirement(
-                "temperature_rise_limit", "K", 100, lower=1, upper=1000, symbol="dT_allow",
-                text=f"Largest temperature rise of a shell in one engagement ({TYPICAL})", source=TYPICAL,
-            ),
-        )  # fmt: skip
+        wants = d.block(Wants)
         d.refuse(
             "bad_ratio",
-            wants.ratio_min > wants.ratio_max,
+            wants.ring_ratio_min > wants.ring_ratio_max,
             "a ring_ratio_min of at most ring_ratio_max; otherwise no cone satisfies both",
         )
         d.advise(
@@ -200,11 +222,11 @@ class ConeClutch(DesignProblem):
             text="Generator length over mean diameter", source=f"{S1}, c = b/dm",
         )  # fmt: skip
         d.at_least(
-            "ring_ratio_min", ratio, wants.ratio_min, "-",
+            "ring_ratio_min", ratio, wants.ring_ratio_min, "-",
             text="The face is not too narrow", source=f"{S1}, empirical range of c",
         )  # fmt: skip
         d.at_most(
-            "ring_ratio_max", ratio, wants.ratio_max, "-",
+            "ring_ratio_max", ratio, wants.ring_ratio_max, "-",
             text="The face is not too wide", source=f"{S1}, empirical range of c",
         )  # fmt: skip
         practice = "practice of cone clutches: 8 to 15, at most 18 degrees"
@@ -251,7 +273,7 @@ class ConeClutch(DesignProblem):
             source="derived, N = F/sin(alpha)",
         )  # fmt: skip
         d.at_most(
-            "seated_pressure", seated, wants.seating_factor * pair.part.p_allow, "N/mm2",
+            "seated_pressure", seated, wants.seating_pressure_factor * pair.part.p_allow, "N/mm2",
             text="The lining stands the pressure of the seated cones", source="premise of the cone model",
         )  # fmt: skip
         if duty.overload_torque is None:

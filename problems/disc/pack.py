@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching
@@ -11,21 +11,60 @@ from problems.friction.ring import Ring
 from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import disc, heat, plates
 from problems.mechanics import ring as ring_formulas
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Requirement
 
 
-@dataclass(frozen=True)
-class DiscRequirements:
+class DiscRequirements(Block):
     """Requirements of a disc pack, all in SI."""
 
-    core_thickness: Any
-    hub_radius: Any
-    cover_gap: Any
-    plate_density: Any
-    plate_specific_heat: Any
-    temperature_rise_limit: Any
+    core_thickness = Requirement(
+        "mm", 2, lower=0.3, upper=30, symbol="t_core", text=f"Steel core of a disc ({TYPICAL})", source=TYPICAL
+    )
+    disc_hub_radius = Requirement(
+        "mm",
+        20,
+        lower=1,
+        upper=500,
+        symbol="r_hub",
+        text=f"Inner edge of the core: room for the hub ({TYPICAL})",
+        source=TYPICAL,
+    )
+    cover_gap = Requirement(
+        "mm",
+        8,
+        lower=0,
+        upper=100,
+        symbol="s_cover",
+        text=f"From the edge of the friction ring to the outside ({TYPICAL})",
+        source=TYPICAL,
+    )
+    pressure_plate_density = Requirement(
+        "kg/m3",
+        7200,
+        lower=1000,
+        upper=20000,
+        symbol="rho_plate",
+        text="Density of the pressure plates, by default cast iron",
+        source="material constant",
+    )
+    pressure_plate_specific_heat = Requirement(
+        "J/(kg*K)",
+        500,
+        lower=100,
+        upper=2000,
+        symbol="cp_plate",
+        text="Specific heat of the pressure plates, by default cast iron",
+        source="material constant",
+    )
+    temperature_rise_limit = Requirement(
+        "K",
+        100,
+        lower=1,
+        upper=1000,
+        symbol="dT_allow",
+        text=f"Largest temperature rise of a pressure plate in one engagement ({TYPICAL})",
+        source=TYPICAL,
+    )
 
 
 @dataclass(frozen=True)
@@ -55,32 +94,7 @@ def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
     DiscPack
         Symbols of the block.
     """
-    wants = DiscRequirements(
-        core_thickness=d.requirement(
-            "core_thickness", "mm", 2, lower=0.3, upper=30, symbol="t_core",
-            text=f"Steel core of a disc ({TYPICAL})", source=TYPICAL,
-        ),
-        hub_radius=d.requirement(
-            "disc_hub_radius", "mm", 20, lower=1, upper=500, symbol="r_hub",
-            text=f"Inner edge of the core: room for the hub ({TYPICAL})", source=TYPICAL,
-        ),
-        cover_gap=d.requirement(
-            "cover_gap", "mm", 8, lower=0, upper=100, symbol="s_cover",
-            text=f"From the edge of the friction ring to the outside ({TYPICAL})", source=TYPICAL,
-        ),
-        plate_density=d.requirement(
-            "pressure_plate_density", "kg/m3", 7200, lower=1000, upper=20000, symbol="rho_plate",
-            text="Density of the pressure plates, by default cast iron", source="material constant",
-        ),
-        plate_specific_heat=d.requirement(
-            "pressure_plate_specific_heat", "J/(kg*K)", 500, lower=100, upper=2000, symbol="cp_plate",
-            text="Specific heat of the pressure plates, by default cast iron", source="material constant",
-        ),
-        temperature_rise_limit=d.requirement(
-            "temperature_rise_limit", "K", 100, lower=1, upper=1000, symbol="dT_allow",
-            text=f"Largest temperature rise of a pressure plate in one engagement ({TYPICAL})", source=TYPICAL,
-        ),
-    )  # fmt: skip
+    wants = d.block(DiscRequirements)
     discs = d.count(
         "discs", 1, 2, symbol="n_d",
         text="Lined discs, each with a pressure plate of its own; two friction surfaces per disc",
@@ -91,11 +105,11 @@ def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
         text="Thickness of a pressure plate, which stores the heat", source=f"{S1}, pressure plate",
     )  # fmt: skip
     d.at_least(
-        "hub_bore", ring.inner_radius, wants.hub_radius, "mm",
+        "hub_bore", ring.inner_radius, wants.disc_hub_radius, "mm",
         text="The hub fits inside the friction ring", source="geometry",
     )  # fmt: skip
     if duty.outer_diameter_limit is not None:
-        least_outer = 2 * wants.hub_radius * (1 + ring.ratio_min) / (1 - ring.ratio_min)
+        least_outer = 2 * wants.disc_hub_radius * (1 + ring.ratio_min) / (1 - ring.ratio_min)
         d.refuse(
             "no_room_for_ring",
             least_outer + 2 * wants.cover_gap > duty.outer_diameter_limit,
@@ -148,11 +162,11 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
         duty.steel_density,
         pack.discs,
         wants.core_thickness,
-        ring.outer_radius + wants.hub_radius,
-        ring.outer_radius - wants.hub_radius,
+        ring.outer_radius + wants.disc_hub_radius,
+        ring.outer_radius - wants.disc_hub_radius,
     )
     return Size(
-        mass=pack.discs * disc.pressure_plate_mass(wants.plate_density, pack.plate_thickness, ring.area)
+        mass=pack.discs * disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
         + plates.lining_mass(pair.part.density, lining, pack.surfaces * ring.area)
         + core,
         diameter=2 * (ring.outer_radius + wants.cover_gap),
@@ -168,7 +182,7 @@ def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pac
             pack.discs,
             disc.lining_inertia(pair.part.density, pair.part.lining_thickness, ring.mean_diameter, ring.ratio),
             disc.core_inertia(
-                duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.hub_radius
+                duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
             ),
         ),
         symbol="J_disc", text="Inertia of the discs, cores with linings", source="geometry",
@@ -198,17 +212,18 @@ def declare_disc_temperature(
         Room of the clutch, whose outside gives off the heat.
     """
     wants = pack.wants
-    plate_mass = disc.pressure_plate_mass(wants.plate_density, pack.plate_thickness, ring.area)
+    plate_mass = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
+    specific_heat = wants.pressure_plate_specific_heat
     rise = d.derive(
         "temperature_rise", "K",
-        heat.adiabatic_rise(start.friction_work, plate_mass, wants.plate_specific_heat, disc.HOTTEST_PLATE_SHARE),
+        heat.adiabatic_rise(start.friction_work, plate_mass, specific_heat, disc.HOTTEST_PLATE_SHARE),
         symbol="dT", text="Hottest pressure plate after one engagement, which takes half of the friction work",
         source="heat balance; half of the work for the hottest plate of a single or twin disc",
     )  # fmt: skip
     cooled_area = plates.cylinder_surface(size.diameter, size.length)
     mean_rise = d.derive(
         "mean_temperature_rise", "K",
-        heat.mean_temperature_rise(start.friction_work, duty.switching_rate, duty.heat_transfer, cooled_area),
+        heat.mean_temperature_rise(start.friction_work, duty.engagements_per_hour, duty.heat_transfer, cooled_area),
         symbol="dT_m", text="Clutch over ambient, mean of repeated switching",
         source=f"lumped heat balance; {S1}, repeated switching",
     )  # fmt: skip
@@ -220,7 +235,7 @@ def declare_disc_temperature(
         "mean_temperature", mean_rise, pair.part.temp_continuous - duty.ambient_temperature, "K",
         text="The lining stands the mean temperature", source="Neale, Tribology Handbook, Table 7.4",
     )  # fmt: skip
-    advise_frequent_switching(d, duty, pack.discs * plate_mass * wants.plate_specific_heat, cooled_area)
+    advise_frequent_switching(d, duty, pack.discs * plate_mass * wants.pressure_plate_specific_heat, cooled_area)
     d.advise(
         "lining_temperature",
         mean_rise + rise > pair.part.optional("temp_max") - duty.ambient_temperature,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,22 +12,59 @@ from problems.friction.duty import Duty
 from problems.friction.sources import S4, TYPICAL
 from problems.magnet import coil as coil_blocks
 from problems.mechanics import heat, magnetics
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Requirement
 
 HOLDS = "magnet_overcomes_springs"
 
 
-@dataclass(frozen=True)
-class MagnetRequirements:
+class MagnetRequirements(Block):
     """Requirements of the magnet beside those of its coil, all in SI."""
 
-    return_force: Any
-    drag_force: Any
-    pull_in_margin: Any
-    residual_gap: Any
-    bore_radius: Any
+    return_spring_force = Requirement(
+        "N",
+        100,
+        lower=0,
+        upper=1e5,
+        symbol="F_ret",
+        text=f"Springs that draw the armature back ({TYPICAL})",
+        source=f"{S4}, section 6.6",
+    )
+    release_drag_force = Requirement(
+        "N",
+        20,
+        lower=0,
+        upper=1e5,
+        symbol="F_drag",
+        text=f"Push of the first phase: plates that slide in their guides ({TYPICAL})",
+        source="S0 (Szoke 1966), first phase of engagement",
+    )
+    pull_in_margin = Requirement(
+        "-",
+        1.3,
+        lower=1,
+        upper=5,
+        symbol="k_in",
+        text="Pull on the released armature over springs and drag",
+        source=f"{S4}, section 6.6",
+    )
+    residual_gap = Requirement(
+        "mm",
+        0.4,
+        lower=0.05,
+        upper=3,
+        symbol="g_r",
+        text=f"Gap at each pole of the engaged magnet, against sticking ({TYPICAL}, 0.3 to 0.5)",
+        source=f"{S4}, section 6.6",
+    )
+    magnet_bore_radius = Requirement(
+        "mm",
+        20,
+        lower=2,
+        upper=500,
+        symbol="r_b",
+        text=f"Inside of the inner pole: room for shaft and bearing ({TYPICAL})",
+        source=f"{S4}, section 6.6",
+    )
 
 
 @dataclass(frozen=True)
@@ -54,42 +91,19 @@ def declare_magnet(d: Declaration) -> Magnet:
     Magnet
         Symbols of the block.
     """
-    wants = MagnetRequirements(
-        return_force=d.requirement(
-            "return_spring_force", "N", 100, lower=0, upper=1e5, symbol="F_ret",
-            text=f"Springs that draw the armature back ({TYPICAL})", source=f"{S4}, section 6.6",
-        ),
-        drag_force=d.requirement(
-            "release_drag_force", "N", 20, lower=0, upper=1e5, symbol="F_drag",
-            text=f"Push of the first phase: plates that slide in their guides ({TYPICAL})",
-            source="S0 (Szoke 1966), first phase of engagement",
-        ),
-        pull_in_margin=d.requirement(
-            "pull_in_margin", "-", 1.3, lower=1, upper=5, symbol="k_in",
-            text="Pull on the released armature over springs and drag", source=f"{S4}, section 6.6",
-        ),
-        residual_gap=d.requirement(
-            "residual_gap", "mm", 0.4, lower=0.05, upper=3, symbol="g_r",
-            text=f"Gap at each pole of the engaged magnet, against sticking ({TYPICAL}, 0.3 to 0.5)",
-            source=f"{S4}, section 6.6",
-        ),
-        bore_radius=d.requirement(
-            "magnet_bore_radius", "mm", 20, lower=2, upper=500, symbol="r_b",
-            text=f"Inside of the inner pole: room for shaft and bearing ({TYPICAL})", source=f"{S4}, section 6.6",
-        ),
-    )  # fmt: skip
+    wants = d.block(MagnetRequirements)
     iron = coil_blocks.declare_coil_requirements(d)
     pole_width = d.variable(
         "inner_pole_width", "mm", 3, 60, grid=0.5, symbol="w_p",
         text="Radial width of the inner pole; the outer pole has the same area", source=f"{S4}, section 6.6",
     )  # fmt: skip
-    unknowns = coil_blocks.declare_coil_unknowns(d)
+    unknowns = d.block(coil_blocks.CoilUnknowns)
     shape = pot_magnet.PotMagnet(
-        bore=wants.bore_radius,
+        bore=wants.magnet_bore_radius,
         pole_width=pole_width,
-        coil_length=unknowns.length,
-        coil_height=unknowns.height,
-        thickness=unknowns.thickness,
+        coil_length=unknowns.coil_length,
+        coil_height=unknowns.coil_height,
+        thickness=unknowns.yoke_thickness,
         residual_gap=wants.residual_gap,
     )
     pull = d.derive(
@@ -97,12 +111,12 @@ def declare_magnet(d: Declaration) -> Magnet:
         text="Pull on the engaged armature", source="Maxwell; S4 (notes on centrifugal clutches), section 3.5",
     )  # fmt: skip
     d.at_least(
-        HOLDS, pull, wants.return_force, "N", guard=True,
+        HOLDS, pull, wants.return_spring_force, "N", guard=True,
         text="The engaged magnet is stronger than the return springs; otherwise nothing presses the pack",
         source=f"{S4}, section 6.6",
     )  # fmt: skip
     force = d.derive(
-        "actuation_force", "N", pull - wants.return_force, symbol="F0", needs=HOLDS,
+        "actuation_force", "N", pull - wants.return_spring_force, symbol="F0", needs=HOLDS,
         text="Axial force on the pack: magnet less return springs", source=f"{S4}, section 6.6",
     )  # fmt: skip
     return Magnet(wants, iron, unknowns, shape, force)
@@ -152,7 +166,7 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
         text="Pull on the released armature, across all gaps of the pack", source=f"{S4}, section 6.6",
     )  # fmt: skip
     d.at_least(
-        "pull_in", pull_in, wants.pull_in_margin * (wants.return_force + wants.drag_force), "N",
+        "pull_in", pull_in, wants.pull_in_margin * (wants.return_spring_force + wants.release_drag_force), "N",
         text="The magnet draws the released armature in", source=f"{S4}, section 6.6",
     )  # fmt: skip
     d.derive(
@@ -161,14 +175,14 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     )  # fmt: skip
     around = coil_blocks.Surroundings(
         ambient_temperature=duty.ambient_temperature,
-        temperature_limit=unknowns.wire.insulation_temperature,
+        temperature_limit=unknowns.winding_wire.insulation_temperature,
         heat_transfer=iron.still_heat_transfer,
         surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
-        other_heat=heat.hourly_heat(friction_work, duty.switching_rate),
+        other_heat=heat.hourly_heat(friction_work, duty.engagements_per_hour),
     )
     copper_section = coil_blocks.declare_winding(d, iron, unknowns, ampere_turns, shape.inner_pole_radius, around)
     _declare_remarks(d, wants)
-    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.height / 2, copper_section)
+    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, copper_section)
     return pot_magnet.magnet_mass(duty.steel_density, shape, copper)
 
 
@@ -181,7 +195,7 @@ def _declare_remarks(d: Declaration, wants: MagnetRequirements) -> None:
     )
     d.advise(
         "no_return_springs",
-        wants.return_force <= 0,
+        wants.return_spring_force <= 0,
         "without return springs nothing draws the armature back: the plates drag after release",
         source=f"{S4}, section 6.6",
     )

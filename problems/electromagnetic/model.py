@@ -98,7 +98,7 @@ class ElectromagneticClutch(DesignProblem):
     def _declare_multi_plate(self, d: Declaration) -> None:
         lubrication = plate_pack.declare_lubrication(d)
         duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
-        options = plate_pack.declare_pack_options(d)
+        options = d.block(plate_pack.PackOptions)
         wants = plate_pack.declare_pack_requirements(d, options, lubrication)
         ring = friction.declare_ring(d, 0.10, 0.25)
         magnet = magnet_blocks.declare_magnet(d)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import plates, startup
 from problems.mechanics import ring as ring_formulas
+from synth.declaration import Block, Declaration, Option, Requirement
 from synth.errors import InputError
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
 
 # What a sheet for several families may state, as far as a family uses it.
 COMMON = (
@@ -35,34 +33,178 @@ COMMON = (
 )
 
 
-@dataclass(frozen=True)
-class Duty:
+class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
-    load_torque: Any
-    driver_speed: Any
-    driven_inertia: Any
-    load_kind: str
-    friction_basis: str
-    cooling: str
-    allow_obsolete: str
-    safety_factor: Any
-    switching_factor: Any
-    speed_factor: Any
-    switching_rate: Any
-    startup_torque: Any
-    overload_torque: Any
-    actuation_force_limit: Any
-    outer_diameter_limit: Any
-    length_limit: Any
-    slip_time_limit: Any
-    jerk_limit: Any
-    acceleration_limit: Any
-    ambient_temperature: Any
-    heat_transfer: Any
-    steel_density: Any
-    steel_specific_heat: Any
-    plate_gap: Any
+    load_kind = Option(
+        startup.LOAD_KINDS,
+        "reactive",
+        symbol="load",
+        text="reactive: the load only resists, still until the clutch moves it; active: it acts from the start",
+        source=f"{S1}, hoisted weight",
+    )
+    friction_basis = Option(
+        ("nominal", "worst_case"),
+        "nominal",
+        symbol="basis",
+        text="nominal: mu_dynamic everywhere; worst_case: mu_min where much friction is needed, mu_max where it harms",
+        source="scatter band of the friction pair",
+    )
+    cooling = Option(
+        table="cooling_options",
+        symbol="cool",
+        text="How heat leaves the clutch; gives the default of heat_transfer",
+        source=f"{S0}, cooling of the plates",
+    )
+    allow_obsolete = Option(
+        ("no", "yes"),
+        "no",
+        symbol="obs",
+        text="yes: also friction pairs that are not allowed in new designs (asbestos), to re-compute old machines",
+        source="table friction_materials",
+    )
+    load_torque = Requirement(
+        "N*m", lower=0.1, upper=1e6, symbol="M_load", text="Torque of the load during start-up", source=f"{S1}, M2"
+    )
+    driver_speed = Requirement(
+        "1/min",
+        lower=0.1,
+        upper=60000,
+        symbol="omega1",
+        text="Speed of the driving side, constant during start-up",
+        source=f"{S1}, omega1",
+    )
+    driven_inertia = Requirement(
+        "kg*m2", lower=1e-6, upper=1e5, symbol="J2", text="Driven inertia at the clutch shaft", source=f"{S1}, J2"
+    )
+    safety_factor = Requirement(
+        "-", 1.5, lower=1, upper=5, symbol="n", text="Shock factor of the load", source=f"{S1}, n"
+    )
+    switching_factor = Requirement(
+        "-",
+        1.0,
+        lower=0.4,
+        upper=1,
+        symbol="c_m",
+        text="Engagement-count factor; 1 up to about 50 engagements per hour",
+        source=f"{S1}, c_m",
+    )
+    speed_factor = Requirement(
+        "-", 0.85, lower=0.5, upper=1.5, symbol="c_v", text="Sliding-speed factor", source=f"{S1}, c_v"
+    )
+    engagements_per_hour = Requirement(
+        "1/h", 50, lower=0.001, upper=36000, symbol="nu_h", text="Switching rate", source=f"{S1}, m_k"
+    )
+    startup_torque = Requirement(
+        "N*m",
+        lower=0.1,
+        upper=1e6,
+        optional=True,
+        symbol="T_start",
+        text="Torque to which the actuator is limited during start-up; above load_torque",
+        source=f"{S1}, start-up with 1080 N m",
+    )
+    overload_torque = Requirement(
+        "N*m",
+        lower=0.1,
+        upper=1e7,
+        optional=True,
+        symbol="M_max",
+        text="The clutch must slip at this torque",
+        source=f"{S1}, clutch as safety element",
+    )
+    actuation_force_limit = Requirement(
+        "N",
+        lower=1,
+        upper=1e6,
+        optional=True,
+        symbol="F_max",
+        text="Largest force of the actuator",
+        source="requirement of the drive",
+    )
+    outer_diameter_limit = Requirement(
+        "mm",
+        lower=5,
+        upper=5000,
+        optional=True,
+        symbol="D_max",
+        text="Largest outside diameter",
+        source="requirement of the drive",
+    )
+    length_limit = Requirement(
+        "mm",
+        lower=2,
+        upper=5000,
+        optional=True,
+        symbol="L_max",
+        text="Largest length, without actuator and end stops",
+        source="requirement of the drive",
+    )
+    slip_time_limit = Requirement(
+        "s",
+        4,
+        lower=0.01,
+        upper=600,
+        symbol="t_slip_max",
+        text="Longest slip of one engagement",
+        source=f"{TYPICAL} of the reference model",
+    )
+    jerk_limit = Requirement(
+        "rad/s3",
+        lower=0.01,
+        upper=1e6,
+        optional=True,
+        symbol="jerk_max",
+        text="Largest jerk of the driven side: softness of the start",
+        source="requirement of the drive",
+    )
+    acceleration_limit = Requirement(
+        "rad/s2",
+        lower=0.01,
+        upper=1e6,
+        optional=True,
+        symbol="acc_max",
+        text="Largest acceleration, at the end of the ramp or of slip",
+        source="requirement of the drive",
+    )
+    ambient_temperature = Requirement(
+        "degC",
+        40,
+        lower=-60,
+        upper=150,
+        symbol="T_amb",
+        text="Temperature of the surroundings",
+        source=f"{TYPICAL} of the reference model",
+    )
+    heat_transfer = Requirement(
+        "W/(m2*K)",
+        lower=1,
+        upper=5000,
+        symbol="h_conv",
+        text=f"Surface coefficient; by default that of the cooling chosen ({TYPICAL})",
+        source="table cooling_options",
+    )
+    steel_density = Requirement(
+        "kg/m3",
+        7850,
+        lower=1000,
+        upper=20000,
+        symbol="rho_steel",
+        text="Density of the steel plates",
+        source="material constant",
+    )
+    steel_specific_heat = Requirement(
+        "J/(kg*K)",
+        480,
+        lower=100,
+        upper=2000,
+        symbol="cp_steel",
+        text="Specific heat of the steel plates",
+        source="material constant",
+    )
+    plate_gap = Requirement(
+        "mm", 0.3, lower=0.05, upper=3, symbol="gap", text=f"Release gap per surface ({TYPICAL})", source=TYPICAL
+    )
 
 
 def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) -> Duty:
@@ -87,141 +229,18 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
     InputError
         When the cooling does not go with the lubrication.
     """
-    load_kind = d.option(
-        "load_kind",
-        startup.LOAD_KINDS,
-        "reactive",
-        symbol="load",
-        text="reactive: the load only resists, still until the clutch moves it; active: it acts from the start",
-        source=f"{S1}, hoisted weight",
+    duty = d.block(
+        Duty,
+        cooling=cooling_default,
+        heat_transfer=lambda duty: d.row("cooling_options", duty.cooling).heat_transfer,
     )
-    friction_basis = d.option(
-        "friction_basis",
-        ("nominal", "worst_case"),
-        "nominal",
-        symbol="basis",
-        text="nominal: mu_dynamic everywhere; worst_case: mu_min where much friction is needed, mu_max where it harms",
-        source="scatter band of the friction pair",
-    )
-    cooling = d.option(
-        "cooling",
-        d.designations("cooling_options"),
-        cooling_default,
-        symbol="cool",
-        text="How heat leaves the clutch; gives the default of heat_transfer",
-        source=f"{S0}, cooling of the plates",
-    )
-    allow_obsolete = d.option(
-        "allow_obsolete",
-        ("no", "yes"),
-        "no",
-        symbol="obs",
-        text="yes: also friction pairs that are not allowed in new designs (asbestos), to re-compute old machines",
-        source="table friction_materials",
-    )
-    cooling_row = d.row("cooling_options", cooling)
-    if lubrication is not None and _row_text(d, "cooling_options", cooling, "lubrication") not in ("", lubrication):
-        fitting = [
-            c
-            for c in d.designations("cooling_options")
-            if _row_text(d, "cooling_options", c, "lubrication") == lubrication
-        ]
+    if lubrication is not None and _lubrication_of(d, duty.cooling) not in ("", lubrication):
+        fitting = [c for c in d.designations("cooling_options") if _lubrication_of(d, c) == lubrication]
         raise InputError(
             "lubrication_mismatch",
-            f"cooling {cooling}",
+            f"cooling {duty.cooling}",
             f"a cooling for lubrication {lubrication}: {' or '.join(fitting)}",
         )
-    load_torque = d.requirement(
-        "load_torque", "N*m", lower=0.1, upper=1e6, symbol="M_load",
-        text="Torque of the load during start-up", source=f"{S1}, M2",
-    )  # fmt: skip
-    driver_speed = d.requirement(
-        "driver_speed", "1/min", lower=0.1, upper=60000, symbol="omega1",
-        text="Speed of the driving side, constant during start-up", source=f"{S1}, omega1",
-    )  # fmt: skip
-    driven_inertia = d.requirement(
-        "driven_inertia", "kg*m2", lower=1e-6, upper=1e5, symbol="J2",
-        text="Driven inertia at the clutch shaft", source=f"{S1}, J2",
-    )  # fmt: skip
-    duty = Duty(
-        load_torque=load_torque,
-        driver_speed=driver_speed,
-        driven_inertia=driven_inertia,
-        load_kind=load_kind,
-        friction_basis=friction_basis,
-        cooling=cooling,
-        allow_obsolete=allow_obsolete,
-        safety_factor=d.requirement(
-            "safety_factor", "-", 1.5, lower=1, upper=5, symbol="n",
-            text="Shock factor of the load", source=f"{S1}, n",
-        ),
-        switching_factor=d.requirement(
-            "switching_factor", "-", 1.0, lower=0.4, upper=1, symbol="c_m",
-            text="Engagement-count factor; 1 up to about 50 engagements per hour", source=f"{S1}, c_m",
-        ),
-        speed_factor=d.requirement(
-            "speed_factor", "-", 0.85, lower=0.5, upper=1.5, symbol="c_v",
-            text="Sliding-speed factor", source=f"{S1}, c_v",
-        ),
-        switching_rate=d.requirement(
-            "engagements_per_hour", "1/h", 50, lower=0.001, upper=36000, symbol="nu_h",
-            text="Switching rate", source=f"{S1}, m_k",
-        ),
-        startup_torque=d.requirement(
-            "startup_torque", "N*m", lower=0.1, upper=1e6, optional=True, symbol="T_start",
-            text="Torque to which the actuator is limited during start-up; above load_torque",
-            source=f"{S1}, start-up with 1080 N m",
-        ),
-        overload_torque=d.requirement(
-            "overload_torque", "N*m", lower=0.1, upper=1e7, optional=True, symbol="M_max",
-            text="The clutch must slip at this torque", source=f"{S1}, clutch as safety element",
-        ),
-        actuation_force_limit=d.requirement(
-            "actuation_force_limit", "N", lower=1, upper=1e6, optional=True, symbol="F_max",
-            text="Largest force of the actuator", source="requirement of the drive",
-        ),
-        outer_diameter_limit=d.requirement(
-            "outer_diameter_limit", "mm", lower=5, upper=5000, optional=True, symbol="D_max",
-            text="Largest outside diameter", source="requirement of the drive",
-        ),
-        length_limit=d.requirement(
-            "length_limit", "mm", lower=2, upper=5000, optional=True, symbol="L_max",
-            text="Largest length, without actuator and end stops", source="requirement of the drive",
-        ),
-        slip_time_limit=d.requirement(
-            "slip_time_limit", "s", 4, lower=0.01, upper=600, symbol="t_slip_max",
-            text="Longest slip of one engagement", source=f"{TYPICAL} of the reference model",
-        ),
-        jerk_limit=d.requirement(
-            "jerk_limit", "rad/s3", lower=0.01, upper=1e6, optional=True, symbol="jerk_max",
-            text="Largest jerk of the driven side: softness of the start", source="requirement of the drive",
-        ),
-        acceleration_limit=d.requirement(
-            "acceleration_limit", "rad/s2", lower=0.01, upper=1e6, optional=True, symbol="acc_max",
-            text="Largest acceleration, at the end of the ramp or of slip", source="requirement of the drive",
-        ),
-        ambient_temperature=d.requirement(
-            "ambient_temperature", "degC", 40, lower=-60, upper=150, symbol="T_amb",
-            text="Temperature of the surroundings", source=f"{TYPICAL} of the reference model",
-        ),
-        heat_transfer=d.requirement(
-            "heat_transfer", "W/(m2*K)", cooling_row.heat_transfer, lower=1, upper=5000, symbol="h_conv",
-            text=f"Surface coefficient; by default that of the cooling chosen ({TYPICAL})",
-            source="table cooling_options",
-        ),
-        steel_density=d.requirement(
-            "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_steel",
-            text="Density of the steel plates", source="material constant",
-        ),
-        steel_specific_heat=d.requirement(
-            "steel_specific_heat", "J/(kg*K)", 480, lower=100, upper=2000, symbol="cp_steel",
-            text="Specific heat of the steel plates", source="material constant",
-        ),
-        plate_gap=d.requirement(
-            "plate_gap", "mm", 0.3, lower=0.05, upper=3, symbol="gap",
-            text=f"Release gap per surface ({TYPICAL})", source=TYPICAL,
-        ),
-    )  # fmt: skip
     if duty.startup_torque is not None:
         d.refuse(
             "never_starts",
@@ -236,7 +255,7 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
             "a brake or backstop that is released then makes it a reactive load with less heat",
             source=f"{S1}, start-up; friction work of the two kinds of load",
         )
-    if cooling == "fan":
+    if duty.cooling == "fan":
         d.advise(
             "fan_cooling",
             True,
@@ -246,10 +265,9 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
     return duty
 
 
-def _row_text(d: Declaration, table: str, designation: str, column: str) -> str:
-    """Cell of a text column; empty where a user's own table does not have it."""
-    found = d.catalogs.table(table)
-    return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+def _lubrication_of(d: Declaration, cooling: str) -> str:
+    """Lubrication that a cooling belongs to; empty where it goes with any."""
+    return d.cell("cooling_options", cooling, "lubrication")
 
 
 def declare_ramp_time(d: Declaration) -> Any:

@@ -240,7 +240,7 @@ def declare_startup(d: Declaration, duty: Duty, torques: Torques, ramp_time: Any
         text="Slip ends soon enough", source="requirement of the drive",
     )  # fmt: skip
     d.at_most(
-        "cycle_time", slip_time, heat.cycle_time(duty.switching_rate), "s",
+        "cycle_time", slip_time, heat.cycle_time(duty.engagements_per_hour), "s",
         text="Slip ends before the next engagement", source=f"{S1}, repeated switching",
     )  # fmt: skip
     if duty.jerk_limit is not None:
@@ -301,7 +301,7 @@ def declare_surface_loads(
     d.derive("friction_area", "cm2", area, symbol="A", text="All friction surfaces together", source=f"{S1}, A")
     hourly = d.derive(
         "hourly_heat", "J/(mm2*h)",
-        heat.specific_hourly_heat(start.friction_work, duty.switching_rate, rubbing_area), symbol="w",
+        heat.specific_hourly_heat(start.friction_work, duty.engagements_per_hour, rubbing_area), symbol="w",
         text="Friction work per hour and area", source=f"{S1}, w",
     )  # fmt: skip
     single = d.derive(
@@ -358,7 +358,7 @@ def advise_frequent_switching(d: Declaration, duty: Duty, heat_capacity: Any, co
     """
     d.advise(
         "frequent_switching",
-        heat.cycle_time(duty.switching_rate)
+        heat.cycle_time(duty.engagements_per_hour)
         < heat.thermal_time_constant(heat_capacity, duty.heat_transfer, cooled_area),
         "the next engagement comes before the plates have cooled down (the cycle is shorter than their thermal time "
         "constant): at this switching rate the cooling decides; best is to avoid the heat",

@@ -3,39 +3,114 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from problems.friction.sources import S4, TYPICAL
 from problems.mechanics import magnetics
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration, Part
+from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 
 
-@dataclass(frozen=True)
-class CoilRequirements:
+class CoilRequirements(Block):
     """Requirements of a coil and its iron, all in SI."""
 
-    iron_flux_limit: Any
-    leakage_factor: Any
-    iron_reluctance: Any
-    iron_saturation: Any
-    winding_factor: Any
-    voltage_limit: Any
-    current_density_limit: Any
-    power_limit: Any
-    still_heat_transfer: Any
+    iron_flux_limit = Requirement(
+        "T",
+        1.5,
+        lower=0.1,
+        upper=1.9,
+        symbol="B_fe_max",
+        text="Largest flux density of the iron",
+        source=f"{S4}, section 6.1",
+    )
+    leakage_factor = Requirement(
+        "-",
+        1.15,
+        lower=1,
+        upper=3,
+        symbol="leak",
+        text="Flux of the iron outside over flux of the working gap",
+        source=f"{S4} [P4]",
+    )
+    iron_reluctance = Requirement(
+        "A/(m*T)",
+        160,
+        lower=1,
+        upper=1e5,
+        symbol="a_fe",
+        text="Froehlich coefficient of the iron, by default mild steel",
+        source=f"{S4} [P3]",
+    )
+    iron_saturation = Requirement(
+        "T",
+        2.0,
+        lower=1.6,
+        upper=2.5,
+        symbol="B_s",
+        text="Flux density that saturated iron does not reach",
+        source=f"{S4} [P3]",
+    )
+    winding_factor = Requirement(
+        "-",
+        0.85,
+        lower=0.2,
+        upper=1.15,
+        symbol="k_wind",
+        text=f"Turns over window area per square of the wire ({TYPICAL})",
+        source=f"{S4} [P6]",
+    )
+    coil_voltage_limit = Requirement(
+        "V", 24, lower=1, upper=1000, symbol="U_max", text="Voltage of the supply", source=f"{S4}, section 6.1"
+    )
+    current_density_limit = Requirement(
+        "A/mm2",
+        5,
+        lower=0.1,
+        upper=50,
+        symbol="J_max",
+        text="Largest current density of the copper",
+        source=f"{S4}, section 6.1",
+    )
+    coil_power_limit = Requirement(
+        "W",
+        60,
+        lower=0.1,
+        upper=1e5,
+        symbol="P_coil_max",
+        text="Largest power of the coil",
+        source=f"{S4}, section 6.1; its source takes about 50 W",
+    )
+    still_heat_transfer = Requirement(
+        "W/(m2*K)",
+        12,
+        lower=1,
+        upper=200,
+        symbol="h_still",
+        text=f"Surface coefficient of a body at rest, convection and radiation ({TYPICAL})",
+        source=f"{S4} [P7]",
+    )
 
 
-@dataclass(frozen=True)
-class CoilUnknowns:
+class CoilUnknowns(Block):
     """What the search decides of a coil."""
 
-    length: Any
-    height: Any
-    thickness: Any
-    flux_density: Any
-    wire: Part
+    coil_length = Variable(
+        "mm", 5, 100, grid=1, symbol="l_m", text="Axial length of the coil window", source=f"{S4} [P6]"
+    )
+    coil_height = Variable(
+        "mm", 5, 80, grid=1, symbol="h_c", text="Radial height of the coil window", source=f"{S4} [P6]"
+    )
+    yoke_thickness = Variable(
+        "mm", 3, 40, grid=0.5, symbol="t_y", text="Thickness of the iron around the coil", source=f"{S4} [P4]"
+    )
+    flux_density = Variable(
+        "T",
+        0.02,
+        1.6,
+        symbol="B",
+        text="Flux density in the working gap; ampere_turns follow from it",
+        source=f"{S4} [P4], section 8",
+    )
+    winding_wire = Slot("winding_wire", symbol="wire", text="Enamelled copper wire", source="table winding_wire")
 
 
 @dataclass(frozen=True)
@@ -55,75 +130,13 @@ class Surroundings:
 
 def declare_coil_requirements(d: Declaration) -> CoilRequirements:
     """Declare the requirements of the block coil and the refusals that concern them alone."""
-    wants = CoilRequirements(
-        iron_flux_limit=d.requirement(
-            "iron_flux_limit", "T", 1.5, lower=0.1, upper=1.9, symbol="B_fe_max",
-            text="Largest flux density of the iron", source=f"{S4}, section 6.1",
-        ),
-        leakage_factor=d.requirement(
-            "leakage_factor", "-", 1.15, lower=1, upper=3, symbol="leak",
-            text="Flux of the iron outside over flux of the working gap", source=f"{S4} [P4]",
-        ),
-        iron_reluctance=d.requirement(
-            "iron_reluctance", "A/(m*T)", 160, lower=1, upper=1e5, symbol="a_fe",
-            text="Froehlich coefficient of the iron, by default mild steel", source=f"{S4} [P3]",
-        ),
-        iron_saturation=d.requirement(
-            "iron_saturation", "T", 2.0, lower=1.6, upper=2.5, symbol="B_s",
-            text="Flux density that saturated iron does not reach", source=f"{S4} [P3]",
-        ),
-        winding_factor=d.requirement(
-            "winding_factor", "-", 0.85, lower=0.2, upper=1.15, symbol="k_wind",
-            text=f"Turns over window area per square of the wire ({TYPICAL})", source=f"{S4} [P6]",
-        ),
-        voltage_limit=d.requirement(
-            "coil_voltage_limit", "V", 24, lower=1, upper=1000, symbol="U_max",
-            text="Voltage of the supply", source=f"{S4}, section 6.1",
-        ),
-        current_density_limit=d.requirement(
-            "current_density_limit", "A/mm2", 5, lower=0.1, upper=50, symbol="J_max",
-            text="Largest current density of the copper", source=f"{S4}, section 6.1",
-        ),
-        power_limit=d.requirement(
-            "coil_power_limit", "W", 60, lower=0.1, upper=1e5, symbol="P_coil_max",
-            text="Largest power of the coil", source=f"{S4}, section 6.1; its source takes about 50 W",
-        ),
-        still_heat_transfer=d.requirement(
-            "still_heat_transfer", "W/(m2*K)", 12, lower=1, upper=200, symbol="h_still",
-            text=f"Surface coefficient of a body at rest, convection and radiation ({TYPICAL})", source=f"{S4} [P7]",
-        ),
-    )  # fmt: skip
+    wants = d.block(CoilRequirements)
     d.refuse(
         "iron_saturates",
         wants.iron_flux_limit >= wants.iron_saturation,
         "an iron_flux_limit below iron_saturation, which no field reaches",
     )
     return wants
-
-
-def declare_coil_unknowns(d: Declaration) -> CoilUnknowns:
-    """Declare window, yoke and flux density of a coil, and the slot winding_wire."""
-    return CoilUnknowns(
-        length=d.variable(
-            "coil_length", "mm", 5, 100, grid=1, symbol="l_m",
-            text="Axial length of the coil window", source=f"{S4} [P6]",
-        ),
-        height=d.variable(
-            "coil_height", "mm", 5, 80, grid=1, symbol="h_c",
-            text="Radial height of the coil window", source=f"{S4} [P6]",
-        ),
-        thickness=d.variable(
-            "yoke_thickness", "mm", 3, 40, grid=0.5, symbol="t_y",
-            text="Thickness of the iron around the coil", source=f"{S4} [P4]",
-        ),
-        flux_density=d.variable(
-            "flux_density", "T", 0.02, 1.6, symbol="B",
-            text="Flux density in the working gap; ampere_turns follow from it", source=f"{S4} [P4], section 8",
-        ),
-        wire=d.part(
-            "winding_wire", "winding_wire", symbol="wire", text="Enamelled copper wire", source="table winding_wire"
-        ),
-    )  # fmt: skip
 
 
 def declare_saturation(d: Declaration, wants: CoilRequirements, iron_flux_density: Any) -> None:
@@ -164,9 +177,9 @@ def declare_winding(
     symbol
         Copper section of all turns [m2].
     """
-    wire = unknowns.wire
+    wire = unknowns.winding_wire
     needs = "iron_saturation"
-    window = unknowns.length * unknowns.height
+    window = unknowns.coil_length * unknowns.coil_height
     # Of one row of the table alone, so that it is known per wire.
     copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
     turns = d.derive(
@@ -186,7 +199,9 @@ def declare_winding(
         "current_density", "A/mm2", ampere_turns / (copper_share * window), symbol="J_c", needs=needs,
         text="Current per copper area", source=f"{S4} [P6]",
     )  # fmt: skip
-    cold = magnetics.cold_copper_loss(ampere_turns, bore_radius, unknowns.height, unknowns.length, copper_share)
+    cold = magnetics.cold_copper_loss(
+        ampere_turns, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
+    )
     runaway = magnetics.runaway_loss(around.heat_transfer, around.surface)
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
     brushes = around.brush_drop * current
@@ -203,7 +218,9 @@ def declare_winding(
         text="Coil and body over ambient, steady", source=f"{S4} [P7]",
     )  # fmt: skip
     # R20 I with the turns cancelled, so that bounds use the ampere-turns once.
-    cold_voltage = magnetics.coil_resistance(bore_radius + unknowns.height / 2, 1.0, wire.copper_area) * ampere_turns
+    cold_voltage = (
+        magnetics.coil_resistance(bore_radius + unknowns.coil_height / 2, 1.0, wire.copper_area) * ampere_turns
+    )
     voltage = d.derive(
         "coil_voltage", "V",
         cold_voltage * (ratio + resistance_rise) + around.brush_drop,
@@ -220,11 +237,11 @@ def declare_winding(
         text="Nothing in the body gets too hot", source=f"{S4} [P7]",
     )  # fmt: skip
     d.at_most(
-        "coil_power", power, wants.power_limit, "W",
+        "coil_power", power, wants.coil_power_limit, "W",
         text="The supply gives the power", source="requirement of the drive",
     )  # fmt: skip
     d.at_most(
-        "coil_voltage", voltage, wants.voltage_limit, "V",
+        "coil_voltage", voltage, wants.coil_voltage_limit, "V",
         text="The supply gives the voltage, also for the hot coil", source="requirement of the drive",
     )  # fmt: skip
     d.at_most(

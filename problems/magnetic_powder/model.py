@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from problems.magnetic_powder import curves as powder_curves
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
 from synth import DesignProblem
-from synth.declaration import Choice, Declaration, Part
+from synth.declaration import Block, Choice, Declaration, Part, Requirement
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,27 +22,155 @@ GRAVITY = 9.80665  # [m/s2]
 SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
 
 
-@dataclass(frozen=True)
-class Wants:
+class Wants(Block):
     """Requirements beside those of the coil, all in SI; None where an optional one is not given."""
 
-    steel_density: Any
-    torque: Any
-    reserve: Any
-    driver_speed: Any
-    slip_speed: Any
-    ambient_temperature: Any
-    powder_flux_limit: Any
-    brush_voltage: Any
-    rotating_heat_transfer: Any
-    fill_factor: Any
-    web_thickness: Any
-    air_gap: Any
-    drum_thickness: Any
-    shaft_radius: Any
-    powder_mass_limit: Any
-    outer_diameter_limit: Any
-    length_limit: Any
+    steel_density = Requirement(
+        "kg/m3",
+        7850,
+        lower=1000,
+        upper=20000,
+        symbol="rho_steel",
+        text="Density of rotor, drum and body",
+        source="material constant",
+    )
+    required_torque = Requirement(
+        "N*m",
+        lower=0.1,
+        upper=1e5,
+        symbol="M_req",
+        text="Torque that the clutch has to carry, slipping or not",
+        source="requirement of the drive",
+    )
+    torque_reserve = Requirement(
+        "-",
+        1.2,
+        lower=1,
+        upper=5,
+        symbol="k_M",
+        text="Torque at full current over required_torque",
+        source=f"{S4}, section 6.1",
+    )
+    driver_speed = Requirement(
+        "1/min",
+        1432.39,
+        lower=1,
+        upper=60000,
+        symbol="omega_in",
+        text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil",
+        source=f"{S4}, section 6.1",
+    )
+    slip_speed = Requirement(
+        "1/min",
+        9.549,
+        lower=0,
+        upper=60000,
+        symbol="omega_slip",
+        text=f"Continuous slip ({TYPICAL}, 1 rad/s)",
+        source=f"{S4} [P9]",
+    )
+    ambient_temperature = Requirement(
+        "degC",
+        40,
+        lower=-60,
+        upper=150,
+        symbol="T_amb",
+        text="Temperature of the surroundings",
+        source=f"{S4}, section 6.1",
+    )
+    powder_flux_limit = Requirement(
+        "T",
+        1.0,
+        lower=0.05,
+        upper=1.6,
+        symbol="B_max",
+        text="Largest flux density in the powder",
+        source=f"{S4}, section 6.1",
+    )
+    brush_voltage = Requirement(
+        "V",
+        1,
+        lower=0,
+        upper=10,
+        symbol="U_brush",
+        text=f"Drop of one brush contact ({TYPICAL}); rotating coil only",
+        source=f"{S4} [P8]",
+    )
+    rotating_heat_transfer = Requirement(
+        "-",
+        3,
+        lower=0,
+        upper=100,
+        symbol="h_rot",
+        text=f"W/(m2 K) per (m/s)**0.8 of the rim of a rotating coil body ({TYPICAL})",
+        source=f"{S4} [P7]",
+    )
+    fill_factor = Requirement(
+        "-",
+        0.6,
+        lower=0.05,
+        upper=1,
+        symbol="fill",
+        text=f"Part of the gap that powder fills ({TYPICAL})",
+        source=f"{S4} [P10]",
+    )
+    rotor_web_thickness = Requirement(
+        "mm", 8, lower=1, upper=200, symbol="t_web", text=f"Web of the rotor ({TYPICAL})", source=f"{S4} [P10]"
+    )
+    air_gap = Requirement(
+        "mm",
+        0.4,
+        lower=0.05,
+        upper=5,
+        symbol="delta_a",
+        text=f"Gap between drum and stationary body ({TYPICAL})",
+        source=f"{S4} [P4]",
+    )
+    drum_thickness = Requirement(
+        "mm",
+        6,
+        lower=0.5,
+        upper=50,
+        symbol="t_drum",
+        text=f"Drum between powder and stationary body ({TYPICAL})",
+        source=f"{S4} [P4]",
+    )
+    shaft_radius = Requirement(
+        "mm",
+        12,
+        lower=1,
+        upper=200,
+        symbol="r_shaft",
+        text=f"Shaft with hub inside the rotor ({TYPICAL})",
+        source=f"{S4}, section 6.1",
+    )
+    powder_mass_limit = Requirement(
+        "kg",
+        0.40,
+        lower=0.01,
+        upper=50,
+        symbol="m_powder_max",
+        text="Largest mass of powder",
+        source=f"{S4}, 250 to 400 g",
+    )
+    outer_diameter_limit = Requirement(
+        "mm",
+        lower=20,
+        upper=2000,
+        optional=True,
+        symbol="D_max",
+        text="Largest outside diameter",
+        source="requirement of the drive",
+    )
+    length_limit = Requirement(
+        "mm",
+        lower=10,
+        upper=2000,
+        optional=True,
+        symbol="L_max",
+        text="Largest length of the body",
+        source="requirement of the drive",
+    )
 
 
 class MagneticPowderClutch(DesignProblem):
@@ -71,7 +198,7 @@ class MagneticPowderClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        wants = _declare_requirements(d)
+        wants = d.block(Wants)
         iron = coil_blocks.declare_coil_requirements(d)
         radius = d.variable(
             "gap_radius", "mm", 20, 150, grid=1, symbol="r_g",
@@ -85,7 +212,7 @@ class MagneticPowderClutch(DesignProblem):
             "powder_gap", "mm", 1, 1.5, grid=0.05, symbol="g",
             text="Gap between rotor and drum", source=f"{S4}, 1 to 1.5 mm",
         )  # fmt: skip
-        unknowns = coil_blocks.declare_coil_unknowns(d)
+        unknowns = d.block(coil_blocks.CoilUnknowns)
         coil = d.choice(
             "coil", ("stationary", "rotating"), symbol="lay",
             text="stationary: a second air gap, no slip rings; rotating: slip rings, the coil turns with the driver",
@@ -96,17 +223,17 @@ class MagneticPowderClutch(DesignProblem):
             gap_radius=radius,
             pole_length=pole,
             gap=gap,
-            coil_length=unknowns.length,
-            coil_height=unknowns.height,
-            thickness=unknowns.thickness,
+            coil_length=unknowns.coil_length,
+            coil_height=unknowns.coil_height,
+            thickness=unknowns.yoke_thickness,
             drum=coil.select({"stationary": wants.drum_thickness, "rotating": 0.0}),
             air_gap=coil.select({"stationary": wants.air_gap, "rotating": 0.0}),
         )
-        rim = powder.rim_section_width(radius, unknowns.thickness)
+        rim = powder.rim_section_width(radius, unknowns.yoke_thickness)
         _declare_torque(d, wants, part, unknowns.flux_density, layout)
         ampere_turns = _declare_circuit(d, wants, iron, part, unknowns.flux_density, layout, rim)
         slip_heat = d.derive(
-            "slip_heat", "W", wants.torque * wants.slip_speed, symbol="P_slip",
+            "slip_heat", "W", wants.required_torque * wants.slip_speed, symbol="P_slip",
             text="Heat of continuous slip under required_torque", source=f"{S4} [P9]",
         )  # fmt: skip
         moving = magnetics.heat_transfer_in_motion(
@@ -114,7 +241,7 @@ class MagneticPowderClutch(DesignProblem):
         )
         around = coil_blocks.Surroundings(
             ambient_temperature=wants.ambient_temperature,
-            temperature_limit=np.minimum(unknowns.wire.insulation_temperature, part.temp_max),
+            temperature_limit=np.minimum(unknowns.winding_wire.insulation_temperature, part.temp_max),
             heat_transfer=coil.select({"stationary": iron.still_heat_transfer, "rotating": moving}),
             surface=magnetics.cylinder_surface(layout.outer_radius, layout.length),
             other_heat=slip_heat,
@@ -152,79 +279,6 @@ class MagneticPowderClutch(DesignProblem):
         return frames
 
 
-def _declare_requirements(d: Declaration) -> Wants:
-    return Wants(
-        steel_density=d.requirement(
-            "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_steel",
-            text="Density of rotor, drum and body", source="material constant",
-        ),
-        torque=d.requirement(
-            "required_torque", "N*m", lower=0.1, upper=1e5, symbol="M_req",
-            text="Torque that the clutch has to carry, slipping or not", source="requirement of the drive",
-        ),
-        reserve=d.requirement(
-            "torque_reserve", "-", 1.2, lower=1, upper=5, symbol="k_M",
-            text="Torque at full current over required_torque", source=f"{S4}, section 6.1",
-        ),
-        driver_speed=d.requirement(
-            "driver_speed", "1/min", 1432.39, lower=1, upper=60000, symbol="omega_in",
-            text=f"Speed of the driving side ({TYPICAL}); cools a rotating coil", source=f"{S4}, section 6.1",
-        ),
-        slip_speed=d.requirement(
-            "slip_speed", "1/min", 9.549, lower=0, upper=60000, symbol="omega_slip",
-            text=f"Continuous slip ({TYPICAL}, 1 rad/s)", source=f"{S4} [P9]",
-        ),
-        ambient_temperature=d.requirement(
-            "ambient_temperature", "degC", 40, lower=-60, upper=150, symbol="T_amb",
-            text="Temperature of the surroundings", source=f"{S4}, section 6.1",
-        ),
-        powder_flux_limit=d.requirement(
-            "powder_flux_limit", "T", 1.0, lower=0.05, upper=1.6, symbol="B_max",
-            text="Largest flux density in the powder", source=f"{S4}, section 6.1",
-        ),
-        brush_voltage=d.requirement(
-            "brush_voltage", "V", 1, lower=0, upper=10, symbol="U_brush",
-            text=f"Drop of one brush contact ({TYPICAL}); rotating coil only", source=f"{S4} [P8]",
-        ),
-        rotating_heat_transfer=d.requirement(
-            "rotating_heat_transfer", "-", 3, lower=0, upper=100, symbol="h_rot",
-            text=f"W/(m2 K) per (m/s)**0.8 of the rim of a rotating coil body ({TYPICAL})", source=f"{S4} [P7]",
-        ),
-        fill_factor=d.requirement(
-            "fill_factor", "-", 0.6, lower=0.05, upper=1, symbol="fill",
-            text=f"Part of the gap that powder fills ({TYPICAL})", source=f"{S4} [P10]",
-        ),
-        web_thickness=d.requirement(
-            "rotor_web_thickness", "mm", 8, lower=1, upper=200, symbol="t_web",
-            text=f"Web of the rotor ({TYPICAL})", source=f"{S4} [P10]",
-        ),
-        air_gap=d.requirement(
-            "air_gap", "mm", 0.4, lower=0.05, upper=5, symbol="delta_a",
-            text=f"Gap between drum and stationary body ({TYPICAL})", source=f"{S4} [P4]",
-        ),
-        drum_thickness=d.requirement(
-            "drum_thickness", "mm", 6, lower=0.5, upper=50, symbol="t_drum",
-            text=f"Drum between powder and stationary body ({TYPICAL})", source=f"{S4} [P4]",
-        ),
-        shaft_radius=d.requirement(
-            "shaft_radius", "mm", 12, lower=1, upper=200, symbol="r_shaft",
-            text=f"Shaft with hub inside the rotor ({TYPICAL})", source=f"{S4}, section 6.1",
-        ),
-        powder_mass_limit=d.requirement(
-            "powder_mass_limit", "kg", 0.40, lower=0.01, upper=50, symbol="m_powder_max",
-            text="Largest mass of powder", source=f"{S4}, 250 to 400 g",
-        ),
-        outer_diameter_limit=d.requirement(
-            "outer_diameter_limit", "mm", lower=20, upper=2000, optional=True, symbol="D_max",
-            text="Largest outside diameter", source="requirement of the drive",
-        ),
-        length_limit=d.requirement(
-            "length_limit", "mm", lower=10, upper=2000, optional=True, symbol="L_max",
-            text="Largest length of the body", source="requirement of the drive",
-        ),
-    )  # fmt: skip
-
-
 def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
     torque = d.derive(
@@ -233,7 +287,7 @@ def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any,
         source=f"{S4} [P1], [P5]",
     )  # fmt: skip
     d.at_least(
-        "torque_capacity", torque, wants.reserve * wants.torque, "N*m",
+        "torque_capacity", torque, wants.torque_reserve * wants.required_torque, "N*m",
         text="The clutch carries the torque with its reserve", source=f"{S4}, section 6.3",
     )  # fmt: skip
     d.at_most(
@@ -292,7 +346,7 @@ def _declare_size(
         density, layout.bore, layout.coil_height, layout.coil_length, layout.thickness, layout.length
     )
     copper = magnetics.copper_mass(layout.coil_radius, copper_section)
-    rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.web_thickness)
+    rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.rotor_web_thickness)
     d.derive(
         "input_inertia", "kg*m2",
         coil.select({

@@ -44,7 +44,7 @@ class MultiPlateClutch(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         lubrication = plate_pack.declare_lubrication(d)
         duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
-        options = plate_pack.declare_pack_options(d)
+        options = d.block(plate_pack.PackOptions)
         wants = plate_pack.declare_pack_requirements(d, options, lubrication)
         ring = friction.declare_ring(d, 0.10, 0.25)
         force = self._declare_force(d)

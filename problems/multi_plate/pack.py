@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,37 +14,137 @@ from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
 from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import guide_friction, heat, plates
 from problems.mechanics import ring as ring_formulas
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Option, Requirement
 
 
-@dataclass(frozen=True)
-class PackOptions:
+class PackOptions(Block):
     """Options of a multi-plate pack."""
 
-    guide_model: str
-    guide_series: str
-    release_aid: str
-    spline_choice: str
-    shaft_position: str
+    guide_model = Option(
+        ("series", "cz"),
+        "series",
+        symbol="guide",
+        text="series: friction in the plate guides is computed; cz: the lecture's factor surface_factor instead",
+        source=f"{S0}, eq. (2) to (5); {S1}, c_z",
+    )
+    guide_series = Option(
+        guide_friction.GUIDE_SERIES,
+        "geometric",
+        symbol="gs",
+        text="Torque sum: geometric (5), exponential_form (5'), lipka (5''), exponential_K (10), exact",
+        source=f"{S0}, eq. (5), (10) and appendix",
+    )
+    release_aid = Option(
+        table="release_aids",
+        default="none",
+        symbol="aid",
+        text="What separates the plates of the released pack",
+        source=f"{S0}, release of the plates",
+    )
+    spline_choice = Option(
+        ("free", "catalogue"),
+        "free",
+        symbol="spl",
+        text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
+        source="table splines",
+    )
+    shaft_position = Option(
+        ("horizontal", "vertical"),
+        "horizontal",
+        symbol="pos",
+        text="Position of the shaft",
+        source=f"{S0}, vertical shafts",
+    )
 
 
-@dataclass(frozen=True)
-class PackRequirements:
+class PackRequirements(Block):
     """Requirements of a multi-plate pack, all in SI; None where an optional one is not given."""
 
-    surface_factor: Any
-    guide_friction: Any
-    hub_bore_diameter: Any
-    drag_torque_limit: Any
-    oil_viscosity: Any
-    lug_clearance: Any
-    lug_count: Any
-    lug_height: Any
-    lug_pressure_limit: Any
-    drum_wall: Any
-    plate_effectiveness_min: Any
+    surface_factor = Requirement(
+        "-",
+        lower=0.3,
+        upper=1,
+        symbol="c_z",
+        text="Surface-count factor, used with guide_model cz only; 0.75 belongs to ten surfaces",
+        source=f"{S1}, c_z",
+    )
+    guide_friction = Requirement(
+        "-",
+        0.1,
+        lower=0,
+        upper=0.5,
+        symbol="mu_guide",
+        text="Friction of the plates in their splines",
+        source=f"{S0}, mu1",
+    )
+    hub_bore_diameter = Requirement(
+        "mm",
+        lower=2,
+        upper=700,
+        optional=True,
+        symbol="d_hub_min",
+        text="Least mean diameter 2a of the inner spline: room for the shaft",
+        source="requirement of the drive",
+    )
+    drag_torque_limit = Requirement(
+        "N*m",
+        lower=0.001,
+        upper=1e4,
+        optional=True,
+        symbol="T_drag_max",
+        text="Largest drag of the released clutch",
+        source=f"{S0}, after-running",
+    )
+    oil_viscosity = Requirement(
+        "Pa*s",
+        lower=0,
+        upper=2,
+        symbol="eta_oil",
+        text=f"Dynamic viscosity of the oil, 0 when dry ({TYPICAL})",
+        source=TYPICAL,
+    )
+    lug_clearance = Requirement(
+        "mm",
+        3,
+        lower=0.1,
+        upper=30,
+        symbol="e_lug",
+        text="From the edge of the friction ring to the mean spline radius",
+        source=f"{S0}, example",
+    )
+    lug_count = Requirement(
+        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
+    )
+    lug_height = Requirement(
+        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
+    )
+    lug_pressure_limit = Requirement(
+        "N/mm2",
+        30,
+        lower=1,
+        upper=200,
+        symbol="p_lug_allow",
+        text=f"Pressure of the lugs on the spline flanks; 25 to 40 when hardened ({TYPICAL})",
+        source=TYPICAL,
+    )
+    drum_wall = Requirement(
+        "mm",
+        6,
+        lower=1,
+        upper=50,
+        symbol="s_drum",
+        text=f"Drum outside the mean radius of the outer spline ({TYPICAL})",
+        source=TYPICAL,
+    )
+    plate_effectiveness_min = Requirement(
+        "-",
+        0.5,
+        lower=0.05,
+        upper=1,
+        symbol="eta_min",
+        text="Least torque of the pack over that without guide friction; used with guide_model series",
+        source=f"{S0}, eq. (16)",
+    )
 
 
 @dataclass(frozen=True)
@@ -101,52 +201,6 @@ def declare_lubrication(d: Declaration) -> str:
     )
 
 
-def declare_pack_options(d: Declaration) -> PackOptions:
-    """Declare the options of a multi-plate pack."""
-    return PackOptions(
-        guide_model=d.option(
-            "guide_model",
-            ("series", "cz"),
-            "series",
-            symbol="guide",
-            text="series: friction in the plate guides is computed; cz: the lecture's factor surface_factor instead",
-            source=f"{S0}, eq. (2) to (5); {S1}, c_z",
-        ),
-        guide_series=d.option(
-            "guide_series",
-            guide_friction.GUIDE_SERIES,
-            "geometric",
-            symbol="gs",
-            text="Torque sum: geometric (5), exponential_form (5'), lipka (5''), exponential_K (10), exact",
-            source=f"{S0}, eq. (5), (10) and appendix",
-        ),
-        release_aid=d.option(
-            "release_aid",
-            d.designations("release_aids"),
-            "none",
-            symbol="aid",
-            text="What separates the plates of the released pack",
-            source=f"{S0}, release of the plates",
-        ),
-        spline_choice=d.option(
-            "spline_choice",
-            ("free", "catalogue"),
-            "free",
-            symbol="spl",
-            text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
-            source="table splines",
-        ),
-        shaft_position=d.option(
-            "shaft_position",
-            ("horizontal", "vertical"),
-            "horizontal",
-            symbol="pos",
-            text="Position of the shaft",
-            source=f"{S0}, vertical shafts",
-        ),
-    )
-
-
 def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication: str) -> PackRequirements:
     """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
 
@@ -165,54 +219,9 @@ def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication:
         Symbols of the block.
     """
     series = options.guide_model == "series"
-    pack = PackRequirements(
-        surface_factor=d.requirement(
-            "surface_factor", "-", 1.0 if series else 0.75, lower=0.3, upper=1, symbol="c_z",
-            text="Surface-count factor, used with guide_model cz only; 0.75 belongs to ten surfaces",
-            source=f"{S1}, c_z",
-        ),
-        guide_friction=d.requirement(
-            "guide_friction", "-", 0.1, lower=0, upper=0.5, symbol="mu_guide",
-            text="Friction of the plates in their splines", source=f"{S0}, mu1",
-        ),
-        hub_bore_diameter=d.requirement(
-            "hub_bore_diameter", "mm", lower=2, upper=700, optional=True, symbol="d_hub_min",
-            text="Least mean diameter 2a of the inner spline: room for the shaft", source="requirement of the drive",
-        ),
-        drag_torque_limit=d.requirement(
-            "drag_torque_limit", "N*m", lower=0.001, upper=1e4, optional=True, symbol="T_drag_max",
-            text="Largest drag of the released clutch", source=f"{S0}, after-running",
-        ),
-        oil_viscosity=d.requirement(
-            "oil_viscosity", "Pa*s", 0.02 if lubrication == "oil" else 0.0, lower=0, upper=2, symbol="eta_oil",
-            text=f"Dynamic viscosity of the oil, 0 when dry ({TYPICAL})", source=TYPICAL,
-        ),
-        lug_clearance=d.requirement(
-            "lug_clearance", "mm", 3, lower=0.1, upper=30, symbol="e_lug",
-            text="From the edge of the friction ring to the mean spline radius", source=f"{S0}, example",
-        ),
-        lug_count=d.requirement(
-            "lug_count", "-", 12, lower=3, upper=200, symbol="n_lug",
-            text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL,
-        ),
-        lug_height=d.requirement(
-            "lug_height", "mm", 3, lower=0.5, upper=30, symbol="h_lug",
-            text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL,
-        ),
-        lug_pressure_limit=d.requirement(
-            "lug_pressure_limit", "N/mm2", 30, lower=1, upper=200, symbol="p_lug_allow",
-            text=f"Pressure of the lugs on the spline flanks; 25 to 40 when hardened ({TYPICAL})", source=TYPICAL,
-        ),
-        drum_wall=d.requirement(
-            "drum_wall", "mm", 6, lower=1, upper=50, symbol="s_drum",
-            text=f"Drum outside the mean radius of the outer spline ({TYPICAL})", source=TYPICAL,
-        ),
-        plate_effectiveness_min=d.requirement(
-            "plate_effectiveness_min", "-", 0.5, lower=0.05, upper=1, symbol="eta_min",
-            text="Least torque of the pack over that without guide friction; used with guide_model series",
-            source=f"{S0}, eq. (16)",
-        ),
-    )  # fmt: skip
+    pack = d.block(
+        PackRequirements, surface_factor=1.0 if series else 0.75, oil_viscosity=0.02 if lubrication == "oil" else 0.0
+    )
     if series:
         d.refuse(
             "double_guide_loss",
@@ -564,7 +573,7 @@ def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Star
     rise = d.derive(
         "peak_temperature_rise", "K",
         heat.peak_temperature_rise(
-            start.friction_work, duty.switching_rate, size.heat_capacity, duty.heat_transfer, size.cooled_area
+            start.friction_work, duty.engagements_per_hour, size.heat_capacity, duty.heat_transfer, size.cooled_area
         ),
         symbol="dT_pk",
         text="Steel plates over ambient just after an engagement, in steady repetition",
@@ -576,7 +585,7 @@ def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Star
     )  # fmt: skip
     advise_frequent_switching(d, duty, size.heat_capacity, size.cooled_area)
     mean_rise = heat.mean_temperature_rise(
-        start.friction_work, duty.switching_rate, duty.heat_transfer, size.cooled_area
+        start.friction_work, duty.engagements_per_hour, duty.heat_transfer, size.cooled_area
     )
     d.advise(
         "mean_temperature",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from problems.mechanics import contact as hertz
 from problems.roller_coupling import formulas
 from problems.roller_coupling import motion as roller_motion
 from synth import DesignProblem
-from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Requirement
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,38 +55,226 @@ GUIDES = {
 }
 
 
-@dataclass(frozen=True)
-class Wants:
+class Wants(Block):
     """Requirements, all in SI; None where an optional one is not given."""
 
-    torque: Any
-    speed: Any
-    offset: Any
-    shaft_angle: Any
-    float_distance: Any
-    diameter_limit: Any
-    mass_limit: Any
-    vibration_limit: Any
-    guide_angle: Any
-    roller_gap_min: Any
-    run_in_min: Any
-    run_out_min: Any
-    removal_min: Any
-    pin_gap: Any
-    axial_play: Any
-    rim_min: Any
-    pin_shear_limit: Any
-    pin_stress_limit: Any
-    static_safety: Any
-    oscillation_factor: Any
-    retention_margin: Any
-    ligament_factor: Any
-    roller_modulus: Any
-    roller_poisson: Any
-    crown_radius: Any
-    rolling_friction: Any
-    steel_density: Any
-    effective_offset: Any
+    required_torque = Requirement("N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit", source=f"{S3}, M")
+    driver_speed = Requirement(
+        "1/min", lower=0, upper=60000, symbol="omega", text="Speed of the driving shaft", source=f"{S3}, n"
+    )
+    offset = Requirement(
+        "mm",
+        lower=0,
+        upper=200,
+        symbol="e",
+        text="Parallel offset of the shafts; of skew shafts the length of their common normal",
+        source=f"{S3}, e",
+    )
+    shaft_angle = Requirement(
+        "deg",
+        0,
+        lower=0,
+        upper=10,
+        symbol="alpha",
+        text="Angle between the shafts; the source's example has 2.5 degrees, beyond 10 the tilt of the rollers in "
+        "the guides would have to be modelled",
+        source=f"{S3}, chapter XII",
+    )
+    float_distance = Requirement(
+        "mm",
+        0,
+        lower=0,
+        upper=10000,
+        symbol="h",
+        text="Distance of the float plane from the intersection or the common normal of the shafts",
+        source=f"{S3}, chapter XII, h",
+    )
+    outer_diameter_limit = Requirement(
+        "mm",
+        lower=20,
+        upper=5000,
+        optional=True,
+        symbol="D_max",
+        text="Largest diameter that the float sweeps",
+        source=DRIVE,
+    )
+    mass_limit = Requirement(
+        "kg", lower=0.01, upper=1e5, optional=True, symbol="mass_max", text="Largest mass", source=DRIVE
+    )
+    vibration_limit = Requirement(
+        "N",
+        lower=1e-3,
+        upper=1e9,
+        optional=True,
+        symbol="vib_max",
+        text="Largest amplitude of the force on each shaft at twice the speed",
+        source=DRIVE,
+    )
+    guide_angle = Requirement(
+        "deg",
+        90,
+        lower=60,
+        upper=90,
+        symbol="chi",
+        text="Acute angle between the guides; forces are checked down to 60 degrees",
+        source=f"{S3}, chapter XI; forces: {EXT}",
+    )
+    roller_gap_min = Requirement(
+        "mm",
+        2,
+        lower=0.01,
+        upper=50,
+        symbol="s_min",
+        text="Least gap between neighbouring rollers",
+        source=f"{S3}, s in eq. (18a)",
+    )
+    run_in_min = Requirement(
+        "mm",
+        3,
+        lower=0.01,
+        upper=50,
+        symbol="s1_min",
+        text="Least distance of a roller from the mouth of the crossing guide",
+        source=f"{S3}, s1",
+    )
+    run_out_min = Requirement(
+        "mm",
+        3,
+        lower=0.01,
+        upper=50,
+        symbol="s2_min",
+        text="Least distance of a roller centre from the end of its guide",
+        source=f"{S3}, s2 in eq. (19a)",
+    )
+    removal_min = Requirement(
+        "mm",
+        2,
+        lower=0.01,
+        upper=50,
+        symbol="s3_min",
+        text="Least clearance for pulling apart; counts with sideways_removable yes",
+        source=f"{S3}, s3 in eq. (21)",
+    )
+    pin_gap = Requirement(
+        "mm", 2, lower=0, upper=50, symbol="g_pin", text=f"Gap between arm face and roller ({TYPICAL})", source=TYPICAL
+    )
+    axial_play = Requirement(
+        "mm",
+        0.5,
+        lower=0,
+        upper=20,
+        symbol="g_ax",
+        text=f"The guide is wider than the contact by this, each side ({TYPICAL})",
+        source=TYPICAL,
+    )
+    rim_min = Requirement(
+        "mm",
+        3,
+        lower=0.5,
+        upper=100,
+        symbol="t_min",
+        text=f"Least rim of the float at the guide ends ({TYPICAL})",
+        source=TYPICAL,
+    )
+    pin_shear_limit = Requirement(
+        "N/mm2",
+        40,
+        lower=1,
+        upper=1000,
+        symbol="sigma_c",
+        text="Allowed stress sigma_c of the pins, twice the shear stress",
+        source=f"{S3}, eq. (16), 400 kp/cm2",
+    )
+    pin_stress_limit = Requirement(
+        "N/mm2",
+        160,
+        lower=1,
+        upper=2000,
+        symbol="sigma_pin",
+        text=f"Allowed equivalent stress of the pins in bending ({TYPICAL})",
+        source=TYPICAL,
+    )
+    static_safety = Requirement(
+        "-", 1.0, lower=0.5, upper=10, symbol="S_0", text="Static safety of the rolling bearings", source="ISO 76, s0"
+    )
+    oscillation_factor = Requirement(
+        "-",
+        lambda wants: np.where(wants.effective_offset > 0, 2.0, 1.0),
+        lower=1,
+        upper=4,
+        symbol="f_osc",
+        text="Oscillating bearings may carry this multiple of C0; 1 without offset, because then the same "
+        "balls stay loaded",
+        source=f"{S3}, chapter XI: up to 4 times, the lower figure is illegible",
+    )
+    retention_margin = Requirement(
+        "-",
+        1.5,
+        lower=1,
+        upper=10,
+        symbol="k_ret",
+        text=f"Margin against the lighter loaded roller losing contact ({TYPICAL})",
+        source=EXT,
+    )
+    ligament_factor = Requirement(
+        "-",
+        2.5,
+        lower=1,
+        upper=10,
+        symbol="k_lig",
+        text="Bending and notch in the bridges at the guide ends (estimate)",
+        source=EXT,
+    )
+    roller_modulus = Requirement(
+        "N/mm2",
+        206000,
+        lower=1e3,
+        upper=1e6,
+        symbol="E_r",
+        text="Young's modulus of the rollers",
+        source="material constant of bearing steel",
+    )
+    roller_poisson = Requirement(
+        "-",
+        0.3,
+        lower=0,
+        upper=0.49,
+        symbol="nu_r",
+        text="Poisson's ratio of the rollers",
+        source="material constant of bearing steel",
+    )
+    crown_radius = Requirement(
+        "mm",
+        500,
+        lower=1,
+        upper=1e5,
+        symbol="R_cr",
+        text="Radius of a crowned tread; counts with roller_contact crowned",
+        source="track rollers NUTR, NATV, NATR",
+    )
+    rolling_friction = Requirement(
+        "-",
+        0.002,
+        lower=0,
+        upper=0.1,
+        symbol="mu_roll",
+        text=f"Rolling friction in the guides, for the efficiency ({TYPICAL})",
+        source=TYPICAL,
+    )
+    steel_density = Requirement(
+        "kg/m3",
+        7850,
+        lower=1000,
+        upper=20000,
+        symbol="rho_s",
+        text="Density of pins and arms",
+        source="material constant",
+    )
+
+    @cached_property
+    def effective_offset(self) -> Any:
+        """Offset seen in the plane of the float [m]."""
+        return formulas.effective_offset(self.offset, self.float_distance, self.shaft_angle)
 
 
 @dataclass(frozen=True)
@@ -156,7 +345,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact",
             source=f"{S3}, XIV.3",
         )  # fmt: skip
-        wants = self._declare_requirements(d)
+        wants = d.block(Wants)
         unknowns = self._declare_unknowns(d, contact)
         self._refuse_impossible(d, wants, unknowns, guide, removable, contact)
         loads = self._declare_loads(d, wants, unknowns)
@@ -168,131 +357,6 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         d.objective("pin_force", default=False)
         d.objective("offset_capacity", "max", default=False)
         d.objective("vibration_force", default=False)
-
-    def _declare_requirements(self, d: Declaration) -> Wants:
-        torque = d.requirement(
-            "required_torque", "N*m", lower=0.1, upper=1e6, symbol="M",
-            text="Torque to transmit", source=f"{S3}, M",
-        )  # fmt: skip
-        speed = d.requirement(
-            "driver_speed", "1/min", lower=0, upper=60000, symbol="omega",
-            text="Speed of the driving shaft", source=f"{S3}, n",
-        )  # fmt: skip
-        offset = d.requirement(
-            "offset", "mm", lower=0, upper=200, symbol="e",
-            text="Parallel offset of the shafts; of skew shafts the length of their common normal", source=f"{S3}, e",
-        )  # fmt: skip
-        angle = d.requirement(
-            "shaft_angle", "deg", 0, lower=0, upper=10, symbol="alpha",
-            text="Angle between the shafts; the source's example has 2.5 degrees, beyond 10 the tilt of the rollers in "
-            "the guides would have to be modelled", source=f"{S3}, chapter XII",
-        )  # fmt: skip
-        distance = d.requirement(
-            "float_distance", "mm", 0, lower=0, upper=10000, symbol="h",
-            text="Distance of the float plane from the intersection or the common normal of the shafts",
-            source=f"{S3}, chapter XII, h",
-        )  # fmt: skip
-        effective = formulas.effective_offset(offset, distance, angle)
-        return Wants(
-            torque=torque,
-            speed=speed,
-            offset=offset,
-            shaft_angle=angle,
-            float_distance=distance,
-            effective_offset=effective,
-            diameter_limit=d.requirement(
-                "outer_diameter_limit", "mm", lower=20, upper=5000, optional=True, symbol="D_max",
-                text="Largest diameter that the float sweeps", source=DRIVE,
-            ),
-            mass_limit=d.requirement(
-                "mass_limit", "kg", lower=0.01, upper=1e5, optional=True, symbol="mass_max",
-                text="Largest mass", source=DRIVE,
-            ),
-            vibration_limit=d.requirement(
-                "vibration_limit", "N", lower=1e-3, upper=1e9, optional=True, symbol="vib_max",
-                text="Largest amplitude of the force on each shaft at twice the speed", source=DRIVE,
-            ),
-            guide_angle=d.requirement(
-                "guide_angle", "deg", 90, lower=60, upper=90, symbol="chi",
-                text="Acute angle between the guides; forces are checked down to 60 degrees",
-                source=f"{S3}, chapter XI; forces: {EXT}",
-            ),
-            roller_gap_min=d.requirement(
-                "roller_gap_min", "mm", 2, lower=0.01, upper=50, symbol="s_min",
-                text="Least gap between neighbouring rollers", source=f"{S3}, s in eq. (18a)",
-            ),
-            run_in_min=d.requirement(
-                "run_in_min", "mm", 3, lower=0.01, upper=50, symbol="s1_min",
-                text="Least distance of a roller from the mouth of the crossing guide", source=f"{S3}, s1",
-            ),
-            run_out_min=d.requirement(
-                "run_out_min", "mm", 3, lower=0.01, upper=50, symbol="s2_min",
-                text="Least distance of a roller centre from the end of its guide", source=f"{S3}, s2 in eq. (19a)",
-            ),
-            removal_min=d.requirement(
-                "removal_min", "mm", 2, lower=0.01, upper=50, symbol="s3_min",
-                text="Least clearance for pulling apart; counts with sideways_removable yes",
-                source=f"{S3}, s3 in eq. (21)",
-            ),
-            pin_gap=d.requirement(
-                "pin_gap", "mm", 2, lower=0, upper=50, symbol="g_pin",
-                text=f"Gap between arm face and roller ({TYPICAL})", source=TYPICAL,
-            ),
-            axial_play=d.requirement(
-                "axial_play", "mm", 0.5, lower=0, upper=20, symbol="g_ax",
-                text=f"The guide is wider than the contact by this, each side ({TYPICAL})", source=TYPICAL,
-            ),
-            rim_min=d.requirement(
-                "rim_min", "mm", 3, lower=0.5, upper=100, symbol="t_min",
-                text=f"Least rim of the float at the guide ends ({TYPICAL})", source=TYPICAL,
-            ),
-            pin_shear_limit=d.requirement(
-                "pin_shear_limit", "N/mm2", 40, lower=1, upper=1000, symbol="sigma_c",
-                text="Allowed stress sigma_c of the pins, twice the shear stress", source=f"{S3}, eq. (16), 400 kp/cm2",
-            ),
-            pin_stress_limit=d.requirement(
-                "pin_stress_limit", "N/mm2", 160, lower=1, upper=2000, symbol="sigma_pin",
-                text=f"Allowed equivalent stress of the pins in bending ({TYPICAL})", source=TYPICAL,
-            ),
-            static_safety=d.requirement(
-                "static_safety", "-", 1.0, lower=0.5, upper=10, symbol="S_0",
-                text="Static safety of the rolling bearings", source="ISO 76, s0",
-            ),
-            oscillation_factor=d.requirement(
-                "oscillation_factor", "-", np.where(effective > 0, 2.0, 1.0), lower=1, upper=4, symbol="f_osc",
-                text="Oscillating bearings may carry this multiple of C0; 1 without offset, because then the same "
-                "balls stay loaded", source=f"{S3}, chapter XI: up to 4 times, the lower figure is illegible",
-            ),
-            retention_margin=d.requirement(
-                "retention_margin", "-", 1.5, lower=1, upper=10, symbol="k_ret",
-                text=f"Margin against the lighter loaded roller losing contact ({TYPICAL})", source=EXT,
-            ),
-            ligament_factor=d.requirement(
-                "ligament_factor", "-", 2.5, lower=1, upper=10, symbol="k_lig",
-                text="Bending and notch in the bridges at the guide ends (estimate)", source=EXT,
-            ),
-            roller_modulus=d.requirement(
-                "roller_modulus", "N/mm2", 206000, lower=1e3, upper=1e6, symbol="E_r",
-                text="Young's modulus of the rollers", source="material constant of bearing steel",
-            ),
-            roller_poisson=d.requirement(
-                "roller_poisson", "-", 0.3, lower=0, upper=0.49, symbol="nu_r",
-                text="Poisson's ratio of the rollers", source="material constant of bearing steel",
-            ),
-            crown_radius=d.requirement(
-                "crown_radius", "mm", 500, lower=1, upper=1e5, symbol="R_cr",
-                text="Radius of a crowned tread; counts with roller_contact crowned",
-                source="track rollers NUTR, NATV, NATR",
-            ),
-            rolling_friction=d.requirement(
-                "rolling_friction", "-", 0.002, lower=0, upper=0.1, symbol="mu_roll",
-                text=f"Rolling friction in the guides, for the efficiency ({TYPICAL})", source=TYPICAL,
-            ),
-            steel_density=d.requirement(
-                "steel_density", "kg/m3", 7850, lower=1000, upper=20000, symbol="rho_s",
-                text="Density of pins and arms", source="material constant",
-            ),
-        )  # fmt: skip
 
     def _declare_unknowns(self, d: Declaration, contact: str) -> Unknowns:
         crowned = contact == "crowned"
@@ -381,18 +445,20 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             "times the largest arm radius, 200 mm; no roller in the catalogue clears the other guide at this offset",
         )
         least = _least_arm_radius(wants, roller.outer_diameter)
-        if wants.diameter_limit is not None:
+        if wants.outer_diameter_limit is not None:
             d.refuse(
                 "envelope_too_small",
-                _least_diameter(wants, roller.outer_diameter, least) > wants.diameter_limit,
+                _least_diameter(wants, roller.outer_diameter, least) > wants.outer_diameter_limit,
                 "an outer_diameter_limit that holds the smallest coupling with the smallest roller at this offset; the "
                 "envelope is smaller than that",
             )
         if removable == "yes":
             apart = roller.outer_diameter + wants.removal_min
             wide = apart > largest
-            if wants.diameter_limit is not None:
-                beyond = _least_diameter(wants, roller.outer_diameter, np.maximum(least, apart)) > wants.diameter_limit
+            if wants.outer_diameter_limit is not None:
+                beyond = (
+                    _least_diameter(wants, roller.outer_diameter, np.maximum(least, apart)) > wants.outer_diameter_limit
+                )
                 wide = np.logical_or(wide, beyond)
             d.refuse(
                 "not_removable",
@@ -431,12 +497,12 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             text="Mass of the float", source="geometry",
         )  # fmt: skip
         tangential = d.derive(
-            "tangential_force", "N", formulas.tangential_force(wants.torque, radius, radius), symbol="F",
+            "tangential_force", "N", formulas.tangential_force(wants.required_torque, radius, radius), symbol="F",
             text="Force of each pin from the torque", source=f"{S3}, F = M/(2 r)",
         )  # fmt: skip
         centrifugal = d.derive(
             "centrifugal_force", "N",
-            formulas.pin_centrifugal_force(float_mass, offset, wants.speed, wants.guide_angle), symbol="Q",
+            formulas.pin_centrifugal_force(float_mass, offset, wants.driver_speed, wants.guide_angle), symbol="Q",
             text="Greatest share of one pin in the centrifugal force of the float", source=f"{S3}, eq. (14), C/2",
         )  # fmt: skip
         roller_mass = formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap)
@@ -444,7 +510,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         pin = d.derive(
             "pin_force", "N",
             formulas.resultant_pin_force(
-                normal, formulas.roller_centrifugal_force(roller_mass, radius, wants.speed)
+                normal, formulas.roller_centrifugal_force(roller_mass, radius, wants.driver_speed)
             ),
             symbol="F_pin", text="Greatest force on a pin, with the centrifugal force of its roller",
             source=f"{S3}, E",
@@ -476,9 +542,14 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             "mass", "kg", float_mass * (1 + counter) + 4 * roller_mass + arms, symbol="m",
             text="Float, counter float, rollers with pins, and arms; without hubs", source="geometry",
         )  # fmt: skip
-        if wants.diameter_limit is not None:
+        if wants.outer_diameter_limit is not None:
             d.at_most(
-                "outer_diameter", outer, wants.diameter_limit, "mm", text="The coupling fits the room", source=DRIVE
+                "outer_diameter",
+                outer,
+                wants.outer_diameter_limit,
+                "mm",
+                text="The coupling fits the room",
+                source=DRIVE,
             )
         if wants.mass_limit is not None:
             d.at_most("mass", mass, wants.mass_limit, "kg", text="The coupling is not too heavy", source=DRIVE)
@@ -551,7 +622,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             text="The unsupported outer ring does not bend too much", source="makers' F0r of track rollers",
         )  # fmt: skip
         d.at_most(
-            "pin_shear", formulas.pin_shear_measure(wants.torque, unknowns.arm_radius, roller.bore),
+            "pin_shear", formulas.pin_shear_measure(wants.required_torque, unknowns.arm_radius, roller.bore),
             wants.pin_shear_limit, "N/mm2", text="The pins stand the shear", source=f"{S3}, eq. (16)",
         )  # fmt: skip
         stress = d.derive(
@@ -589,7 +660,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         )
         d.advise(
             "no_optimum_arm",
-            wants.speed <= 0,
+            wants.driver_speed <= 0,
             "at standstill the pin force falls with the arm radius without end: there is no optimum arm",
             source=f"{S3}, eq. (15)",
         )
@@ -671,14 +742,14 @@ def _least_diameter(wants: Wants, roller_diameter: Any, arm_radius: Any) -> Any:
 
 def _least_vibration(d: Declaration, wants: Wants) -> Any:
     """Vibration force of the lightest material around the smallest roller: section and offset only grow from there."""
-    density = float(np.nanmin(d.catalogs.table("float_materials").number("density")))
-    diameter = float(np.nanmin(d.catalogs.table("guide_rolling_bearings").number("outer_diameter")))
+    density = float(np.nanmin(d.numbers("float_materials", "density")))
+    diameter = float(np.nanmin(d.numbers("guide_rolling_bearings", "outer_diameter")))
     half_length = _least_half_length(wants, _least_arm_radius(wants, diameter))
     slide = formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle)
     width = formulas.float_width(CONTACT_LENGTH_MIN / 1000, slide, wants.axial_play)
     section = formulas.float_section(half_length, diameter, wants.rim_min, wants.guide_angle)
     mass = formulas.float_mass(density, width, section)
-    return formulas.pin_centrifugal_force(mass, wants.effective_offset, wants.speed, wants.guide_angle)
+    return formulas.pin_centrifugal_force(mass, wants.effective_offset, wants.driver_speed, wants.guide_angle)
 
 
 # -- frames ----------------------------------------------------------------------------------------

@@ -2,29 +2,76 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from problems.wrap_spring import blocks, curves, formulas
 from problems.wrap_spring.blocks import DERIVED, DRIVE, TYPICAL
 from synth import DesignProblem
+from synth.declaration import Block, Declaration, Requirement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from synth.declaration import Declaration
+
+class ClearanceDuty(blocks.Duty):
+    """What the drive asks of a clutch with this fit."""
+
+    interference_tolerance = replace(
+        blocks.Duty.interference_tolerance, text="Tolerance of the clearance, +- of wire, bore and hub together"
+    )
 
 
-@dataclass(frozen=True)
-class Wants:
+class Wants(Block):
     """Requirements of the clearance fit alone, all in SI; None where an optional one is not given."""
 
-    clearance_min: Any
-    relative_speed: Any
-    actuator_torque_limit: Any
-    wrap_angle_limit: Any
-    fixed_coils: Any
-    hub_wall_min: Any
+    clearance_min = Requirement(
+        "mm",
+        0.05,
+        lower=0.001,
+        upper=5,
+        symbol="c_r",
+        text=f"Least clearance that must be left after tolerance, run-out and heat ({TYPICAL})",
+        source=TYPICAL,
+    )
+    relative_speed = Requirement(
+        "1/min",
+        lower=0.1,
+        upper=60000,
+        symbol="omega_rel",
+        text="Speed between the hub and the held free end; gives engagement_time only",
+        source=DRIVE,
+    )
+    actuator_torque_limit = Requirement(
+        "N*m", lower=1e-4, upper=1e4, optional=True, symbol="T0_max", text="Largest energising torque", source=DRIVE
+    )
+    wrap_angle_limit = Requirement(
+        "rad",
+        lower=0.01,
+        upper=50,
+        optional=True,
+        symbol="phi_max",
+        text="Largest angle until the coils are closed; 3 rad is usual",
+        source=DRIVE,
+    )
+    fixed_coils = Requirement(
+        "-",
+        1,
+        lower=0.5,
+        upper=10,
+        symbol="n_fix",
+        text=f"Coils anchored on the second hub ({TYPICAL})",
+        source=TYPICAL,
+    )
+    hub_wall_min = Requirement(
+        "mm",
+        3,
+        lower=0.2,
+        upper=100,
+        symbol="t_hub",
+        text=f"Least wall of the hub around its bore ({TYPICAL})",
+        source=TYPICAL,
+    )
 
 
 class ActuatedWrapSpringClutch(DesignProblem):
@@ -40,9 +87,9 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        options = blocks.declare_options(d)
-        duty = blocks.declare_duty(d, "Tolerance of the clearance, +- of wire, bore and hub together")
-        wants = self._declare_wants(d)
+        options = d.block(blocks.Options)
+        duty = blocks.declare_duty(d, ClearanceDuty)
+        wants = d.block(Wants)
         clearance = d.variable(
             "clearance", "mm", 0.005, 5, symbol="c",
             text="By how much the mean radius of the free coils is larger than that of the closed ones", source=DERIVED,
@@ -105,34 +152,6 @@ class ActuatedWrapSpringClutch(DesignProblem):
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
-
-    def _declare_wants(self, d: Declaration) -> Wants:
-        return Wants(
-            clearance_min=d.requirement(
-                "clearance_min", "mm", 0.05, lower=0.001, upper=5, symbol="c_r",
-                text=f"Least clearance that must be left after tolerance, run-out and heat ({TYPICAL})", source=TYPICAL,
-            ),
-            relative_speed=d.requirement(
-                "relative_speed", "1/min", lower=0.1, upper=60000, symbol="omega_rel",
-                text="Speed between the hub and the held free end; gives engagement_time only", source=DRIVE,
-            ),
-            actuator_torque_limit=d.requirement(
-                "actuator_torque_limit", "N*m", lower=1e-4, upper=1e4, optional=True, symbol="T0_max",
-                text="Largest energising torque", source=DRIVE,
-            ),
-            wrap_angle_limit=d.requirement(
-                "wrap_angle_limit", "rad", lower=0.01, upper=50, optional=True, symbol="phi_max",
-                text="Largest angle until the coils are closed; 3 rad is usual", source=DRIVE,
-            ),
-            fixed_coils=d.requirement(
-                "fixed_coils", "-", 1, lower=0.5, upper=10, symbol="n_fix",
-                text=f"Coils anchored on the second hub ({TYPICAL})", source=TYPICAL,
-            ),
-            hub_wall_min=d.requirement(
-                "hub_wall_min", "mm", 3, lower=0.2, upper=100, symbol="t_hub",
-                text=f"Least wall of the hub around its bore ({TYPICAL})", source=TYPICAL,
-            ),
-        )  # fmt: skip
 
     def _declare_actuation(
         self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any

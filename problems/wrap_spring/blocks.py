@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from problems.wrap_spring import formulas
+from synth.declaration import Block, Declaration, Option, Part, Requirement
 from synth.errors import InputError
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration, Part
 
 S2 = "S2 (Kozma et al.)"
 DERIVED = f"derived; not in {S2}"
@@ -50,138 +48,141 @@ COILS_RANGE = (2, 12)
 # -- options and duty ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Options:
+class Options(Block):
     """Options that both fits have."""
 
-    model: str
-    wire_choice: str
-    hub_ladder: str
-
-
-def declare_options(d: Declaration) -> Options:
-    """Declare the options that both fits have."""
-    return Options(
-        model=d.option(
-            "model",
-            formulas.MODELS,
-            "refined",
-            symbol="mdl",
-            text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source, "
-            "which counts all torques at rest",
-            source=f"{S2}; refined: derived",
-        ),
-        wire_choice=d.option(
-            "wire_choice",
-            WIRE_CHOICES,
-            "catalogue",
-            symbol="wc",
-            text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, the material "
-            "is given by wire_modulus, wire_density and so on",
-            source="supply of the wire",
-        ),
-        hub_ladder=d.option(
-            "hub_ladder",
-            HUB_LADDERS,
-            "hub_diameters",
-            symbol="lad",
-            text="Makeable hub diameters: of table hub_diameters, or a series of preferred numbers",
-            source="table hub_diameters; ISO 3",
-        ),
+    model = Option(
+        formulas.MODELS,
+        "refined",
+        symbol="mdl",
+        text="refined: hub and mean coil radius apart, exact curvature, centrifugal force; seed: as in the source, "
+        "which counts all torques at rest",
+        source=f"{S2}; refined: derived",
+    )
+    wire_choice = Option(
+        WIRE_CHOICES,
+        "catalogue",
+        symbol="wc",
+        text="catalogue: wire of table spring_wire_flat; custom: thickness and width are variables, the material "
+        "is given by wire_modulus, wire_density and so on",
+        source="supply of the wire",
+    )
+    hub_ladder = Option(
+        HUB_LADDERS,
+        "hub_diameters",
+        symbol="lad",
+        text="Makeable hub diameters: of table hub_diameters, or a series of preferred numbers",
+        source="table hub_diameters; ISO 3",
     )
 
 
-@dataclass(frozen=True)
-class Duty:
+class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
-    required_torque: Any
-    slip_safety: Any
-    peak_torque: Any
-    spring_speed: Any
-    interference_tolerance: Any
-    bore_diameter: Any
-    outer_diameter_limit: Any
-    length_limit: Any
-    gap_coils: Any
-    coil_gap: Any
-    spring_index_min: Any
-    hub_density: Any
-    belt_exponent_limit: Any
+    required_torque = Requirement(
+        "N*m", lower=0.01, upper=1e5, symbol="T_req", text="Torque to hold without slip", source=DRIVE
+    )
+    slip_safety = Requirement(
+        "-",
+        1.3,
+        lower=1,
+        upper=4,
+        symbol="S_T",
+        text="Safety of the least closing torque over required_torque",
+        source=f"{TYPICAL} of the reference model",
+    )
+    peak_torque = Requirement(
+        "N*m",
+        lambda duty: 2.5 * duty.required_torque,
+        lower=0.01,
+        upper=1e12,
+        symbol="T_peak",
+        text="Highest torque that the drive can apply; by default 2.5 required_torque",
+        source=DRIVE,
+    )
+    spring_speed = Requirement(
+        "1/min", 0, lower=0, upper=60000, symbol="omega_s", text="Speed of the spring when driving", source=DRIVE
+    )
+    interference_tolerance = Requirement(
+        "mm",
+        0.03,
+        lower=0.001,
+        upper=1,
+        symbol="tol",
+        text="Tolerance of the fit, +- of wire, bore and hub together",
+        source=f"{TYPICAL} of the reference model",
+    )
+    bore_diameter = Requirement("mm", lower=1, upper=500, symbol="d_bore", text="Shaft bore of the hubs", source=DRIVE)
+    outer_diameter_limit = Requirement(
+        "mm", lower=3, upper=1000, optional=True, symbol="D_max", text="Largest outside diameter", source=DRIVE
+    )
+    length_limit = Requirement(
+        "mm", lower=2, upper=2000, optional=True, symbol="L_max", text="Largest length of the spring", source=DRIVE
+    )
+    gap_coils = Requirement(
+        "-",
+        0.5,
+        lower=0,
+        upper=4,
+        symbol="n_gap",
+        text="Coils over the gap between the hubs",
+        source=f"{TYPICAL} of the reference model",
+    )
+    coil_gap = Requirement(
+        "mm",
+        0.2,
+        lower=0,
+        upper=5,
+        symbol="g_c",
+        text="Axial gap between coils",
+        source=f"{TYPICAL} of the reference model",
+    )
+    spring_index_min = Requirement(
+        "-",
+        6,
+        lower=2,
+        upper=30,
+        symbol="index_min",
+        text="Least mean coil diameter over wire thickness",
+        source="coiling practice",
+    )
+    hub_density = Requirement(
+        "kg/m3",
+        7850,
+        lower=0,
+        upper=20000,
+        symbol="rho_hub",
+        text="Density of the hubs; 0 counts the spring only",
+        source="material constant",
+    )
+    belt_exponent_limit = Requirement(
+        "-",
+        lower=1,
+        upper=50,
+        optional=True,
+        symbol="beta_max",
+        text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
+        "means little",
+        source=DERIVED,
+    )
 
 
-def declare_duty(d: Declaration, tolerance_text: str) -> Duty:
+def declare_duty(d: Declaration, kind: type[Duty]) -> Duty:
     """Declare the requirements that both fits have, and the refusals that concern them alone.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    tolerance_text : str
-        What interference_tolerance means in this family.
+    kind : subclass of Duty
+        Block of the family, which says what interference_tolerance means in it.
 
     Returns
     -------
     Duty
         Symbols of the block.
     """
-    required_torque = d.requirement(
-        "required_torque", "N*m", lower=0.01, upper=1e5, symbol="T_req",
-        text="Torque to hold without slip", source=DRIVE,
-    )  # fmt: skip
-    duty = Duty(
-        required_torque=required_torque,
-        slip_safety=d.requirement(
-            "slip_safety", "-", 1.3, lower=1, upper=4, symbol="S_T",
-            text="Safety of the least closing torque over required_torque", source=f"{TYPICAL} of the reference model",
-        ),
-        peak_torque=d.requirement(
-            "peak_torque", "N*m", 2.5 * required_torque, lower=0.01, upper=1e12, symbol="T_peak",
-            text="Highest torque that the drive can apply; by default 2.5 required_torque", source=DRIVE,
-        ),
-        spring_speed=d.requirement(
-            "spring_speed", "1/min", 0, lower=0, upper=60000, symbol="omega_s",
-            text="Speed of the spring when driving", source=DRIVE,
-        ),
-        interference_tolerance=d.requirement(
-            "interference_tolerance", "mm", 0.03, lower=0.001, upper=1, symbol="tol",
-            text=tolerance_text, source=f"{TYPICAL} of the reference model",
-        ),
-        bore_diameter=d.requirement(
-            "bore_diameter", "mm", lower=1, upper=500, symbol="d_bore",
-            text="Shaft bore of the hubs", source=DRIVE,
-        ),
-        outer_diameter_limit=d.requirement(
-            "outer_diameter_limit", "mm", lower=3, upper=1000, optional=True, symbol="D_max",
-            text="Largest outside diameter", source=DRIVE,
-        ),
-        length_limit=d.requirement(
-            "length_limit", "mm", lower=2, upper=2000, optional=True, symbol="L_max",
-            text="Largest length of the spring", source=DRIVE,
-        ),
-        gap_coils=d.requirement(
-            "gap_coils", "-", 0.5, lower=0, upper=4, symbol="n_gap",
-            text="Coils over the gap between the hubs", source=f"{TYPICAL} of the reference model",
-        ),
-        coil_gap=d.requirement(
-            "coil_gap", "mm", 0.2, lower=0, upper=5, symbol="g_c",
-            text="Axial gap between coils", source=f"{TYPICAL} of the reference model",
-        ),
-        spring_index_min=d.requirement(
-            "spring_index_min", "-", 6, lower=2, upper=30, symbol="index_min",
-            text="Least mean coil diameter over wire thickness", source="coiling practice",
-        ),
-        hub_density=d.requirement(
-            "hub_density", "kg/m3", 7850, lower=0, upper=20000, symbol="rho_hub",
-            text="Density of the hubs; 0 counts the spring only", source="material constant",
-        ),
-        belt_exponent_limit=d.requirement(
-            "belt_exponent_limit", "-", lower=1, upper=50, optional=True, symbol="beta_max",
-            text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
-            "means little",
-            source=DERIVED,
-        ),
-    )  # fmt: skip
+    duty = d.block(kind)
     d.refuse(
         "peak_below_required",
         duty.peak_torque < duty.required_torque,
@@ -308,7 +309,7 @@ def hub_grid(d: Declaration, ladder: str) -> Any:
     if ladder != "hub_diameters":
         return ladder
     low, high = HUB_DIAMETER_RANGE
-    diameters = 1000 * d.catalogs.table(HUB_TABLE).number("diameter")
+    diameters = 1000 * d.numbers(HUB_TABLE, "diameter")
     # Rounding to a nanometre undoes what the conversion to metres adds.
     inside = sorted({round(float(x), 6) for x in diameters if low <= x <= high})
     if not inside:

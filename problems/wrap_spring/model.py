@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,29 +10,99 @@ import numpy as np
 from problems.wrap_spring import blocks, curves, formulas
 from problems.wrap_spring.blocks import DERIVED, DRIVE, S2, TYPICAL
 from synth import DesignProblem
+from synth.declaration import Block, Declaration, Requirement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from synth.declaration import Declaration
 
+MODEL_VALUE = f"{TYPICAL} of the reference model"
 OVERLOADS = ("slip_limited", "torque_limited")
 
 
-@dataclass(frozen=True)
-class Wants:
+class InterferenceDuty(blocks.Duty):
+    """What the drive asks of a clutch with this fit."""
+
+    interference_tolerance = replace(
+        blocks.Duty.interference_tolerance, text="Tolerance of the interference, +- of wire, bore and hub together"
+    )
+
+
+class Wants(Block):
     """Requirements of the interference fit alone, all in SI; None where an optional one is not given."""
 
-    service_factor: Any
-    overrun_speed: Any
-    overrun_duty: Any
-    drag_torque_limit: Any
-    hub_shear_limit: Any
-    interference_ratio_max: Any
-    liftoff_margin: Any
-    fatigue_safety: Any
-    heat_transfer: Any
-    temperature_rise_limit: Any
+    service_factor = Requirement(
+        "-",
+        1.5,
+        lower=1,
+        upper=5,
+        symbol="K_A",
+        text="The wire must stand service_factor required_torque again and again",
+        source=MODEL_VALUE,
+    )
+    overrun_speed = Requirement(
+        "1/min",
+        0,
+        lower=0,
+        upper=60000,
+        symbol="omega_over",
+        text="Speed between spring and hub when overrunning",
+        source=DRIVE,
+    )
+    overrun_duty = Requirement(
+        "-", 1, lower=0, upper=1, symbol="duty", text="Part of the time spent overrunning", source=DRIVE
+    )
+    drag_torque_limit = Requirement(
+        "N*m",
+        lower=1e-4,
+        upper=1e4,
+        optional=True,
+        symbol="drag_max",
+        text="Largest drag when overrunning; a twentieth of required_torque is usual",
+        source=DRIVE,
+    )
+    hub_shear_limit = Requirement(
+        "N/mm2", 80, lower=1, upper=1000, symbol="tau_hub", text="Allowed shear stress of the hub", source=MODEL_VALUE
+    )
+    interference_ratio_max = Requirement(
+        "-",
+        0.1,
+        lower=0.005,
+        upper=0.3,
+        symbol="dr_rel_max",
+        text="Largest interference, with its tolerance, over mean coil radius",
+        source="small strains",
+    )
+    liftoff_margin = Requirement(
+        "-",
+        0.7,
+        lower=0.1,
+        upper=1,
+        symbol="k_lift",
+        text="Largest spring_speed over the speed at which the spring lifts off",
+        source=MODEL_VALUE,
+    )
+    fatigue_safety = Requirement(
+        "-", 1.2, lower=1, upper=4, symbol="S_F", text="Safety on Goodman's line", source=MODEL_VALUE
+    )
+    heat_transfer = Requirement(
+        "W/(m2*K)",
+        25,
+        lower=1,
+        upper=1000,
+        symbol="h_cool",
+        text="Surface coefficient of the spring's outside",
+        source=MODEL_VALUE,
+    )
+    temperature_rise_limit = Requirement(
+        "K",
+        60,
+        lower=1,
+        upper=1e9,
+        symbol="dT_max",
+        text="Allowed rise over ambient when overrunning",
+        source=MODEL_VALUE,
+    )
 
 
 class WrapSpringClutch(DesignProblem):
@@ -48,7 +118,7 @@ class WrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        options = blocks.declare_options(d)
+        options = d.block(blocks.Options)
         overload = d.option(
             "overload",
             OVERLOADS,
@@ -58,8 +128,8 @@ class WrapSpringClutch(DesignProblem):
             "torque_limited: it sees peak_torque",
             source=DERIVED,
         )
-        duty = blocks.declare_duty(d, "Tolerance of the interference, +- of wire, bore and hub together")
-        wants = self._declare_wants(d)
+        duty = blocks.declare_duty(d, InterferenceDuty)
+        wants = d.block(Wants)
         interference = d.variable(
             "interference", "mm", 0.005, 10, symbol="dr",
             text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
@@ -99,51 +169,6 @@ class WrapSpringClutch(DesignProblem):
         if design is None:
             return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
         return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
-
-    def _declare_wants(self, d: Declaration) -> Wants:
-        model_value = f"{TYPICAL} of the reference model"
-        return Wants(
-            service_factor=d.requirement(
-                "service_factor", "-", 1.5, lower=1, upper=5, symbol="K_A",
-                text="The wire must stand service_factor required_torque again and again", source=model_value,
-            ),
-            overrun_speed=d.requirement(
-                "overrun_speed", "1/min", 0, lower=0, upper=60000, symbol="omega_over",
-                text="Speed between spring and hub when overrunning", source=DRIVE,
-            ),
-            overrun_duty=d.requirement(
-                "overrun_duty", "-", 1, lower=0, upper=1, symbol="duty",
-                text="Part of the time spent overrunning", source=DRIVE,
-            ),
-            drag_torque_limit=d.requirement(
-                "drag_torque_limit", "N*m", lower=1e-4, upper=1e4, optional=True, symbol="drag_max",
-                text="Largest drag when overrunning; a twentieth of required_torque is usual", source=DRIVE,
-            ),
-            hub_shear_limit=d.requirement(
-                "hub_shear_limit", "N/mm2", 80, lower=1, upper=1000, symbol="tau_hub",
-                text="Allowed shear stress of the hub", source=model_value,
-            ),
-            interference_ratio_max=d.requirement(
-                "interference_ratio_max", "-", 0.1, lower=0.005, upper=0.3, symbol="dr_rel_max",
-                text="Largest interference, with its tolerance, over mean coil radius", source="small strains",
-            ),
-            liftoff_margin=d.requirement(
-                "liftoff_margin", "-", 0.7, lower=0.1, upper=1, symbol="k_lift",
-                text="Largest spring_speed over the speed at which the spring lifts off", source=model_value,
-            ),
-            fatigue_safety=d.requirement(
-                "fatigue_safety", "-", 1.2, lower=1, upper=4, symbol="S_F",
-                text="Safety on Goodman's line", source=model_value,
-            ),
-            heat_transfer=d.requirement(
-                "heat_transfer", "W/(m2*K)", 25, lower=1, upper=1000, symbol="h_cool",
-                text="Surface coefficient of the spring's outside", source=model_value,
-            ),
-            temperature_rise_limit=d.requirement(
-                "temperature_rise_limit", "K", 60, lower=1, upper=1e9, symbol="dT_max",
-                text="Allowed rise over ambient when overrunning", source=model_value,
-            ),
-        )  # fmt: skip
 
     def _refuse_drag(self, d: Declaration, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
         """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""

@@ -8,7 +8,16 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.declaration import Declaration, DeclarationError, grid_values
+from synth.declaration import (
+    Block,
+    Declaration,
+    DeclarationError,
+    Option,
+    Requirement,
+    Slot,
+    Variable,
+    grid_values,
+)
 from synth.instance import Instance, number
 from synth.tables import Catalogs
 
@@ -621,3 +630,83 @@ def test_number_evaluates_an_expression():
     x, y = ca.SX.sym("x"), ca.SX.sym("y")
     assert number(x / y, {"x": 3.0, "y": 4.0, "z": 1.0}) == 0.75
     assert number(2.5, {}) == 2.5
+
+
+# -- blocks ----------------------------------------------------------------------------------------
+
+
+class Load(Block):
+    """What a sample is asked to carry."""
+
+    material = Option(table="rods", default="thin", text="Which rod")
+    force = Requirement("kN", lower=1, upper=100, symbol="F", text="Pull", source="statics")
+    peak = Requirement("N", lambda load: 2 * load.force, symbol="F_peak")
+    room = Requirement("mm", optional=True)
+
+    @property
+    def mean(self):
+        return (self.force + self.peak) / 2
+
+
+class LoadedRod(Load):
+    """A block that has fields of its own, and a field of its base with another text."""
+
+    length = Variable("mm", 10, 20, grid=5, symbol="l")
+    force = Requirement("kN", 5, lower=1, upper=100, symbol="F", text="Pull on the rod")
+    rod = Slot("rods", where="strength > 0")
+
+
+def test_a_block_declares_what_the_verbs_declare():
+    d, same = declaration(), declaration()
+    load = d.block(Load)
+    assert same.option("material", same.designations("rods"), "thin", text="Which rod") == load.material == "thin"
+    force = same.requirement("force", "kN", lower=1, upper=100, symbol="F", text="Pull", source="statics")
+    same.requirement("peak", "N", 2 * force, symbol="F_peak")
+    same.requirement("room", "mm", optional=True)
+    assert load.room is None
+    assert list(d.requirements) == list(same.requirements) == ["force", "peak", "room"]
+    assert [str(r) for r in d.requirements.values()] == [str(r) for r in same.requirements.values()]
+    assert d.options == same.options
+    assert d.names() == same.names()
+    assert str(load.mean) == str((d.requirements["force"].sx + d.requirements["peak"].sx) / 2)
+
+
+def test_a_block_takes_defaults_where_it_is_used():
+    d = declaration()
+    load = d.block(Load, material="thick", force=3, peak=lambda own: 4 * own.force)
+    assert load.material == "thick"
+    assert d.requirements["force"].default == 3000
+    assert str(d.requirements["peak"].default) == str(4 * load.force)
+
+
+def test_a_derived_block_keeps_the_order_of_its_base():
+    d = declaration()
+    loaded = d.block(LoadedRod)
+    assert list(LoadedRod.fields()) == ["material", "force", "peak", "room", "length", "rod"]
+    assert d.requirements["force"].text == "Pull on the rod"
+    assert d.variables["length"].grid.tolist() == pytest.approx([0.010, 0.015, 0.020])
+    assert d.slots["rod"] is loaded.rod
+    assert str(loaded.rod.diameter) == "rod.diameter"
+
+
+def test_faults_of_a_block_are_named():
+    with pytest.raises(DeclarationError, match="block Load has no field 'weight'"):
+        declaration().block(Load, weight=3)
+    with pytest.raises(DeclarationError, match="variable length has no default"):
+        declaration().block(LoadedRod, length=3)
+    with pytest.raises(DeclarationError, match="slot rod has no default"):
+        declaration().block(LoadedRod, rod="thin")
+    with pytest.raises(AttributeError, match="cannot be set"):
+        declaration().block(Load).force = 3
+    early = type("Early", (Block,), {"first": Requirement("N", lambda own: own.second), "second": Requirement("N")})
+    with pytest.raises(AttributeError, match="further down"):
+        declaration().block(early)
+    assert Load.force.text == "Pull"
+
+
+def test_texts_and_numbers_of_a_table_without_a_slot():
+    d = declaration()
+    assert d.cell("rods", "thick", "note") == "b"
+    assert d.cell("rods", "thick", "colour") == ""
+    assert d.numbers("rods", "diameter").tolist() == pytest.approx([0.010, 0.020, 0.015])
+    assert not d.rows
