@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from synth.batch_nlp import Tasks
+from synth.constraint import Constraint
 from synth.formulation import Formulation
 from synth.units import format_quantity
 
@@ -78,7 +79,7 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping
     for limit in form.constraints:
         value, bound = (float(x[0]) for x in result.limits[limit.name])
         if not bool(result.holds[limit.name][0]):
-            conflicts.append(_conflict(limit.name, limit.sense, value, bound, limit.unit))
+            conflicts.append(_conflict(limit, value, bound))
     parts, counts, choices = form.instance.combinations.describe(combination)
     model = form.model
     nearest = {v.name: format_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
@@ -93,16 +94,16 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping
     }
 
 
-def _conflict(name: str, sense: str, value: float, bound: float, unit: str) -> dict[str, Any]:
+def _conflict(limit: Constraint, value: float, bound: float) -> dict[str, Any]:
     missed = abs(value - bound) / max(abs(bound), 1e-300)
-    shown, allowed = format_quantity(value, unit, 5), format_quantity(bound, unit, 5)
+    shown, allowed = (format_quantity(x, limit.unit, 5) for x in (value, bound))
     share = format_quantity(missed, "%", 3)
-    words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[sense]
+    words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[limit.sense]
     return {
-        "limit": name,
+        "limit": limit.name,
         "value": value,
         "limit_value": bound,
-        "unit": unit,
+        "unit": limit.unit,
         "missed_by": missed,
-        "sentence": f"{name} is {shown} where {words} {allowed} is allowed (missed by {share})",
+        "sentence": f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {share})",
     }

@@ -130,7 +130,7 @@ class Model:
         self.program = Program(self.inputs, outputs, calls)
         numbers = iter(self.program.outputs)
         self.quantity_node = {name: next(numbers) for name in named}
-        self.limit_nodes = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+        self._sides = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
         self.advice_nodes = [next(numbers) for _ in declaration.advices]
         self._evaluate = self.program.compile()
         self.void_inputs = self._void_inputs()
@@ -177,9 +177,7 @@ class Model:
         for k in optional:
             marked = self.program.dependence([k])
             for limit in self.limits:
-                if limit.origin not in (Origin.USER, Origin.PIN) and any(
-                    marked[n] for n in self.limit_nodes[limit.name]
-                ):
+                if limit.origin not in (Origin.USER, Origin.PIN) and any(marked[n] for n in self._sides[limit.name]):
                     result[limit.name].append(k - first)
         return result
 
@@ -202,7 +200,7 @@ class Model:
             for name, node in self.quantity_node.items():
                 if marked[node]:
                     values[name].append(guard)
-            for name, nodes in self.limit_nodes.items():
+            for name, nodes in self._sides.items():
                 if name != guard and any(marked[n] for n in nodes):
                     limits[name].append(guard)
         return values, limits
@@ -212,7 +210,7 @@ class Model:
         return tuple(self._null_values[name])
 
     def _constraint(self, limit: Limit, behind: tuple[str, ...]) -> Constraint:
-        value, bound = self.limit_nodes[limit.name]
+        value, bound = self._sides[limit.name]
         return Constraint(
             name=limit.name, sense=limit.sense, value=value, bound=bound, unit=limit.unit, scale=limit.scale,
             guard=limit.guard, origin=limit.origin, void_without=tuple(self.void_inputs[limit.name]), behind=behind,
@@ -347,8 +345,3 @@ def _column(x: Any, count: int) -> np.ndarray:
     if isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == float:
         return x
     return np.broadcast_to(np.asarray(x, dtype=float), (count,))
-
-
-def limit_direction(limit: Limit) -> int:
-    """Return +1 for an upper, -1 for a lower limit, 0 for an equality."""
-    return {"at_most": 1, "at_least": -1, "equal": 0}[limit.sense]

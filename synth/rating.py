@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from synth.enclosure import ZERO, Enclosed, Encloser, Pair, Slopes
-from synth.feasibility import TOLERANCE, holds, utilisation
+from synth.feasibility import holds, utilisation
 from synth.inputs import first_value, inputs_of_design
 from synth.instance import Instance
 from synth.problem import DesignProblem
@@ -154,8 +154,9 @@ class Rater:
         return self._summary(told, samples)
 
     def _summary(self, told: dict[str, Any], samples: np.ndarray) -> dict[str, Any]:
-        guards = np.array([x.guard for x in self.limits], dtype=bool)
-        fine = np.where(guards[:, None], samples < 0.0, samples <= TOLERANCE).all(axis=0)
+        fine = np.ones(samples.shape[1], dtype=bool)
+        for x, own in zip(self.limits, samples, strict=True):
+            fine &= holds(own, x.guard)
         hits, count = int(fine.sum()), samples.shape[1]
         holding = all(x["holds"] for x in told.values())
         proven = holding and all(x["proof"] != SAMPLED for x in told.values())

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.feasibility import TOLERANCE
 from synth.inputs import inputs_of, part_value
 from synth.instance import Instance, numeric
 from synth.model import DataInput, Evaluation, Model
@@ -238,7 +239,7 @@ def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantCol
     missed = np.array([np.nan_to_num(own.residuals[name], nan=0.0) for name in names])
     worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
     nearest = int(np.argmin(worst))
-    broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > 1e-6]
+    broken = [(missed[k, nearest], name) for k, name in enumerate(names) if missed[k, nearest] > TOLERANCE]
     if not broken:
         return "the designs that keep its limits have parts, counts or sizes that it does not allow"
     shown = ", ".join(f"{name} by {100 * share:.3g} %" for share, name in sorted(broken, reverse=True)[:3])

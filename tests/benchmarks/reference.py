@@ -19,7 +19,7 @@ import synth
 from synth.batch_nlp import BatchNlp, Tasks
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
-from synth.model import Evaluation, limit_direction
+from synth.model import Evaluation
 from synth.nlp import Rows
 from synth.tables import Catalogs
 from tests.benchmarks import cases, hypervolume
@@ -54,7 +54,7 @@ class Enumeration:
         self.instance, self.objectives = instance, list(objectives)
         self.model = model = instance.model
         self.n = len(model.variables)
-        cuts = tuple(Cut(x.sense, *model.limit_nodes[x.name], x.scale, guard=x.guard) for x in model.limits)
+        cuts = tuple(Cut.of(x) for x in model.constraints)
         goals = tuple(Goal(model.quantity_node[name]) for name in objectives)
         rows = Rows(cuts, goals, self._positive(), (True,) * len(goals), tuple(bool(x > 0) for x in instance.lower))
         self.solver = BatchNlp(model.program, self.n, rows)
@@ -68,7 +68,7 @@ class Enumeration:
         numbers = rng.integers(self.instance.combinations.count, size=SAMPLE)
         result = self._evaluate(numbers, self._between(rng.random((SAMPLE, self.n))))
         return tuple(
-            bool(limit_direction(x)) and all(not np.any(side <= 0) for side in result.limits[x.name])
+            x.sense != "equal" and all(not np.any(side <= 0) for side in result.limits[x.name])
             for x in self.model.limits
         )
 
@@ -106,10 +106,7 @@ class Enumeration:
             low, high = (np.broadcast_to(x, shape).copy() for x in (self.instance.lower, self.instance.upper))
             for k in held:
                 low[:, k] = high[:, k] = begin[:, k]
-            void = np.zeros((len(some), len(self.bounds)), dtype=bool)
-            for j, limit in enumerate(self.model.limits):
-                for k in self.model.void_inputs[limit.name]:
-                    void[:, j] |= np.isnan(np.broadcast_to(data[k], len(some)))
+            void = np.stack([x.void(data, (len(some),)) for x in self.model.constraints], axis=1)
             answer = self.solver.solve(tasks, data, begin, low, high, self.bounds, void)
             self.solves += len(some)
             ends[part] = answer.variables
@@ -234,8 +231,8 @@ class Makeable:
         marked = model.program.dependence(others)
         result = model.evaluate(self._with(rings), instance.data(np.zeros(len(rings), dtype=np.int64)))
         keep = np.ones(len(rings), dtype=bool)
-        for limit in model.limits:
-            if not any(marked[node] for node in model.limit_nodes[limit.name]):
+        for limit in model.constraints:
+            if not any(marked[node] for node in limit.nodes):
                 keep &= result.holds[limit.name]
         return rings[keep]
 

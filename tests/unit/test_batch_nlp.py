@@ -415,7 +415,7 @@ class Clutch:
         self.model = model = self.instance.model
         self.n = len(model.variables)
         self.rows = Rows(
-            cuts=tuple(Cut(x.sense, *model.limit_nodes[x.name], x.scale, guard=x.guard) for x in model.limits),
+            cuts=tuple(Cut.of(x) for x in model.constraints),
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
             log_cuts=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),
@@ -444,10 +444,7 @@ class Clutch:
         else:
             slopes = np.exp(rng.uniform(-2.0, 0.5, (count, 2)))
             self.tasks = Tasks(np.full((count, 2), 1e-6), slopes, caps, np.ones(2))
-        self.void = np.zeros((count, len(self.rows.cuts)), dtype=bool)
-        for j, limit in enumerate(model.limits):
-            for k in model.void_inputs[limit.name]:
-                self.void[:, j] |= np.isnan(np.asarray(self.data[k], dtype=float))
+        self.void = np.stack([x.void(self.data, (count,)) for x in model.constraints], axis=1)
 
     def _points(self, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         outer = rng.uniform(0.15, 0.45, count)

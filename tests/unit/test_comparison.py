@@ -491,7 +491,7 @@ def test_a_family_understands_only_what_it_uses(family):
     declared = problem.model(frozenset(), tables).declaration.requirements
     assert set(problem.understands) <= set(declared)
     model = problem.model(frozenset(declared), tables)
-    used = [node for pair in model.limit_nodes.values() for node in pair] + list(model.quantity_node.values())
+    used = [node for x in model.constraints for node in x.nodes] + list(model.quantity_node.values())
     for name in problem.understands:
         k = next(i for i, e in enumerate(model.data_inputs) if (e.kind, e.name) == ("requirement", name))
         marked = model.program.dependence([len(model.variables) + k])

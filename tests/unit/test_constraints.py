@@ -57,7 +57,7 @@ class Asked:
         """Return some points as ``evaluate`` reads them, with their rows; each needs a value that a user can type."""
         model = self.instance.model
         for k in range(CHECKED):
-            parts, counts, choices = self.instance.describe(int(self.combinations[k]))
+            parts, counts, choices = self.instance.combinations.describe(int(self.combinations[k]))
             sizes = {v.name: float(x) for v, x in zip(model.variables, self.variables[k], strict=True)}
             typed = {name: format_quantity(x, model.units[name], None) for name, x in sizes.items()}
             design = synth.evaluate(
@@ -90,7 +90,8 @@ def question(problem, requirements, catalogs, objectives, sound, rng, **restrict
     """Return a question with points at random and limits that some of them keep and some do not."""
     plain = Instance(problem, requirements, catalogs, **restricted)
     variables = sound(plain)
-    allowed = np.arange(plain.combinations) if plain.combinations < 10_000 else rng.integers(0, plain.combinations, 999)
+    total = plain.combinations.count
+    allowed = np.arange(total) if total < 10_000 else rng.integers(0, total, 999)
     allowed = allowed[Formulation(plain, {}, 0, compiled=False).not_refused(allowed)]
     combinations = rng.choice(allowed, len(variables))
     limits = {**restricted.pop("limits", {})}
