@@ -175,6 +175,7 @@ def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
         objectives=["engagement_band"],
         points=1,
         grid=False,
+        time_limit=600,  # however busy the machine is
     )
     assert front.certificate.kind == "global"
     assert front.statistics["boxes"] > TUNING.tree.boxes_of_many  # more than a first effort
