@@ -107,13 +107,17 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         status=Status(content["status"]),
         complete=content["complete"],
         statistics=content["statistics"],
-        certificate=Certificate(**content["certificate"]),
+        certificate=_certificate_from_json(content["certificate"]),
         explanation=content["explanation"],
         settings=content["settings"],
         interrupted=content["interrupted"],
         record=content,
         folder=folder,
     )
+
+
+def _certificate_from_json(told: dict[str, Any]) -> Certificate:
+    return Certificate(**{**told, "gap": None if told["gap"] is None else float(told["gap"])})
 
 
 def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str, Any]]) -> Design:

@@ -1,12 +1,19 @@
 """Independent check of a front, saved or just computed: the record, every design, and the claim itself.
 
-Nothing here is shared with the search. The designs are evaluated by CasADi on the written-out formulas, not by the
-generated evaluator of the model; the claim is proven again by a tree of its own (``synth.prooftree``). Elasticities,
+What decides is not shared with the search: designs are evaluated by CasADi on the written-out formulas, not by the
+generated evaluator of the model, limits are read here, and the claim is proven again by a tree of its own
+(``synth.prooftree``) with an interval arithmetic of its own. What says *what was asked* is shared, so that a fault
+there is not found here: the reading of units, tables, options and declarations into the question (``synth.instance``,
+with requirement values, bounds, grids and the combinations that are allowed), the recorded formulas
+(``synth.program``, ``synth.special``) and the tolerance at which a limit holds (``synth.feasibility``). Elasticities,
 statistics and explanations are only covered by the checksum of the file.
 
 On purpose limits are read a second time, here and in ``synth.prooftree``: sides, scales and guards come from the
 declaration itself, not from the constraints that everything else reads. Of what a user limits both take the quantity,
 sense and bound of the question, and nothing else.
+
+A file that contradicts itself is told in a sentence (``synth.contradictions``) before anything is computed from it;
+whatever fails after that is a fault of the program and is not caught.
 """
 
 from __future__ import annotations
@@ -15,11 +22,13 @@ import math
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
 
+from synth.contradictions import contradiction
 from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.files import read_bytes
@@ -40,8 +49,6 @@ SAME = 1e-9  # relative; numbers that agree so far are the same
 NOISE = 1e-15  # absolute; below it nothing is compared
 WIDEST_GAP = 0.5
 NARROWINGS = 3
-# What a record that has been written over by hand leads to.
-UNREADABLE = (KeyError, TypeError, ValueError, AttributeError, IndexError)
 
 
 def verify(
@@ -80,7 +87,7 @@ def verify(
         certificate=front.certificate.kind,
         designs=len(front.designs),
         claimed_gap=front.certificate.gap,
-        amounts=front.certificate.amounts(),
+        amounts=front.certificate.amounts() if check.readable else "",
         proven_gap=check.proven,
         nodes=check.nodes,
         seconds=time.monotonic() - started,
@@ -90,23 +97,18 @@ def verify(
 def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float) -> Check:
     """Return the check of a front, done; see ``verify``."""
     check = Check(front, deadline)
-    check.record()
+    if not check.read():
+        return check
     if front.question is not None and problem is None and catalogs is None:
         check.ask(front.question)
-        provable = check.listed()
     else:
         own, tables = problem_of(front, problem, catalogs)
         try:
             check.ask(asked_again(front, own, tables))
-        except (InputError, *UNREADABLE) as error:
+        except InputError as error:
             check.find(f"the question of the record cannot be asked: {error}")
             return check
-        try:
-            provable = check.listed()
-        except UNREADABLE as error:
-            check.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
-            return check
-    if provable:
+    if check.listed():
         check.claim()
     return check
 
@@ -139,6 +141,7 @@ class Check:
 
     def __init__(self, front: ParetoFront, deadline: float) -> None:
         self.front, self.deadline = front, deadline
+        self.readable = True
         self.findings: list[str] = []
         self.open: list[str] = []
         self.proven: float | None = None
@@ -150,22 +153,24 @@ class Check:
 
     # -- the record ----------------------------------------------------------------------------
 
-    def record(self) -> None:
-        """Compare what was read with its checksum, and the other files of the folder with front.json."""
+    def read(self) -> bool:
+        """Compare what was read with its checksum and with the other files; tell whether it can be read at all."""
         record, folder = self.front.record, self.front.folder
         if record is None:
-            return
+            return True
         fault = changed(record)
         if fault:
             self.find(fault)
-        if folder is None:
-            return
-        try:
-            files = self.front.files()
-        except UNREADABLE as error:
-            self.find(f"front.json contradicts itself ({type(error).__name__}: {error})")
-            return
-        for name, text in files.items():
+        strange = contradiction(self.front)
+        self.readable = not strange
+        if strange:
+            self.find(f"front.json contradicts itself ({strange})")
+        elif folder is not None:
+            self._files(folder)
+        return self.readable
+
+    def _files(self, folder: Path) -> None:
+        for name, text in self.front.files().items():
             path = folder / name
             try:
                 same = name == "front.json" or read_bytes(path, name).decode("utf-8") == text

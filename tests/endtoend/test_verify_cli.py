@@ -107,6 +107,23 @@ def test_a_proof_that_is_given_up_is_another_answer_than_what_does_not_hold(save
     assert "3 designs where at most 2 were asked for" in done.stdout
 
 
+def test_a_front_that_contradicts_itself_does_not_hold(copy: Path) -> None:
+    rewritten(copy, lambda content: content["designs"][0].update(score="best"))
+    done = at_once("verify", copy)
+    assert (done.returncode, done.stderr) == (5, "")
+    assert done.stdout.startswith("- front.json contradicts itself (design 1: score is 'best')\n")
+
+
+def test_a_fault_of_the_proof_is_one_of_the_program(saved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*arguments: object) -> None:
+        raise KeyError("a node")
+
+    monkeypatch.setattr("synth.prooftree.ProofTree.prove", broken)
+    done = at_once("verify", saved)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith("clutchsynth: internal error, KeyError: 'a node'\n")
+
+
 @pytest.mark.parametrize("what", ["nowhere", "empty", "foreign", "broken"])
 def test_what_is_no_front_is_refused(what: str, tmp_path: Path) -> None:
     folder = tmp_path / what

@@ -1,6 +1,8 @@
 """The independent check of a front: what is true passes, whatever is changed is found, also with a new checksum."""
 
 import ast
+import contextlib
+import copy
 import dataclasses
 import json
 import math
@@ -27,7 +29,7 @@ FEW_PLATES = {"plate": ["core 1", "core 2", "core 4"]}
 
 
 def test_nothing_is_shared_with_the_search():
-    own = {"verify", "verification", "prooftree", "enclosure", "tape"}
+    own = {"verify", "verification", "contradictions", "prooftree", "enclosure", "tape"}
     allowed = own | {
         "errors",
         "feasibility",
@@ -451,6 +453,53 @@ def test_nonsense_is_found_or_refused_but_never_a_fault_of_the_program(saved, tm
                 continue
             if nonsense is not None or key not in ("complete", "interrupted"):  # nothing counts as no
                 assert findings(loaded), (key, nonsense)
+
+
+def places(content, above=()):
+    """Yield the keys that lead to everything in a record, of lists to their first entry alone."""
+    for key in content if isinstance(content, dict) else range(min(1, len(content))):
+        yield (*above, key)
+        if isinstance(content[key], (dict, list)):
+            yield from places(content[key], (*above, key))
+
+
+@pytest.mark.parametrize("nonsense", [-7, "x", None, [1], {"a": [None]}, 1e30, True, "\ud800"], ids=repr)
+def test_nonsense_anywhere_is_told_and_never_a_fault_of_the_program(nonsense, saved, tmp_path):
+    original = json.loads((saved / "front.json").read_text(encoding="utf-8"))
+    del original["digest"]
+    for *above, last in places(original):
+        content = copy.deepcopy(original)
+        place = content
+        for key in above:
+            place = place[key]
+        place[last] = nonsense
+        content["digest"] = ParetoFront.digest_of(content)
+        (tmp_path / "front.json").write_text(json.dumps(content), encoding="utf-8")
+        with contextlib.suppress(synth.InputError):
+            told = load_front(tmp_path).verify(STRUT, RODS_TABLE, time_limit=1e-9)
+            assert told.sentence()
+
+
+def test_what_contradicts_itself_is_said_in_one_sentence(saved, tmp_path):
+    content = json.loads((saved / "front.json").read_text(encoding="utf-8"))
+    del content["digest"], content["designs"][1]["values"]["length"]
+    content["digest"] = ParetoFront.digest_of(content)
+    (tmp_path / "front.json").write_text(json.dumps(content), encoding="utf-8")
+    told = load_front(tmp_path).verify(STRUT, RODS_TABLE)
+    assert told.findings == ("front.json contradicts itself (design 2: length has no value)",)
+    assert told.verdict is Verdict.REFUTED
+
+
+@pytest.mark.parametrize("place", ["_evaluator", "_same", "uncovered", "ProofTree.prove", "Check._ranking"])
+@pytest.mark.parametrize("fault", [KeyError, TypeError, ValueError, AttributeError, IndexError])
+def test_a_fault_of_the_check_is_not_taken_for_one_of_the_front(place, fault, saved, monkeypatch):
+    def broken(*arguments):
+        raise fault("broken")
+
+    monkeypatch.setattr(f"synth.verify.{place}", broken)
+    loaded = dataclasses.replace(load_front(saved), complete=True)  # so that all parts of the check are reached
+    with pytest.raises(fault, match="broken"):
+        loaded.verify(STRUT, RODS_TABLE)
 
 
 def test_a_problem_of_your_own_has_to_be_handed_over(saved):
