@@ -20,6 +20,7 @@ from pathlib import Path
 
 from synth import deadline
 from synth.effort import CompilingEffort
+from synth.native_switch import native_wanted
 
 EFFORT = CompilingEffort()
 TURN = 0.02  # s between looks at the compiler
@@ -59,8 +60,7 @@ def switched_off() -> Iterator[None]:
 
 def switched_on() -> bool:
     """Tell whether compiled code is wanted."""
-    wanted = os.environ.get("CLUTCHSYNTH_NATIVE") != "0" and not _off.get()
-    return wanted and _refused.get() is not deadline.current()
+    return native_wanted() and not _off.get() and _refused.get() is not deadline.current()
 
 
 def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:

@@ -19,6 +19,7 @@ from synth.constraint import SIGNS, Constraint
 from synth.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.declaration import Origin, Part, Refusal
 from synth.errors import InputError, RefusedError, at
+from synth.fingerprint import Fingerprint, code_digest, hash_of, joined, native_code, problem_digest, processor
 from synth.inputs import fixed_designation, fixed_row_values, inputs_of_combination, part_value
 from synth.margins import within
 from synth.model import Evaluation, Model
@@ -674,6 +675,30 @@ class Instance:
         """Return data input number ``position`` for every alternative of the slot, count or choice it belongs to."""
         entry = self.model.data_inputs[position]
         return self.combinations.column(entry.name, entry.column)
+
+    def fingerprint(self) -> Fingerprint:
+        """Return what decides the numbers of an answer to this question, by which kept results are known again."""
+        model, selection, problem = self.model, self.selection, self.problem
+        asked = {
+            "family": problem.name,
+            "options": {name: option.chosen for name, option in model.declaration.options.items()},
+            "restated": repr(problem.restated),
+            "requirements": self.requirements,
+            "rows": {s.slot: joined(s.table.hashes[int(r)] for r in s.rows) for s in selection.slots},
+            "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
+            "ranges": [self.lower.tolist(), self.upper.tolist()],
+            "grids": [grid.tolist() for grid in self.grids()],
+            "limits": [[x.name, x.quantity, x.sense, x.bound] for x in self.own],
+            "compared": [str(x) for x in self.compared],
+        }
+        computed = [model.function("sources", self._sources), native_code(), processor()]
+        return Fingerprint(question=hash_of(asked), computation=hash_of(computed))
+
+    def _sources(self) -> list[str]:
+        """Return the hashes of the code, of the family's sources, and of the formulas that it has declared."""
+        program = self.model.program
+        formulas = hash_of([repr(x) for x in (*program.nodes, *program.outputs)])
+        return [code_digest(), problem_digest([self.problem.declared_by]), formulas]
 
     def grids(self) -> list[np.ndarray]:
         """Return, per variable, the makeable values in force; empty where it is continuous."""

@@ -10,7 +10,6 @@ import ctypes
 import hashlib
 import os
 import platform
-import shutil
 import subprocess
 from collections.abc import Sequence
 from functools import cache
@@ -23,6 +22,7 @@ from synth.compilation import compile_shared, switched_on
 from synth.derivatives import RowFunctions
 from synth.interior_point import Ends, Problems
 from synth.native_source import source
+from synth.native_switch import c_compiler
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
 # Compiling takes seconds, so that it pays for large questions only. What decides is the question, never what happens
@@ -146,7 +146,7 @@ def cache_folder() -> Path | None:
 @cache
 def _compiler() -> tuple[str, str] | None:
     """Return the path and version of the system's C compiler."""
-    path = shutil.which("cc")
+    path = c_compiler()
     if path is None:
         return None
     try:

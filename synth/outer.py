@@ -8,8 +8,6 @@ asks the same meanwhile has a study of its own in memory.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import logging
 import os
 import warnings
@@ -22,13 +20,14 @@ import numpy as np
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.file_locks import alone
-from synth.fingerprint import code_digest, problem_digest
+from synth.fingerprint import hash_of
 from synth.formulation import Boxes, Formulation
 from synth.instance import Instance
-from synth.posed import nominal
 from synth.purposes import Purpose
 from synth.seeker import roundings
 from synth.tuning import TUNING, Tuning
+
+BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"
 
 
 def search_parts(
@@ -110,32 +109,24 @@ def _searched(
 def study_file(instance: Instance, objectives: Mapping[str, str], seed: int, tuning: Tuning = TUNING) -> Path | None:
     """Return where the study of a question is kept, or None where no folder can be written.
 
-    What computes the answers belongs to its name: another version must not go on with trials that it would value
-    differently.
+    What computes the answers belongs to its name: another version or processor must not go on with trials that it
+    would value differently.
     """
-    selection = instance.selection
-    question = {
-        "code": [code_digest(), problem_digest([type(nominal(instance.problem))])],
-        "family": instance.problem.name,
-        "options": dict(instance.problem.options),
-        "restated": repr(instance.problem.restated),
-        "requirements": instance.requirements,
-        "rows": {s.slot: [s.table.hashes[int(r)] for r in s.rows] for s in selection.slots},
-        "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
-        "ranges": [instance.lower.tolist(), instance.upper.tolist(), bool(instance.grid)],
-        "limits": [repr(x) for x in instance.own],
-        "compared": [str(x) for x in instance.compared],
-        "objectives": dict(objectives),
-        "seed": seed,
-        "tuning": repr(tuning),
-    }
-    digest = hashlib.sha256(json.dumps(question, sort_keys=True).encode()).hexdigest()[:24]
+    own = instance.fingerprint()
+    asked, computed = hash_of([own.question, list(objectives.items()), seed]), hash_of([own.computation, repr(tuning)])
     folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "clutchsynth" / "studies"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
         return None
-    return folder / f"{digest}.journal" if os.access(folder, os.W_OK) else None
+    return folder / f"{asked[:24]}_{computed[:16]}.journal" if os.access(folder, os.W_OK) else None
+
+
+def passed_over(journal: Path | None) -> bool:
+    """Tell whether the study of a question begins anew although one is kept, which was computed in another way."""
+    if journal is None or journal.exists():
+        return False
+    return any(journal.parent.glob(f"{journal.stem.split('_')[0]}_*{journal.suffix}"))
 
 
 def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:

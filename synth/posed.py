@@ -100,6 +100,11 @@ class RobustProblem(DesignProblem):
                 d.limits[name] = _posed(limit, shifted[place], name)
         _refuse(d, things, shifted.values())
 
+    @property
+    def declared_by(self) -> type[DesignProblem]:
+        """The class whose sources decide what is declared: that of the family."""
+        return self.base.declared_by
+
     def curves(self, spec: Mapping[str, Any], design: Design | None = None) -> Mapping[str, pd.DataFrame] | None:
         """Return the curves of the family."""
         return self.base.curves(spec, design)

@@ -7,7 +7,6 @@ All problems of a design and objective that differ in one of these are solved at
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import time
@@ -23,7 +22,7 @@ from synth.batch_nlp import MISSED, Solutions, Tasks
 from synth.deadline import Stopped, until
 from synth.elasticity import NOISE, Optima, optima
 from synth.errors import InputError
-from synth.fingerprint import code_digest
+from synth.fingerprint import hash_of
 from synth.formulation import Formulation
 from synth.instance import Instance
 from synth.output_folder import claimed
@@ -88,10 +87,10 @@ def prices(
         raise InputError("step", step, f"from {percent(LEAST_STEP)} to {percent(WIDEST_STEP)}, for example '1 %'")
     instance = question_of(front, problem, catalogs)
     digest = (front.record or json.loads(front.files()["front.json"])).get("digest")
-    content = json.dumps([FORMAT, digest, share, code_digest()])
+    own = hash_of([FORMAT, digest, share, instance.fingerprint().whole])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
-        store = Store.of(place, hashlib.sha256(content.encode()).hexdigest())
+        store = Store.of(place, own)
         return _Pricing(instance, front, share, progress, time_limit).run(chosen, store)
 
 

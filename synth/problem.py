@@ -130,6 +130,11 @@ class DesignProblem:
         chosen: str = model.declaration.options[name].chosen
         return chosen
 
+    @property
+    def declared_by(self) -> type[DesignProblem]:
+        """The class whose sources decide what is declared."""
+        return type(self)
+
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
         key = (given, id(catalogs), compared)

@@ -24,7 +24,7 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.formulation import Archive, Boxes, Candidate, Formulation, rows_of
 from synth.instance import Instance
-from synth.outer import search_parts, study_file
+from synth.outer import BEGUN_ANEW, passed_over, search_parts, study_file
 from synth.pareto import extremes, rank, spread_subset
 from synth.posed import posed
 from synth.problem import DesignProblem
@@ -661,7 +661,7 @@ class FrontSearch:
         if self.thorough and not solved and not self._solve_few(left, purpose):
             seed, trials = self.settings.seed, self.tuning.heuristics.parts.trials
             journal = study_file(self.instance, self.chosen, seed, self.tuning)
-            self._say("parts", 0.0)
+            self._say("parts", 0.0, BEGUN_ANEW if passed_over(journal) else "")
             self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, seed, trials)
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -11,6 +10,7 @@ from typing import Any
 
 from synth.errors import InputError
 from synth.files import read_bytes, read_json, write_atomically
+from synth.fingerprint import joined
 from synth.front_record import record_text
 from synth.loading import load_front
 from synth.output_folder import settle
@@ -20,11 +20,6 @@ FORMAT = 1
 RECORD = "study.json"
 STEPS = "steps"
 STEP = re.compile(r"step ([1-9][0-9]*)")  # its key in the record
-
-
-def joined(fingerprints: Sequence[str]) -> str:
-    """Return one hash of several."""
-    return hashlib.sha256(" ".join(fingerprints).encode()).hexdigest()
 
 
 class StudyStore:

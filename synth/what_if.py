@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import time
@@ -16,7 +15,7 @@ import numpy as np
 
 from synth.breaks import find_breaks, weight_breaks
 from synth.deadline import Stopped, until
-from synth.fingerprint import code_digest
+from synth.fingerprint import hash_of, joined
 from synth.front_record import front_record
 from synth.loading import front_of_record
 from synth.output_folder import claimed
@@ -30,7 +29,7 @@ from synth.search import Question
 from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.study import Break, Step, Study
 from synth.study_questions import Steps
-from synth.study_store import FORMAT, RECORD, StudyStore, joined
+from synth.study_store import FORMAT, RECORD, StudyStore
 from synth.together_fronts import joint_answers, joint_groups
 from synth.uncertainty import read_block
 
@@ -306,28 +305,7 @@ def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
 
 
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
-    """Return the hash of all that decides an answer but ideas: question, formulas, tables, code."""
-    instance, selection = question.instance, question.instance.selection
-    program = instance.model.program
-    formulas = instance.model.function(
-        "fingerprint", lambda: hashlib.sha256(repr([*program.nodes, *program.outputs]).encode()).hexdigest()
-    )
-    settings = {k: v for k, v in question.record().items() if weights or k != "weights"}
-    content = {
-        "format": FORMAT,
-        "family": instance.problem.name,
-        "options": {n: o.chosen for n, o in instance.model.declaration.options.items()},
-        "requirements": instance.requirements,
-        "rows": {s.slot: joined([s.table.hashes[int(r)] for r in s.rows]) for s in selection.slots},
-        "steps": {n: v.tolist() for n, v in {**selection.counts, **selection.choices}.items()},
-        "ranges": [instance.lower.tolist(), instance.upper.tolist()],
-        "grids": [hashlib.sha256(g.tobytes()).hexdigest() for g in instance.grids()],
-        "limits": [repr(x) for x in instance.own],
-        "compared": [str(x) for x in instance.compared],
-        "objectives": dict(question.chosen),
-        "settings": {k: repr(v) for k, v in settings.items()},
-        "robust": None if rater is None else rater.asked.block(),
-        "formulas": formulas,
-        "code": code_digest(),
-    }
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    """Return the hash of all that decides an answer but ideas: question, settings, and what computes."""
+    settings = {k: repr(v) for k, v in question.record().items() if weights or k != "weights"}
+    robust = None if rater is None else rater.asked.block()
+    return hash_of([FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust])

@@ -11,7 +11,7 @@ ENGINE = ROOT / "synth"
 
 # From the ground up; each place, a package or a module, may import what stands in lines before its own.
 LAYERS = (
-    ("special", "margins", "pareto", "feasibility", "interrupts", "deadline", "effort", "file_locks"),
+    ("special", "margins", "pareto", "feasibility", "interrupts", "deadline", "effort", "file_locks", "native_switch"),
     ("plain_text", "input_limits"),
     ("errors",),
     ("files",),
@@ -45,6 +45,7 @@ FLAT: dict[str, str] = {
     "cli": "terminal",
     "clock": "search",
     "clusters": "bounds",
+    "combinations": "question",
     "comparing": "studies",
     "comparison": "studies",
     "compilation": "compiled",
@@ -68,6 +69,7 @@ FLAT: dict[str, str] = {
     "given": "terminal",
     "hooks": "analysis",
     "improvement": "search",
+    "inputs": "question",
     "instance": "question",
     "interior_point": "nlp",
     "intervals": "bounds",

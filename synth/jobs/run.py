@@ -17,7 +17,7 @@ from sqlalchemy import URL
 
 from synth.count_domain import stated_value
 from synth.errors import InputError, whole_number
-from synth.fingerprint import code_digest, problem_digest
+from synth.fingerprint import code_digest, native_code, problem_digest
 from synth.input_limits import INPUT_LIMITS
 from synth.instance import as_catalogs, as_mapping
 from synth.jobs.executors import Cluster, Inline, Processes
@@ -218,6 +218,7 @@ class BatchJob:
         self.hashes = {
             "rows": self.table.digest(),
             "code": code_digest(),
+            "native code": native_code(),  # processors may differ among the workers of one job
             "families": problem_digest(self.questioner.problems()),
             "tables": self.catalogs.digest(),
         }
@@ -482,10 +483,11 @@ def resume(
         raise InputError("job", job, "its own script: only that knows the problem or the tables it was made with")
     now = {
         "code": code_digest(),
+        "native code": native_code(),
         "families": problem_digest([type(load(name)) for name in content["families"]]),
         "tables": as_catalogs(content["catalogs"]).digest(),
     }
-    changed = [name for name, text in now.items() if content["hashes"][name] != text]
+    changed = [name for name, text in now.items() if content["hashes"].get(name) != text]
     if changed:
         wanted = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
         raise InputError("job", job, wanted)

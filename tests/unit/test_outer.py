@@ -6,13 +6,14 @@ import sys
 import numpy as np
 import pytest
 
+import synth.instance
 from synth import outer
 from synth.clock import Clock, Stopped
 from synth.effort import SearchEffort
 from synth.file_locks import alone
 from synth.formulation import Archive, Formulation
 from synth.instance import Instance, catalogs_for
-from synth.outer import search_parts, study_file
+from synth.outer import BEGUN_ANEW, passed_over, search_parts, study_file
 from synth.purposes import Cover
 from synth.tuning import PartSampling
 from tests.tuned import synthesize, tuned
@@ -200,13 +201,32 @@ def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
     assert files[0].parent == tmp_path / "clutchsynth" / "studies"
 
 
-@pytest.mark.parametrize("what", ["code_digest", "problem_digest"])
-def test_another_version_does_not_go_on_with_a_study(monkeypatch, what):
+@pytest.mark.parametrize("what", ["code_digest", "problem_digest", "native_code", "processor"])
+def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeypatch, tmp_path, what):
     def file():
         instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
         return study_file(instance, {"mass": "min"}, 0)
 
     before = file()
     assert file() == before
-    monkeypatch.setattr(outer, what, lambda *_: "sources of another version")
+    assert not passed_over(before)
+    before.touch()
+    assert not passed_over(before)
+    monkeypatch.setattr(synth.instance, what, lambda *_: "another")
     assert file() != before
+    assert passed_over(file())
+    file().touch()
+    assert not passed_over(file())
+    assert not passed_over(None)
+
+
+def test_a_study_that_begins_anew_is_told(monkeypatch, tmp_path):
+    told = []
+    with monkeypatch.context() as patch:
+        Breaks(patch, 2)
+        ask(progress=lambda state: told.append(state["message"]))
+    assert BEGUN_ANEW not in told
+    assert len(journals(tmp_path)) == 1
+    monkeypatch.setattr(synth.instance, "processor", lambda: "another")
+    assert ask(progress=lambda state: told.append(state["message"])).statistics["outer_trials"] == TRIALS
+    assert BEGUN_ANEW in told
