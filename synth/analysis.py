@@ -309,7 +309,10 @@ def _evaluate(
     result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
     refuse_not_computable(model, result, found, variables, data)
-    return make_design(instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found)
+    steps = model.steps(variables, data)
+    return make_design(
+        instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found, steps=steps
+    )
 
 
 def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:

@@ -222,6 +222,18 @@ class Origin(StrEnum):
 
 
 @dataclass(frozen=True)
+class Step:
+    """A named quantity on the way to others, which is not among the public results."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    sx: Any
+
+
+@dataclass(frozen=True)
 class Limit:
     """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
 
@@ -487,6 +499,7 @@ class Declaration:
         self.slots: dict[str, Part] = {}
         self.rows: dict[str, Part] = {}
         self.derived: dict[str, Derived] = {}
+        self.steps: dict[str, Step] = {}
         self.limits: dict[str, Limit] = {}
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
@@ -507,7 +520,7 @@ class Declaration:
 
     def names(self) -> dict[str, str]:
         """Return every accepted spelling (name or symbol) and the name it stands for."""
-        return dict(self._symbols)
+        return {word: name for word, name in self._symbols.items() if name not in self.steps}
 
     # -- verbs ---------------------------------------------------------------------------------
 
@@ -726,6 +739,19 @@ class Declaration:
         highest = np.inf if ceiling is None else float(to_si(ceiling, parsed))
         record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr), highest)
         self.derived[name] = record
+        return record.sx
+
+    def step(
+        self, name: str, unit: str, expr: Any, symbol: str | None = None, text: str = "", source: str = ""
+    ) -> Quantity:
+        """Name a quantity on the way to others, so that hooks read it from ``design.steps``; return its expression.
+
+        It is no public result: no column, limit or objective, and the search does not see it.
+        """
+        symbol = self._claim(name, symbol)
+        parse_unit(unit)
+        record = Step(name, unit, symbol, text, source, ca.SX(expr))
+        self.steps[name] = record
         return record.sx
 
     def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:

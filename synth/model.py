@@ -141,6 +141,27 @@ class Model:
 
     # -- the trace -----------------------------------------------------------------------------
 
+    def steps(self, variables: np.ndarray, data: Sequence[Any]) -> dict[str, float]:
+        """Return the steps of one design in SI.
+
+        Parameters
+        ----------
+        variables : array (variables,)
+            SI values in the declared order.
+        data : list of numbers
+            One entry per data input.
+        """
+        steps = self.declaration.steps
+        if not steps:
+            return {}
+        # A program of its own: the search does not carry what only hooks read.
+        if "steps" not in self._function_cache:
+            program = Program(self.inputs, [s.sx for s in steps.values()], self.calls)
+            self._function_cache["steps"] = program.compile()
+        with np.errstate(all="ignore"):
+            found = self._function_cache["steps"]([np.array([x], dtype=float) for x in (*variables, *data)])
+        return {name: float(np.ravel(x)[0]) for name, x in zip(steps, found, strict=True)}
+
     def _data_inputs(self, d: Declaration) -> list[DataInput]:
         inputs = [DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None]
 
@@ -160,6 +181,7 @@ class Model:
         d = self.declaration
         sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
         named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
+        named += [(f"step {s.name}", s.sx) for s in d.steps.values()]
         when = [(f"refusal {r.code}", r.when) for r in d.refusals] + [(f"advice {a.code}", a.when) for a in d.advices]
         for label, expression in sides + named + when:
             strange = sorted({str(s) for s in ca.symvar(expression)} - known)

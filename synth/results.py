@@ -74,7 +74,8 @@ class Design:
 
     ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
     exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells
-    which values of a given design lie outside of the range that is searched, and what that is. ``robust`` tells,
+    which values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds, for a
+    design that was just evaluated, quantities on the way to others by name in SI, which hooks read. ``robust`` tells,
     where that was asked, how the design stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and
     ``yield_high``, ``worst_limit``, and per limit its worst point.
     """
@@ -100,6 +101,7 @@ class Design:
     violated: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
     robust: Mapping[str, Any] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ import numpy as np
 from problems import friction
 from problems.cone import formulas as cone
 from problems.friction import startup_curves
-from problems.mechanics import heat
+from problems.mechanics import heat, plates
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
 
@@ -173,7 +174,7 @@ class ConeClutch(DesignProblem):
             "dm + l_g sin(alpha) + 2 (t_s + t_lining)",
             "Length of the cone and what the layout adds to it",
         )  # fmt: skip
-        self._declare_temperature(d, duty, wants, pair, start, shell_mass)
+        self._declare_temperature(d, duty, wants, pair, start, size, shell_mass)
         friction.declare_envelope(d, duty, shape.force, size.diameter, size.length)
         d.objective("mass")
         d.objective("actuation_force")
@@ -229,6 +230,10 @@ class ConeClutch(DesignProblem):
             "ring_ratio_max", ratio, wants.ring_ratio_max, "-",
             text="The face is not too wide", source=f"{S1}, empirical range of c",
         )  # fmt: skip
+        area = d.step(
+            "face_area", "cm2", cone.face_area(mean_diameter, length), symbol="A_face",
+            text="Area of the friction face", source="geometry",
+        )  # fmt: skip
         practice = "practice of cone clutches: 8 to 15, at most 18 degrees"
         d.advise(
             "slender_cone", angle < np.radians(8), "half angles below 8 degrees tend to grab and to stick",
@@ -247,7 +252,7 @@ class ConeClutch(DesignProblem):
             angle=angle,
             shell_thickness=shell_thickness,
             ratio=ratio,
-            area=cone.face_area(mean_diameter, length),
+            area=area,
             largest_diameter=cone.largest_diameter(mean_diameter, length, angle),
         )
 
@@ -297,6 +302,14 @@ class ConeClutch(DesignProblem):
         static = pair.part.mu_static
         if duty.friction_basis == "worst_case":
             static = np.maximum(static, pair.part.mu_max)
+        d.step(
+            "locking_angle", "deg", cone.locking_angle(static), symbol="alpha_lock",
+            text="Below this half angle the cones may lock", source=DERIVED,
+        )  # fmt: skip
+        d.step(
+            "kept_angle", "deg", cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)),
+            symbol="alpha_kept", text="Half angle that keeps locking_margin", source=DERIVED,
+        )  # fmt: skip
         d.at_least(
             "self_locking", np.tan(shape.angle), wants.locking_margin * static, "-",
             text="The cones come apart by themselves", source=f"{DERIVED}: tan(alpha) >= mu_static",
@@ -335,8 +348,12 @@ class ConeClutch(DesignProblem):
         wants: Wants,
         pair: friction.Pair,
         start: friction.Startup,
+        size: friction.Size,
         shell_mass: Any,
     ) -> None:
+        friction.declare_heated_body(
+            d, shell_mass * duty.steel_specific_heat, plates.cylinder_surface(size.diameter, size.length), "A shell"
+        )
         rise = d.derive(
             "temperature_rise", "K",
             heat.adiabatic_rise(start.friction_work, shell_mass, duty.steel_specific_heat, SHELL_SHARE), symbol="dT",
@@ -364,7 +381,7 @@ class ConeClutch(DesignProblem):
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the conical shell over repeated engagements."""
-        return startup_curves.startup_frames(self, spec, design, startup_curves.heated_capacity(design, SHELL_SHARE))
+        return startup_curves.startup_frames(self, spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return axial forces over the half angle, for some friction values and of a design, and the start-up.
@@ -416,14 +433,11 @@ class ConeClutch(DesignProblem):
     def _force_over_angle(self, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
         import pandas as pd
 
-        value, pair = design.values, design.parts["friction_pair"]
-        worst_case = self.options.get("friction_basis", self.options.get("basis", "nominal")) == "worst_case"
-        low, high = (pair["mu_min"], pair["mu_max"]) if worst_case else (pair["mu_dynamic"], pair["mu_dynamic"])
-        static = max(pair["mu_static"], high) if worst_case else pair["mu_static"]
+        value, step, pair = design.values, design.steps, design.parts["friction_pair"]
+        low, high = step["least_friction"], step["greatest_friction"]
         degrees = np.linspace(*ANGLES_SHOWN, 105)
         angle = np.radians(degrees)
         mean, ratio = value["mean_diameter"], value["ring_ratio"]
-        area = cone.face_area(mean, value["generator_length"])
         # The normal force that carries the torque of the design at each angle, and the spring that engages it.
         normal = value["torque"] / cone.friction_torque(low, mean, ratio, angle)
         spring = cone.engaging_force(normal, angle, low)
@@ -435,11 +449,11 @@ class ConeClutch(DesignProblem):
             "releasing [N]": cone.release_force(cone.normal_force(spring, angle, high), angle, high),
             "engaged [N*m]": np.full_like(angle, value["torque"]),
             "seated by vibration [N*m]": cone.friction_torque(high * seated, mean, ratio, angle),
-            "engaged [N/mm2]": normal / area / 1e6,
-            "seated by vibration [N/mm2]": seated / area / 1e6,
+            "engaged [N/mm2]": normal / step["face_area"] / 1e6,
+            "seated by vibration [N/mm2]": seated / step["face_area"] / 1e6,
         })  # fmt: skip
         by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
-        locking, kept = np.degrees(cone.locking_angle(static * np.array([1.0, max(spec["locking_margin"], 1.0)])))
+        locking, kept = (math.degrees(step[name]) for name in ("locking_angle", "kept_angle"))
         allowed = pair["p_allow"] / 1e6
         lines = [
             {"panel": 0, "y": 0.0, "label": "below: must be pulled apart"},

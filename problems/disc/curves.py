@@ -90,7 +90,7 @@ def pressure_over_radius(problem: DesignProblem, design: Any) -> pd.DataFrame:
         "panels": [{"label": "pressure [N/mm2]", "columns": list(frame.columns[1:])}],
         "marks": [
             {"x": value["friction_radius"] * 1e3, "label": "friction radius, new"},
-            {"x": mean / 2 * 1e3, "label": "friction radius, worn in"},
+            {"x": design.steps["worn_friction_radius"] * 1e3, "label": "friction radius, worn in"},
         ],
         "lines": [{"panel": 0, "y": design.parts["friction_pair"]["p_allow"] / 1e6, "label": "p_allow"}],
         "source": "uniform pressure; Shigley, Mechanical Engineering Design, uniform wear",

@@ -9,7 +9,6 @@ from problems import friction
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
-from problems.mechanics import disc
 from problems.mechanics import ring as ring_formulas
 from synth import DesignProblem
 from synth.declaration import Declaration
@@ -72,8 +71,7 @@ class DiscClutch(DesignProblem):
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""
-        hottest = startup_curves.heated_capacity(design, disc.HOTTEST_PLATE_SHARE)
-        return startup_curves.startup_frames(self, spec, design, hottest * design.values["discs"])
+        return startup_curves.startup_frames(self, spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the size a torque needs and what starts cost; of a design pressure over radius, torque over force.

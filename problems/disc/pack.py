@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching
+from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching, declare_heated_body
 from problems.friction.ring import Ring
 from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import disc, heat, plates
@@ -149,6 +149,10 @@ def declare_worn_torque(d: Declaration, pair: Pair, torques: Torques, ring: Ring
         symbol="M_worn", text="Capacity with worn-in lining, pressure times radius constant (worst_case: with mu_min)",
         source="Shigley, Mechanical Engineering Design, uniform wear",
     )  # fmt: skip
+    d.step(
+        "worn_friction_radius", "mm", ring.mean_diameter / 2, symbol="r_worn",
+        text="Friction radius of the worn-in lining", source="Shigley, Mechanical Engineering Design, uniform wear",
+    )  # fmt: skip
     d.at_least(
         "worn_torque_capacity", worn, torques.required, "N*m",
         text="The worn-in clutch carries the sizing torque", source="Shigley, Mechanical Engineering Design",
@@ -235,7 +239,9 @@ def declare_disc_temperature(
         "mean_temperature", mean_rise, pair.part.temp_continuous - duty.ambient_temperature, "K",
         text="The lining stands the mean temperature", source="Neale, Tribology Handbook, Table 7.4",
     )  # fmt: skip
-    advise_frequent_switching(d, duty, pack.discs * plate_mass * wants.pressure_plate_specific_heat, cooled_area)
+    capacity = pack.discs * plate_mass * wants.pressure_plate_specific_heat
+    declare_heated_body(d, capacity, cooled_area, "The pressure plates")
+    advise_frequent_switching(d, duty, capacity, cooled_area)
     d.advise(
         "lining_temperature",
         mean_rise + rise > pair.part.optional("temp_max") - duty.ambient_temperature,

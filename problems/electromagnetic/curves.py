@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems.electromagnetic import formulas as pot_magnet
-from problems.friction import startup_curves
 from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS, Warmth
-from problems.mechanics import disc, heat, magnetics, plates
+from problems.magnet.coil_curves import POINTS
+from problems.mechanics import magnetics
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,62 +74,6 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
     )
 
 
-def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
-    """Return what heats and cools the magnet of a design."""
-    shape, wire, value = built(spec, design).shape, design.parts["winding_wire"], design.values
-    surface = magnetics.cylinder_surface(shape.outer_radius, shape.body_length)
-    radius = shape.inner_pole_radius + shape.coil_height / 2
-    return Warmth(
-        conductance=float(spec["still_heat_transfer"] * surface),
-        ambient=spec["ambient_temperature"],
-        limit=wire["insulation_temperature"],
-        limited_by="insulation",
-        other_heat=float(heat.hourly_heat(value["friction_work"], spec["engagements_per_hour"])),
-        brush_drop=0.0,
-        resistance=float(magnetics.coil_resistance(radius, value["turns"], wire["copper_area"])),
-    )
-
-
-@dataclass(frozen=True)
-class HeatedPack:
-    """What stores the heat of a start, and the surface that gives it off."""
-
-    heat_capacity: float
-    cooled_area: float
-
-
-def pack_of(spec: Mapping[str, Any], design: Any, discs: bool) -> HeatedPack:
-    """Return the friction pack of a design as the start-up heats it, without the magnet.
-
-    Parameters
-    ----------
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-    discs : bool
-        The pack is that of a disc clutch.
-
-    Returns
-    -------
-    HeatedPack
-        Heat capacity [J/K] and surface [m2].
-    """
-    value, pair, shape = design.values, design.parts["friction_pair"], built(spec, design).shape
-    length = value["length"] - shape.length
-    if discs:
-        diameter = value["ring_outer_diameter"] + 2 * spec["cover_gap"]
-        capacity = startup_curves.heated_capacity(design, disc.HOTTEST_PLATE_SHARE) * value["discs"]
-    else:
-        diameter = plates.drum_diameter(value["outer_spline_radius"], spec["drum_wall"])
-        section = value["turns"] * design.parts["winding_wire"]["copper_area"]
-        copper = magnetics.copper_mass(shape.inner_pole_radius + shape.coil_height / 2, section)
-        magnet = pot_magnet.magnet_mass(spec["steel_density"], shape, copper)
-        lining = plates.lining_mass(pair["density"], pair["lining_thickness"], value["friction_area"])
-        capacity = (value["mass"] - magnet - lining) * spec["steel_specific_heat"]
-    return HeatedPack(float(capacity), float(plates.cylinder_surface(diameter, length)))
-
-
 def _torques(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
     return [
         {"panel": 0, "y": design.values["required_torque"], "label": "sizing torque"},
@@ -157,7 +100,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
     """
     import pandas as pd
 
-    body, warm, value = built(spec, design), warmth(spec, design), design.values
+    body, warm, value = built(spec, design), coil_curves.warmth(spec, design, "insulation"), design.values
     current = np.linspace(0.0, 1.5, POINTS) * value["current"]
     turned = current * value["turns"]
     flux_density = body.flux_density(turned)
@@ -172,7 +115,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
         "yoke [T]": body.yoke(flux_density),
         "temperature rise [K]": warm.rise(current),
     })  # fmt: skip
-    needed = spec["pull_in_margin"] * (spec["return_spring_force"] + spec["release_drag_force"])
+    needed = spec["pull_in_margin"] * design.steps["springs_and_drag"]
     lines = _torques(spec, design)
     if spec["overload_torque"] is not None:
         lines.append({"panel": 0, "y": spec["overload_torque"], "label": "overload_torque"})
@@ -184,7 +127,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
             {"label": "flux density [T]", "columns": ["poles [T]", "yoke [T]"]},
             {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
         ],
-        "marks": coil_curves.current_marks(spec, design),
+        "marks": coil_curves.current_marks(design),
         "lines": [
             *lines,
             {"panel": 1, "y": needed, "label": "pull_in"},
@@ -218,7 +161,7 @@ def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], des
     return coil_curves.torque_over_temperature(
         problem,
         design,
-        warmth(spec, design),
+        coil_curves.warmth(spec, design, "insulation"),
         lambda ampere_turns: unit * body.force(body.flux_density(ampere_turns)),
         _torques(spec, design),
         SOURCE,
@@ -245,15 +188,14 @@ def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
     import pandas as pd
 
     body, value = built(spec, design), design.values
-    surfaces = value["friction_surfaces"] if "friction_surfaces" in value else disc.surface_count(value["discs"])
-    engaged, released = spec["residual_gap"], spec["residual_gap"] + surfaces * spec["plate_gap"]
+    engaged, released = spec["residual_gap"], design.steps["released_gap"]
     gaps = np.linspace(engaged, 1.2 * released - 0.2 * engaged, POINTS)
     turned = value["ampere_turns"]
     pull = []
     for gap in gaps:
         opened = replace(body, shape=replace(body.shape, residual_gap=gap))
         pull.append(float(pot_magnet.magnet_force(opened.flux_density([turned])[0], body.shape)))
-    springs = spec["return_spring_force"] + spec["release_drag_force"]
+    springs = design.steps["springs_and_drag"]
     frame = pd.DataFrame({
         "gap at each pole [mm]": gaps * 1e3,
         "pull [N]": pull,
@@ -289,4 +231,4 @@ def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -
     pandas.DataFrame
         From ambient temperature to a little above the limit.
     """
-    return coil_curves.heat_balance(problem, design, warmth(spec, design), SOURCE)
+    return coil_curves.heat_balance(problem, design, coil_curves.warmth(spec, design, "insulation"), SOURCE)

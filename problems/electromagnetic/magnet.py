@@ -159,14 +159,15 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     )  # fmt: skip
     field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
     ampere_turns = pot_magnet.engaged_ampere_turns(unknowns.flux_density, shape, field)
+    released, springs = _name_release(d, duty, wants, surfaces)
     pull_in = d.derive(
         "pull_in_force", "N",
-        pot_magnet.pull_in_force(ampere_turns, wants.residual_gap + surfaces * duty.plate_gap, shape.pole_area),
+        pot_magnet.pull_in_force(ampere_turns, released, shape.pole_area),
         symbol="F_in", needs="iron_saturation",
         text="Pull on the released armature, across all gaps of the pack", source=f"{S4}, section 6.6",
     )  # fmt: skip
     d.at_least(
-        "pull_in", pull_in, wants.pull_in_margin * (wants.return_spring_force + wants.release_drag_force), "N",
+        "pull_in", pull_in, wants.pull_in_margin * springs, "N",
         text="The magnet draws the released armature in", source=f"{S4}, section 6.6",
     )  # fmt: skip
     d.derive(
@@ -184,6 +185,19 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     _declare_remarks(d, wants)
     copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, copper_section)
     return pot_magnet.magnet_mass(duty.steel_density, shape, copper)
+
+
+def _name_release(d: Declaration, duty: Duty, wants: MagnetRequirements, surfaces: Any) -> tuple[Any, Any]:
+    """Name what the magnet pulls against when it draws the armature in; return gap [m] and force [N]."""
+    gap = d.step(
+        "released_gap", "mm", wants.residual_gap + surfaces * duty.plate_gap, symbol="g_rel",
+        text="Gap at each pole of the released magnet", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    force = d.step(
+        "springs_and_drag", "N", wants.return_spring_force + wants.release_drag_force, symbol="F_hold",
+        text="What holds the released armature back", source=f"{S4}, section 6.6",
+    )  # fmt: skip
+    return gap, force
 
 
 def _declare_remarks(d: Declaration, wants: MagnetRequirements) -> None:

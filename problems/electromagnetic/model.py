@@ -63,9 +63,7 @@ class ElectromagneticClutch(DesignProblem):
 
         The torque rises in ``ramp_time``; the rise of the current is not simulated.
         """
-        disc_pack = self.option("pack") == "disc"
-        pack = magnet_curves.pack_of(spec, design, disc_pack)
-        return startup_curves.startup_frames(self, spec, design, pack.heat_capacity, pack.cooled_area)
+        return startup_curves.startup_frames(self, spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the curves of pack and start-up; of a design torque over current and temperature, force over gap.

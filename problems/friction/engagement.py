@@ -66,6 +66,8 @@ def declare_friction_pair(d: Declaration, family: str, duty: Duty, lubrication: 
         if duty.cooling == "through_oil"
         else part.q_hourly_allow,
     )
+    d.step("least_friction", "-", pair.mu_low, symbol="mu_low", text="Friction that is counted on", source=PRACTICE)
+    d.step("greatest_friction", "-", pair.mu_high, symbol="mu_high", text="Friction that is feared", source=PRACTICE)
     # A remark must not make a row unusable, so that columns of remarks only are optional.
     d.advise(
         "stick_slip",
@@ -340,6 +342,27 @@ def declare_surface_loads(
         "sliding_speed", speed, part.v_allow, "m/s",
         text="The lining stands the sliding speed", source="makers' limit of the lining",
     )  # fmt: skip
+
+
+def declare_heated_body(d: Declaration, heat_capacity: Any, cooled_area: Any, body: str) -> None:
+    """Name what stores the heat of a start and gives it off, for the temperature over repeated engagements.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    heat_capacity : symbol
+        Of the body [J/K].
+    cooled_area : symbol
+        Surface that gives off the heat [m2].
+    body : str
+        What it is, for the reader.
+    """
+    d.step(
+        "heat_capacity", "J/K", heat_capacity, symbol="C_heat",
+        text=f"{body}, which store the heat of a start", source="heat balance",
+    )  # fmt: skip
+    d.step("cooled_area", "m2", cooled_area, symbol="A_cool", text="Outside that gives off the heat", source="geometry")
 
 
 def advise_frequent_switching(d: Declaration, duty: Duty, heat_capacity: Any, cooled_area: Any) -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.mechanics import heat, motors, plates, startup
+from problems.mechanics import heat, motors, startup
 from problems.mechanics import ring as ring_formulas
 from synth.declaration import Setting
 from synth.errors import InputError
@@ -38,18 +38,7 @@ SETTINGS: Mapping[str, Setting] = {
 WORST = "worst_case"
 
 
-def heated_capacity(design: Any, share: float) -> float:
-    """Return the heat capacity [J/K] of the body that takes ``share`` of the friction work at the rise of one start."""
-    return float(share * design.values["friction_work"] / design.values["temperature_rise"])
-
-
-def startup_frames(
-    problem: DesignProblem,
-    spec: Mapping[str, Any],
-    design: Any,
-    heat_capacity: float | None = None,
-    cooled_area: float | None = None,
-) -> dict[str, pd.DataFrame]:
+def startup_frames(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
     """Simulate the start-up of a friction clutch of any family.
 
     Parameters
@@ -59,18 +48,14 @@ def startup_frames(
     spec : mapping
         Requirements of the block duty and SETTINGS, in SI.
     design : Design
-        With ramp_torque, ramp_time, jerk, outer_diameter, length and slot friction_pair.
-    heat_capacity : float, optional
-        Of the body that the friction work heats [J/K]; with it the temperature over repeated engagements is added.
-    cooled_area : float, optional
-        Surface that gives off that heat [m2]; by default that of the whole clutch.
+        With ramp_torque, ramp_time, jerk, slot friction_pair, and the steps heat_capacity and cooled_area.
 
     Returns
     -------
     dict
         Frame ``startup``; with friction_basis worst_case it is that with the least friction, and
-        ``startup_high_friction`` is added where the greatest friction gives more torque; ``temperature`` where
-        heat_capacity is given.
+        ``startup_high_friction`` is added where the greatest friction gives more torque; ``temperature`` over repeated
+        engagements where they leave time for another.
 
     Raises
     ------
@@ -95,10 +80,8 @@ def startup_frames(
         for name in ("slip_time", "friction_work"):
             del frames["startup_high_friction"].attrs["quantities"][name]
     fits = run.outcome == "locked" and run.slip_time < heat.cycle_time(spec["engagements_per_hour"])
-    if heat_capacity is not None and fits:
-        if cooled_area is None:
-            cooled_area = plates.cylinder_surface(design.values["outer_diameter"], design.values["length"])
-        frames["temperature"] = _temperature(problem, spec, design, run, (heat_capacity, cooled_area))
+    if fits:
+        frames["temperature"] = _temperature(problem, spec, design, run)
     return frames
 
 
@@ -195,12 +178,10 @@ def _frame(problem: DesignProblem, spec: Mapping[str, Any], run: StartupRun, mor
     return frame
 
 
-def _temperature(
-    problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun, body: tuple[float, float]
-) -> pd.DataFrame:
+def _temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any, run: StartupRun) -> pd.DataFrame:
     from problems.mechanics.startup_simulation import simulate_switching
 
-    capacity, surface = body
+    capacity, surface = design.steps["heat_capacity"], design.steps["cooled_area"]
     switching = simulate_switching(run, spec["engagements_per_hour"], capacity, spec["heat_transfer"], surface)
     highest = design.parts["friction_pair"].get("temp_max")
     frame = switching.frame(None if highest is None else highest - spec["ambient_temperature"])

@@ -206,6 +206,7 @@ def declare_winding(
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
     brushes = around.brush_drop * current
     heat = around.other_heat + brushes
+    _name_heat(d, wants, unknowns, turns, bore_radius, around)
     d.at_most(
         "thermal_stability", cold / runaway, 0.9, "-", guard=True,
         text="A hotter coil has more resistance; at 1 it heats up without end under constant current",
@@ -216,6 +217,10 @@ def declare_winding(
         "coil_temperature_rise", "K", resistance_rise / magnetics.COPPER_COEFFICIENT,
         symbol="dT_c", needs=(needs, "thermal_stability"),
         text="Coil and body over ambient, steady", source=f"{S4} [P7]",
+    )  # fmt: skip
+    d.step(
+        "coil_temperature", "degC", around.ambient_temperature + rise, symbol="T_c", text="Coil and body, steady",
+        source=f"{S4} [P7]",
     )  # fmt: skip
     # R20 I with the turns cancelled, so that bounds use the ampere-turns once.
     cold_voltage = (
@@ -253,3 +258,34 @@ def declare_winding(
         text="The window holds the wire at least once", source=f"{S4}, section 9",
     )  # fmt: skip
     return copper_share * window
+
+
+def _name_heat(
+    d: Declaration, wants: CoilRequirements, unknowns: CoilUnknowns, turns: Any, bore_radius: Any, around: Surroundings
+) -> None:
+    """Name what heats and cools the body of the coil, for curves over current and temperature."""
+    d.step(
+        "coil_conductance", "W/K", around.heat_transfer * around.surface, symbol="G_c",
+        text="Heat that the body gives off per kelvin over ambient", source=f"{S4} [P7]",
+    )  # fmt: skip
+    d.step(
+        "coil_temperature_limit", "degC", around.temperature_limit, symbol="T_c_allow",
+        text="The least of the temperatures that its parts stand", source=f"{S4} [P7]",
+    )  # fmt: skip
+    d.step(
+        "coil_other_heat", "W", around.other_heat, symbol="P_other",
+        text="What heats the body beside its copper and its brushes", source=f"{S4} [P7]",
+    )  # fmt: skip
+    d.step(
+        "coil_brush_drop", "V", around.brush_drop, symbol="U_brushes",
+        text="Voltage of both brushes, 0 without slip rings", source=f"{S4} [P8]",
+    )  # fmt: skip
+    d.step(
+        "wire_current_limit", "A", wants.current_density_limit * unknowns.winding_wire.copper_area, symbol="I_max",
+        text="Current at current_density_limit", source=f"{S4}, section 6.1",
+    )  # fmt: skip
+    mean_radius = bore_radius + unknowns.coil_height / 2
+    d.step(
+        "coil_resistance", "ohm", magnetics.coil_resistance(mean_radius, turns, unknowns.winding_wire.copper_area),
+        symbol="R_20", text="Resistance of the coil at 20 degC", source=f"{S4} [P6]",
+    )  # fmt: skip

@@ -49,12 +49,26 @@ class Warmth:
         """Temperatures to draw, from ambient to a little above the limit [K]."""
         return np.linspace(self.ambient, self.limit + 0.1 * (self.limit - self.ambient), POINTS)
 
-    def marks(self, rise: float) -> list[dict[str, Any]]:
-        """Return the steady temperature and the limit as marks."""
+    def marks(self, steady: float) -> list[dict[str, Any]]:
+        """Return the steady temperature [K] and the limit as marks."""
         return [
-            {"x": self.ambient + rise - ZERO_CELSIUS, "label": "steady"},
+            {"x": steady - ZERO_CELSIUS, "label": "steady"},
             {"x": self.limit - ZERO_CELSIUS, "label": self.limited_by},
         ]
+
+
+def warmth(spec: Mapping[str, Any], design: Any, limited_by: str) -> Warmth:
+    """Return what heats and cools the body of a design; ``limited_by`` says whose limit it is."""
+    step = design.steps
+    return Warmth(
+        conductance=step["coil_conductance"],
+        ambient=spec["ambient_temperature"],
+        limit=step["coil_temperature_limit"],
+        limited_by=limited_by,
+        other_heat=step["coil_other_heat"],
+        brush_drop=step["coil_brush_drop"],
+        resistance=step["coil_resistance"],
+    )
 
 
 def flux_densities(ampere_turns: Any, excitation: Callable[[Any], Any], highest: float) -> np.ndarray:
@@ -84,9 +98,9 @@ def flux_densities(ampere_turns: Any, excitation: Callable[[Any], Any], highest:
     return np.array([magnetics.flux_density_at(x, below_saturation, highest) for x in given])
 
 
-def current_marks(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
+def current_marks(design: Any) -> list[dict[str, Any]]:
     """Return the current of a design and the highest that its wire may carry [A] as marks."""
-    highest = spec["current_density_limit"] * design.parts["winding_wire"]["copper_area"]
+    highest = design.steps["wire_current_limit"]
     return [{"x": design.values["current"], "label": "design"}, {"x": highest, "label": "current_density_limit"}]
 
 
@@ -137,7 +151,7 @@ def torque_over_temperature(
             {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
             {"label": "current [A]", "columns": ["constant voltage [A]"]},
         ],
-        "marks": heat.marks(value["coil_temperature_rise"]),
+        "marks": heat.marks(design.steps["coil_temperature"]),
         "lines": list(lines),
         "source": source,
     }
@@ -177,7 +191,7 @@ def heat_balance(problem: DesignProblem, design: Any, heat: Warmth, source: str)
     frame.attrs = {
         "title": f"{problem.title}: steady heat at {value['current']:.3g} A",
         "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
-        "marks": heat.marks(value["coil_temperature_rise"]),
+        "marks": heat.marks(design.steps["coil_temperature"]),
         "source": source,
     }
     return frame

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS, Warmth
+from problems.magnet.coil_curves import POINTS
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
 
@@ -85,27 +85,6 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
     )
 
 
-def warmth(spec: Mapping[str, Any], design: Any) -> Warmth:
-    """Return what heats and cools a design."""
-    layout, wire = built(spec, design).layout, design.parts["winding_wire"]
-    still = design.choices["coil"] == "stationary"
-    transfer = spec["still_heat_transfer"]
-    if not still:
-        transfer = magnetics.heat_transfer_in_motion(
-            transfer, spec["rotating_heat_transfer"], spec["driver_speed"], layout.outer_radius
-        )
-    surface = magnetics.cylinder_surface(layout.outer_radius, layout.length)
-    return Warmth(
-        conductance=float(transfer * surface),
-        ambient=spec["ambient_temperature"],
-        limit=min(wire["insulation_temperature"], design.parts["powder"]["temp_max"]),
-        limited_by="insulation and powder",
-        other_heat=design.values["slip_heat"],
-        brush_drop=0.0 if still else 2 * spec["brush_voltage"],
-        resistance=float(magnetics.coil_resistance(layout.coil_radius, design.values["turns"], wire["copper_area"])),
-    )
-
-
 def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.DataFrame:
     """Shear stress that the powder must carry over the radius of the gap, for some pole lengths.
 
@@ -156,7 +135,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
     """
     import pandas as pd
 
-    body, heat, value = built(spec, design), warmth(spec, design), design.values
+    body, heat, value = built(spec, design), coil_curves.warmth(spec, design, "insulation and powder"), design.values
     current = np.linspace(0.0, 1.5, POINTS) * value["current"]
     flux_density = body.flux_density(current * value["turns"])
     frame = pd.DataFrame({
@@ -174,7 +153,7 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
             {"label": "flux density [T]", "columns": ["powder [T]", "yoke [T]", "rotor [T]"]},
             {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
         ],
-        "marks": coil_curves.current_marks(spec, design),
+        "marks": coil_curves.current_marks(design),
         "lines": [
             *_torques(spec),
             {"panel": 1, "y": spec["powder_flux_limit"], "label": "powder_flux_limit"},
@@ -207,7 +186,7 @@ def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], des
     return coil_curves.torque_over_temperature(
         problem,
         design,
-        warmth(spec, design),
+        coil_curves.warmth(spec, design, "insulation and powder"),
         lambda ampere_turns: body.torque(body.flux_density(ampere_turns)),
         _torques(spec),
         SOURCE,
@@ -231,7 +210,7 @@ def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -
     pandas.DataFrame
         From ambient temperature to a little above the limit.
     """
-    return coil_curves.heat_balance(problem, design, warmth(spec, design), SOURCE)
+    return coil_curves.heat_balance(problem, design, coil_curves.warmth(spec, design, "insulation and powder"), SOURCE)
 
 
 def _torques(spec: Mapping[str, Any]) -> list[dict[str, Any]]:

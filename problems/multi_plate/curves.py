@@ -21,14 +21,10 @@ MOST_SURFACES = 120
 FRICTIONS = (0.05, 0.10, 0.15)  # where no design says which lining it is
 
 
-def _limits(guide_number: float, threshold: float) -> list[dict[str, Any]]:
+def _limits(step: Mapping[str, float]) -> list[dict[str, Any]]:
     """Return the plate-count limits as marks."""
-    functions = (
-        ("(14)", guide_friction.surface_limit_exponential(guide_number, threshold)),
-        ("(15)", guide_friction.legacy_plate_limit(guide_number)),
-        ("(16)", guide_friction.surface_limit_geometric(guide_number, threshold)),
-    )
-    return [{"x": float(x), "label": f"{label} {float(x):.1f}"} for label, x in functions]
+    named = (("(14)", "surfaces_exponential"), ("(15)", "surfaces_legacy"), ("(16)", "surfaces_geometric"))
+    return [{"x": step[name], "label": f"{label} {step[name]:.1f}"} for label, name in named]
 
 
 def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
@@ -53,15 +49,14 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
 
     if design is None:
         return _sum_factor_over_plates(problem, spec)
-    values = design.values
-    mu, inner, outer, force = _friction(problem, spec, design)
+    values, step = design.values, design.steps
+    inner, outer, unit = step["inner_guide_ratio"], step["outer_guide_ratio"], step["surface_moment"]
     guide_number = inner + outer
-    unit = mu * force * values["friction_radius"]
     built = int(values["friction_surfaces"])
     marks: list[dict[str, Any]] = [{"x": built, "label": f"built z = {built}"}]
     reach = 1.5 * built
     if guide_number > 0:
-        marks += _limits(guide_number, spec["plate_effectiveness_min"])
+        marks += _limits(step)
         reach = max(1.15 * float(mark["x"]) for mark in marks)
         reach = max(reach, 1.3 * built)
     surfaces = np.arange(0.0, min(math.ceil(reach), max(MOST_SURFACES, 2 * built)) + 1)
@@ -70,7 +65,7 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
         data[f"{heading} [N*m]"] = unit * guide_friction.torque_sum_factor(series, surfaces, inner, outer)
     lines = [{"panel": 0, "y": values["required_torque"], "label": "required torque"}]
     if guide_number > 0:
-        lines.append({"panel": 0, "y": unit / guide_number, "label": "never more: mu F0 r/S"})
+        lines.append({"panel": 0, "y": step["torque_bound"], "label": "never more: mu F0 r/S"})
     torques = list(data)[1:]
     others = []
     for heading in list(SERIES)[1:]:
@@ -119,16 +114,6 @@ def _sum_factor_over_plates(problem: DesignProblem, spec: Mapping[str, Any]) -> 
     return frame
 
 
-def _friction(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> tuple[float, float, float, float]:
-    """Return the friction counted on, both guide ratios and the force that a release aid leaves."""
-    pair, values = design.parts["friction_pair"], design.values
-    mu = pair["mu_min"] if problem.option("friction_basis") == "worst_case" else pair["mu_dynamic"]
-    radii = (values["inner_spline_radius"], values["outer_spline_radius"])
-    ratios = (guide_friction.guide_ratio(mu, spec["guide_friction"], values["friction_radius"], x) for x in radii)
-    inner, outer = (float(x) for x in ratios)
-    return float(mu), inner, outer, values["torque"] / (mu * values["friction_radius"] * values["torque_sum_factor"])
-
-
 def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
     """Contact force and pressure on every friction surface, counted from the actuator.
 
@@ -148,8 +133,8 @@ def force_along_pack(problem: DesignProblem, spec: Mapping[str, Any], design: An
     """
     import pandas as pd
 
-    values = design.values
-    _, inner, outer, force = _friction(problem, spec, design)
+    values, step = design.values, design.steps
+    inner, outer, force = step["inner_guide_ratio"], step["outer_guide_ratio"], step["net_force"]
     surfaces = np.arange(1.0, values["friction_surfaces"] + 1)
     # A release aid takes force and area; the pressure of the design tells both.
     series_used = problem.option("guide_series") if problem.option("guide_model") == "series" else None

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from problems import friction
 from problems.friction import startup_curves
-from problems.mechanics import plates
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
 from synth import DesignProblem
@@ -74,10 +73,7 @@ class MultiPlateClutch(DesignProblem):
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the steel plates over repeated engagements."""
-        pair = design.parts["friction_pair"]
-        lining = plates.lining_mass(pair["density"], pair["lining_thickness"], design.values["friction_area"])
-        capacity = (design.values["mass"] - lining) * spec["steel_specific_heat"]
-        return startup_curves.startup_frames(self, spec, design, capacity)
+        return startup_curves.startup_frames(self, spec, design)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return torque over plates and start-up over torque; with a design also force and pressure along the pack."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from problems.friction.duty import Duty, Size
-from problems.friction.engagement import Pair, Startup, advise_frequent_switching
+from problems.friction.engagement import Pair, Startup, advise_frequent_switching, declare_heated_body
 from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
 from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import guide_friction, heat, plates
@@ -439,7 +439,9 @@ def declare_pack_torque(
         text="The inner plates slide in their spline and do not jam; their mean spline radius is above 0",
         source=f"{S0}, first phase of engagement",
     )  # fmt: skip
-    guide_number = sum(ratios(pair.mu_low)) if series else 0.0
+    inner, outer = ratios(pair.mu_low)
+    _name_guides(d, wants, inner, outer, net_force, moment_low)
+    guide_number = sum((inner, outer)) if series else 0.0
     d.derive(
         "guide_number", "-", guide_number, symbol="S", needs="guide_jams",
         text="Friction in the guides; 0 with guide_model cz", source=f"{S0}, eq. (2)",
@@ -479,6 +481,29 @@ def declare_pack_torque(
         high=moment_high * factor_high,
         pressure=net_force * share(1, pair.mu_low) / (pack.aid.area_factor * ring.area),
     )
+
+
+def _name_guides(d: Declaration, wants: PackRequirements, inner: Any, outer: Any, net_force: Any, moment: Any) -> None:
+    """Name what the curves of a pack show of its guides, whatever guide_model sizes it."""
+    d.step("inner_guide_ratio", "-", inner, symbol="S_i", text="Friction of the inner plates in their guide", source=S0)
+    d.step("outer_guide_ratio", "-", outer, symbol="S_o", text="Friction of the outer plates in their guide", source=S0)
+    d.step("net_force", "N", net_force, symbol="F_net", text="Actuation force that a release aid leaves", source=S0)
+    d.step(
+        "surface_moment", "N*m", moment, symbol="M_0", text="Torque mu F0 r of one surface without guide friction",
+        source=f"{S0}, M0",
+    )  # fmt: skip
+    total, least = inner + outer, wants.plate_effectiveness_min
+    d.step(
+        "torque_bound", "N*m", moment / total, symbol="M_bound",
+        text="Torque mu F0 r/S, which no number of plates reaches", source=f"{S0}, eq. (5)",
+    )  # fmt: skip
+    for name, symbol, limit, equation in (
+        ("surfaces_exponential", "z_14", guide_friction.surface_limit_exponential(total, least), "(14)"),
+        ("surfaces_legacy", "z_15", guide_friction.legacy_plate_limit(total), "(15)"),
+        ("surfaces_geometric", "z_16", guide_friction.surface_limit_geometric(total, least), "(16)"),
+    ):
+        text = f"Friction surfaces that are still worth while by {equation}"
+        d.step(name, "-", limit, symbol=symbol, text=text, source=f"{S0}, eq. {equation}")
 
 
 def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
@@ -570,6 +595,7 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
 
 def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Startup, size: PackSize) -> None:
     """Declare the peak temperature of a pack and its limit."""
+    declare_heated_body(d, size.heat_capacity, size.cooled_area, "The steel plates")
     rise = d.derive(
         "peak_temperature_rise", "K",
         heat.peak_temperature_rise(

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems.mechanics import contact as hertz
-from problems.roller_coupling import formulas
-from problems.roller_coupling import motion as roller_motion
+from problems.roller_coupling import curves, formulas
+from problems.roller_coupling.curves import EXT
+from problems.sources import DRIVE, S3, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -20,11 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.declaration import Choice, Part
-
-S3 = "S3 (Szoke 1967)"
-DRIVE = "requirement of the drive"
-TYPICAL = "engineering-typical value"
-EXT = "extension of S3"
 
 # Bounds of the arm radius and the least of the other sizes [mm]; the refusals reason with them.
 ARM_RADIUS_MIN, ARM_RADIUS_MAX = 15.0, 200.0
@@ -505,7 +501,16 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             formulas.pin_centrifugal_force(float_mass, offset, wants.driver_speed, wants.guide_angle), symbol="Q",
             text="Greatest share of one pin in the centrifugal force of the float", source=f"{S3}, eq. (14), C/2",
         )  # fmt: skip
-        roller_mass = formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap)
+        roller_mass = d.step(
+            "roller_mass", "kg",
+            formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap),
+            symbol="m_rol", text="Mass of a roller with its pin", source="geometry",
+        )  # fmt: skip
+        d.step(
+            "least_force_radius", "mm",
+            formulas.optimum_arm_radius_with_float(wants.required_torque, roller_mass, wants.driver_speed, centrifugal),
+            symbol="r_best", text="Arm radius of the least pin force with this float", source=f"{S3}, eq. (15); {EXT}",
+        )  # fmt: skip
         normal = tangential + centrifugal
         pin = d.derive(
             "pin_force", "N",
@@ -708,16 +713,16 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         """Return the force on a pin over the arm radius, of the torque alone or of a design, and of angled shafts."""
         found: dict[str, pd.DataFrame] = {}
         if design is not None:
-            found["pin_force"] = _pin_force_curve(spec, design)
+            found["pin_force"] = curves.pin_force(spec, design)
         else:
-            found["torque_force"] = _torque_force_curve(spec)
+            found["torque_force"] = curves.torque_force(spec, ARM_RADIUS_MIN / 1000, ARM_RADIUS_MAX / 1000)
         if spec["shaft_angle"] > 0:
-            found["angled_shafts"] = _angled_shafts_curve(spec)
+            found["angled_shafts"] = curves.angled_shafts(spec)
         return found
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return positions of the float, roller gaps and forces over one turn, from exact kinematics."""
-        return {"motion": _motion(spec, design)}
+        return {"motion": curves.one_turn(spec, design)}
 
 
 # -- bounds for refusals ---------------------------------------------------------------------------
@@ -750,175 +755,3 @@ def _least_vibration(d: Declaration, wants: Wants) -> Any:
     section = formulas.float_section(half_length, diameter, wants.rim_min, wants.guide_angle)
     mass = formulas.float_mass(density, width, section)
     return formulas.pin_centrifugal_force(mass, wants.effective_offset, wants.driver_speed, wants.guide_angle)
-
-
-# -- frames ----------------------------------------------------------------------------------------
-
-
-def _roller_mass(spec: Mapping[str, Any], design: Any) -> float:
-    roller = design.parts["roller"]
-    return float(
-        formulas.roller_mass(roller["mass"], spec["steel_density"], roller["bore"], roller["width"], spec["pin_gap"])
-    )
-
-
-def _pin_force_curve(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Return forces on a pin over the arm radius; the float and its centrifugal force are those of the design."""
-    import pandas as pd
-
-    torque, speed, roller_mass = spec["required_torque"], spec["driver_speed"], _roller_mass(spec, design)
-    centrifugal, chosen = design.values["centrifugal_force"], design.values["arm_radius"]
-    radius = np.geomspace(chosen / 3, 3 * chosen, 241)
-    tangential = formulas.tangential_force(torque, radius, radius)
-    own = formulas.roller_centrifugal_force(roller_mass, radius, speed)
-    frame = pd.DataFrame(
-        {
-            "arm radius [mm]": 1000 * radius,
-            "from the torque [N]": tangential,
-            "from the float [N]": np.full_like(radius, centrifugal),
-            "from the roller itself [N]": own,
-            "resultant [N]": formulas.resultant_pin_force(tangential + centrifugal, own),
-        }
-    )
-    marks = [{"x": 1000 * chosen, "label": "design"}]
-    if speed > 0:
-        best = float(formulas.optimum_arm_radius_with_float(torque, roller_mass, speed, centrifugal))
-        if radius[0] <= best <= radius[-1]:
-            marks.append({"x": 1000 * best, "label": "least pin force"})
-    frame.attrs = {
-        "title": "Pin force over the arm radius",
-        "panels": [{"label": "force [N]", "columns": list(frame.columns[1:])}],
-        "marks": marks,
-        "source": f"{S3}, eq. (15), with the float: {EXT}",
-    }
-    return frame
-
-
-def _torque_force_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
-    """Return what the torque alone puts on a pin over the arm radius; float and rollers add to it."""
-    import pandas as pd
-
-    radius = np.geomspace(ARM_RADIUS_MIN / 1000, ARM_RADIUS_MAX / 1000, 241)
-    tangential = formulas.tangential_force(spec["required_torque"], radius, radius)
-    frame = pd.DataFrame({"arm radius [mm]": 1000 * radius, "from the torque [N]": tangential})
-    frame.attrs = {
-        "title": f"Pin force of {spec['required_torque']:.4g} N*m over the arm radius",
-        "panels": [{"label": "force [N]", "columns": ["from the torque [N]"], "log": True}],
-        "source": f"{S3}, eq. (15)",
-    }
-    return frame
-
-
-def _angled_shafts_curve(spec: Mapping[str, Any]) -> pd.DataFrame:
-    import pandas as pd
-
-    motion = _turn(spec)
-    frame = pd.DataFrame(
-        {
-            "driving angle [deg]": np.degrees(motion.driving_angle),
-            "lead of the driven shaft [deg]": np.degrees(motion.lead),
-            "driven speed [1/min]": motion.speed_ratio * spec["driver_speed"] * 30 / math.pi,
-            "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
-        }
-    )
-    frame.attrs = {
-        "title": f"One turn with shafts at {math.degrees(spec['shaft_angle']):.3g} deg",
-        "panels": [
-            {"label": label, "columns": [column]}
-            for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)
-        ],
-        "source": f"{S3}, eq. (23) to (25), generalised",
-    }
-    return frame
-
-
-def _turn(spec: Mapping[str, Any], offset: float | None = None) -> roller_motion.Turn:
-    """Motion of the question's shafts, or of parallel shafts at another offset."""
-    if offset is not None:
-        return roller_motion.turn(offset, guide_angle=spec["guide_angle"])
-    return roller_motion.turn(spec["offset"], spec["float_distance"], spec["shaft_angle"], spec["guide_angle"])
-
-
-def _motion(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    import pandas as pd
-
-    values, angle = design.values, spec["guide_angle"]
-    diameter = design.parts["roller"]["outer_diameter"]
-    sizes = (values["arm_radius"], values["guide_half_length"], diameter)
-    motion = _turn(spec)
-    found = roller_motion.clearances(motion, *sizes)
-    widest = roller_motion.clearances(_turn(spec, values["offset_capacity"]), *sizes)
-    balanced = design.choices["balance"] == "yes"
-    roller_mass = _roller_mass(spec, design)
-    force = roller_motion.forces(
-        motion,
-        values["arm_radius"],
-        spec["required_torque"],
-        spec["driver_speed"],
-        values["float_mass"],
-        roller_mass,
-        values["float_mass"] if balanced else 0.0,
-    )
-    gaps = [f"gap {pair} [mm]" for pair in ("1a-2a", "1a-2b", "1b-2a", "1b-2b")]
-    widest_names = ["least roller gap", "least run-in", "least run-out"]
-    at_capacity = [f"{name} at offset capacity [mm]" for name in widest_names]
-    rollers = ("1a", "1b", "2a", "2b")
-    columns: dict[str, Any] = {
-        "driving angle [deg]": np.degrees(motion.driving_angle),
-        "float centre x [mm]": 1000 * motion.centre[:, 0],
-        "float centre y [mm]": 1000 * motion.centre[:, 1],
-        "lead of the driven shaft [deg]": np.degrees(motion.lead),
-        "speed ratio [-]": motion.speed_ratio,
-        "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
-    }
-    columns |= {name: 1000 * found.gaps[:, k] for k, name in enumerate(gaps)}
-    for k, guide in enumerate(("I", "II")):
-        columns[f"run-in, guide {guide} [mm]"] = 1000 * found.run_in[:, k]
-        columns[f"run-out, guide {guide} [mm]"] = 1000 * found.run_out[:, k]
-    nearest = (widest.gaps, widest.run_in, widest.run_out)
-    columns |= {name: 1000 * x.min(axis=1) for name, x in zip(at_capacity, nearest, strict=True)}
-    columns |= {f"contact force {name} [N]": force.contact[:, k] for k, name in enumerate(rollers)}
-    columns |= {f"pin force {name} [N]": force.pins[:, k] for k, name in enumerate(rollers)}
-    columns["force on shaft 1, x [N]"] = force.first_shaft[:, 0]
-    columns["force on shaft 1, y [N]"] = force.first_shaft[:, 1]
-    columns["driven torque [N*m]"] = force.driven_torque
-    frame = pd.DataFrame(columns)
-
-    steady, vibration = roller_motion.steady_and_vibrating(force.first_shaft)
-    normal = values["tangential_force"] + values["centrifugal_force"]
-    least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], angle) - diameter
-    panels = [
-        {"label": "roller gap [mm]", "columns": gaps},
-        {"label": "at offset capacity [mm]", "columns": at_capacity},
-        {"label": "contact force [N]", "columns": [c for c in frame.columns if c.startswith("contact force")]},
-        {"label": "pin force [N]", "columns": [c for c in frame.columns if c.startswith("pin force")]},
-        {"label": "force on shaft 1 [N]", "columns": [c for c in frame.columns if c.startswith("force on shaft 1")]},
-        {"label": "float centre [mm]", "columns": ["float centre x [mm]", "float centre y [mm]"]},
-    ]
-    if spec["shaft_angle"] > 0:
-        panels += [
-            {"label": "lead [deg]", "columns": ["lead of the driven shaft [deg]"]},
-            {"label": "slide [mm]", "columns": ["slide along shaft 2 [mm]"]},
-        ]
-    frame.attrs = {
-        "title": "One turn of the roller coupling",
-        "x": "driving angle [deg]",
-        "panels": panels,
-        "lines": [
-            {"panel": 0, "y": 1000 * spec["roller_gap_min"], "label": "roller_gap_min"},
-            {"panel": 1, "y": 1000 * float(least), "label": "least gap, eq. (18)"},
-            {"panel": 2, "y": normal, "label": "F + Q"},
-            {"panel": 2, "y": values["tangential_force"] - values["centrifugal_force"], "label": "F - Q"},
-            {"panel": 3, "y": values["pin_force"], "label": "pin_force"},
-        ],
-        "source": f"exact kinematics; closed forms: {S3}, eq. (14), (18) to (25)",
-        "quantities": {
-            "axial_slide": float(np.ptp(motion.slide)),
-            "speed_fluctuation": float(motion.speed_ratio.max() - 1),
-            "centrifugal_force": float(np.ptp(force.contact[:, 0]) / 2),
-            "pin_force": float(force.pins.max()),
-            "steady_force": float(steady),
-            "vibration_force": float(vibration),
-        },
-    }
-    return frame

@@ -10,7 +10,7 @@ from cases import CASES
 
 import synth
 from reports.figure import figure_svg
-from synth.units import parse_unit, split_header
+from synth.units import parse_unit, split_header, to_si
 
 
 def overrides(family, hook):
@@ -60,3 +60,28 @@ def test_curves_with_and_without_a_design(answered):
     assert_sound(synth.curves(problem, requirements))
     for design in front.designs:
         assert_sound(synth.curves(problem, requirements, design))
+
+
+def marked(frame):
+    """Return what a frame marks: label and number in SI of every mark and line."""
+    header = frame.attrs.get("x", frame.columns[0])
+    found = [(mark["label"], mark["x"], header) for mark in frame.attrs.get("marks", ())]
+    panels = frame.attrs.get("panels", ())
+    found += [(line["label"], line["y"], panels[line["panel"]]["label"]) for line in frame.attrs.get("lines", ())]
+    return {(label, float(to_si(number, parse_unit(split_header(head)[1])))) for label, number, head in found}
+
+
+def test_every_number_that_a_curve_marks_for_a_design_was_traced(answered):
+    family, problem, requirements, front = answered
+    if not overrides(family, "curves"):
+        return
+    asked = set().union(*(marked(frame) for frame in synth.curves(problem, requirements).values()))
+    for found in front.designs:
+        design = synth.evaluate(problem, requirements, found)
+        traced = [0.0, *design.values.values(), *design.steps.values(), *design.frame.requirement_values.values()]
+        traced += [side for sides in design.limits.values() for side in sides]
+        traced += [x for row in design.parts.values() for x in row.values() if isinstance(x, float)]
+        traced = np.array(traced)
+        for key, frame in synth.curves(problem, requirements, design).items():
+            for label, number in marked(frame) - asked:
+                assert np.isclose(traced, number, rtol=1e-9, atol=0).any(), (key, label, number)

@@ -710,3 +710,58 @@ def test_texts_and_numbers_of_a_table_without_a_slot():
     assert d.cell("rods", "thick", "colour") == ""
     assert d.numbers("rods", "diameter").tolist() == pytest.approx([0.010, 0.020, 0.015])
     assert not d.rows
+
+
+# -- steps -----------------------------------------------------------------------------------------
+
+
+def stepped(d):
+    force = d.requirement("force", "N", symbol="F")
+    diameter = d.variable("diameter", "mm", 1, 50, symbol="d")
+    area = d.step("area", "mm2", 0.785 * diameter**2, symbol="A", text="Section", source="geometry")
+    d.at_most("stress", d.derive("stress", "N/mm2", force / area), 100e6, "N/mm2")
+    d.objective("diameter")
+
+
+def test_a_step_is_read_by_hooks_and_is_no_result():
+    told = {}
+
+    def curves(self, spec, design=None):
+        told.update(design.steps)
+        frame = pd.DataFrame({"area [mm2]": [1e6 * design.steps["area"]]})
+        frame.attrs["title"] = "area"
+        return {"area": frame}
+
+    kind = problem(stepped)
+    kind.curves = curves
+    found = synth.evaluate(kind, {"force": "1 kN"}, values={"diameter": "10 mm"})
+    assert found.steps == {"area": pytest.approx(0.785e-4, rel=1e-15)}
+    assert set(found.values) == {"diameter", "stress"}
+    assert "area" not in synth.describe(kind)["name"].tolist()
+    synth.curves(kind, {"force": "1 kN"}, found)
+    assert told == found.steps
+    front = synth.synthesize(kind, {"force": "1 kN"})
+    assert not front.designs[0].steps
+    with pytest.raises(synth.InputError, match="area"):
+        synth.evaluate(kind, {"force": "1 kN"}, values={"diameter": "10 mm"}, limits={"area": "<= 1 mm2"})
+
+
+def test_the_search_does_not_see_steps():
+    def bare(d):
+        force = d.requirement("force", "N", symbol="F")
+        diameter = d.variable("diameter", "mm", 1, 50, symbol="d")
+        d.at_most("stress", d.derive("stress", "N/mm2", force / (0.785 * diameter**2)), 100e6, "N/mm2")
+        d.objective("diameter")
+
+    def program(declare):
+        return problem(declare)().model(frozenset(), CATALOGS).program
+
+    assert program(stepped).nodes == program(bare).nodes
+
+
+def test_a_step_has_a_name_of_its_own():
+    d = declaration()
+    d.step("area", "mm2", 1.0, symbol="A")
+    assert "area" not in d.names()
+    with pytest.raises(DeclarationError, match="'A' of area_2"):
+        d.derive("area_2", "mm2", 1.0, symbol="A")

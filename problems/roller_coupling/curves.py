@@ -1,0 +1,182 @@
+"""Curves of the roller coupling: pin force over the arm radius, angled shafts, and its motion over one turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from problems.roller_coupling import formulas
+from problems.roller_coupling import motion as kinematics
+from problems.sources import S3
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+EXT = "extension of S3"
+
+
+def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Return forces on a pin over the arm radius; the float and its centrifugal force are those of the design."""
+    import pandas as pd
+
+    torque, speed, roller_mass = spec["required_torque"], spec["driver_speed"], design.steps["roller_mass"]
+    centrifugal, chosen = design.values["centrifugal_force"], design.values["arm_radius"]
+    radius = np.geomspace(chosen / 3, 3 * chosen, 241)
+    tangential = formulas.tangential_force(torque, radius, radius)
+    own = formulas.roller_centrifugal_force(roller_mass, radius, speed)
+    frame = pd.DataFrame(
+        {
+            "arm radius [mm]": 1000 * radius,
+            "from the torque [N]": tangential,
+            "from the float [N]": np.full_like(radius, centrifugal),
+            "from the roller itself [N]": own,
+            "resultant [N]": formulas.resultant_pin_force(tangential + centrifugal, own),
+        }
+    )
+    marks = [{"x": 1000 * chosen, "label": "design"}]
+    if speed > 0:
+        best = design.steps["least_force_radius"]
+        if radius[0] <= best <= radius[-1]:
+            marks.append({"x": 1000 * best, "label": "least pin force"})
+    frame.attrs = {
+        "title": "Pin force over the arm radius",
+        "panels": [{"label": "force [N]", "columns": list(frame.columns[1:])}],
+        "marks": marks,
+        "source": f"{S3}, eq. (15), with the float: {EXT}",
+    }
+    return frame
+
+
+def torque_force(spec: Mapping[str, Any], least: float, largest: float) -> pd.DataFrame:
+    """Return what the torque alone puts on a pin over the arm radius; float and rollers add to it."""
+    import pandas as pd
+
+    radius = np.geomspace(least, largest, 241)
+    tangential = formulas.tangential_force(spec["required_torque"], radius, radius)
+    frame = pd.DataFrame({"arm radius [mm]": 1000 * radius, "from the torque [N]": tangential})
+    frame.attrs = {
+        "title": f"Pin force of {spec['required_torque']:.4g} N*m over the arm radius",
+        "panels": [{"label": "force [N]", "columns": ["from the torque [N]"], "log": True}],
+        "source": f"{S3}, eq. (15)",
+    }
+    return frame
+
+
+def angled_shafts(spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Return lead, speed and slide over one turn of shafts at an angle."""
+    import pandas as pd
+
+    motion = _turn(spec)
+    frame = pd.DataFrame(
+        {
+            "driving angle [deg]": np.degrees(motion.driving_angle),
+            "lead of the driven shaft [deg]": np.degrees(motion.lead),
+            "driven speed [1/min]": motion.speed_ratio * spec["driver_speed"] * 30 / math.pi,
+            "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
+        }
+    )
+    frame.attrs = {
+        "title": f"One turn with shafts at {math.degrees(spec['shaft_angle']):.3g} deg",
+        "panels": [
+            {"label": label, "columns": [column]}
+            for label, column in zip(("lead [deg]", "speed [1/min]", "slide [mm]"), frame.columns[1:], strict=True)
+        ],
+        "source": f"{S3}, eq. (23) to (25), generalised",
+    }
+    return frame
+
+
+def _turn(spec: Mapping[str, Any], offset: float | None = None) -> kinematics.Turn:
+    """Motion of the question's shafts, or of parallel shafts at another offset."""
+    if offset is not None:
+        return kinematics.turn(offset, guide_angle=spec["guide_angle"])
+    return kinematics.turn(spec["offset"], spec["float_distance"], spec["shaft_angle"], spec["guide_angle"])
+
+
+def one_turn(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
+    """Return positions of the float, roller gaps and forces of a design over one turn, from exact kinematics."""
+    import pandas as pd
+
+    values, angle = design.values, spec["guide_angle"]
+    diameter = design.parts["roller"]["outer_diameter"]
+    sizes = (values["arm_radius"], values["guide_half_length"], diameter)
+    motion = _turn(spec)
+    found = kinematics.clearances(motion, *sizes)
+    widest = kinematics.clearances(_turn(spec, values["offset_capacity"]), *sizes)
+    balanced = design.choices["balance"] == "yes"
+    roller_mass = design.steps["roller_mass"]
+    force = kinematics.forces(
+        motion,
+        values["arm_radius"],
+        spec["required_torque"],
+        spec["driver_speed"],
+        values["float_mass"],
+        roller_mass,
+        values["float_mass"] if balanced else 0.0,
+    )
+    gaps = [f"gap {pair} [mm]" for pair in ("1a-2a", "1a-2b", "1b-2a", "1b-2b")]
+    widest_names = ["least roller gap", "least run-in", "least run-out"]
+    at_capacity = [f"{name} at offset capacity [mm]" for name in widest_names]
+    rollers = ("1a", "1b", "2a", "2b")
+    columns: dict[str, Any] = {
+        "driving angle [deg]": np.degrees(motion.driving_angle),
+        "float centre x [mm]": 1000 * motion.centre[:, 0],
+        "float centre y [mm]": 1000 * motion.centre[:, 1],
+        "lead of the driven shaft [deg]": np.degrees(motion.lead),
+        "speed ratio [-]": motion.speed_ratio,
+        "slide along shaft 2 [mm]": 1000 * (motion.slide - motion.slide[:-1].mean()),
+    }
+    columns |= {name: 1000 * found.gaps[:, k] for k, name in enumerate(gaps)}
+    for k, guide in enumerate(("I", "II")):
+        columns[f"run-in, guide {guide} [mm]"] = 1000 * found.run_in[:, k]
+        columns[f"run-out, guide {guide} [mm]"] = 1000 * found.run_out[:, k]
+    nearest = (widest.gaps, widest.run_in, widest.run_out)
+    columns |= {name: 1000 * x.min(axis=1) for name, x in zip(at_capacity, nearest, strict=True)}
+    columns |= {f"contact force {name} [N]": force.contact[:, k] for k, name in enumerate(rollers)}
+    columns |= {f"pin force {name} [N]": force.pins[:, k] for k, name in enumerate(rollers)}
+    columns["force on shaft 1, x [N]"] = force.first_shaft[:, 0]
+    columns["force on shaft 1, y [N]"] = force.first_shaft[:, 1]
+    columns["driven torque [N*m]"] = force.driven_torque
+    frame = pd.DataFrame(columns)
+
+    steady, vibration = kinematics.steady_and_vibrating(force.first_shaft)
+    normal = values["tangential_force"] + values["centrifugal_force"]
+    least = formulas.least_roller_distance(values["arm_radius"], values["offset_capacity"], angle) - diameter
+    panels = [
+        {"label": "roller gap [mm]", "columns": gaps},
+        {"label": "at offset capacity [mm]", "columns": at_capacity},
+        {"label": "contact force [N]", "columns": [c for c in frame.columns if c.startswith("contact force")]},
+        {"label": "pin force [N]", "columns": [c for c in frame.columns if c.startswith("pin force")]},
+        {"label": "force on shaft 1 [N]", "columns": [c for c in frame.columns if c.startswith("force on shaft 1")]},
+        {"label": "float centre [mm]", "columns": ["float centre x [mm]", "float centre y [mm]"]},
+    ]
+    if spec["shaft_angle"] > 0:
+        panels += [
+            {"label": "lead [deg]", "columns": ["lead of the driven shaft [deg]"]},
+            {"label": "slide [mm]", "columns": ["slide along shaft 2 [mm]"]},
+        ]
+    frame.attrs = {
+        "title": "One turn of the roller coupling",
+        "x": "driving angle [deg]",
+        "panels": panels,
+        "lines": [
+            {"panel": 0, "y": 1000 * spec["roller_gap_min"], "label": "roller_gap_min"},
+            {"panel": 1, "y": 1000 * float(least), "label": "least gap, eq. (18)"},
+            {"panel": 2, "y": normal, "label": "F + Q"},
+            {"panel": 2, "y": values["tangential_force"] - values["centrifugal_force"], "label": "F - Q"},
+            {"panel": 3, "y": values["pin_force"], "label": "pin_force"},
+        ],
+        "source": f"exact kinematics; closed forms: {S3}, eq. (14), (18) to (25)",
+        "quantities": {
+            "axial_slide": float(np.ptp(motion.slide)),
+            "speed_fluctuation": float(motion.speed_ratio.max() - 1),
+            "centrifugal_force": float(np.ptp(force.contact[:, 0]) / 2),
+            "pin_force": float(force.pins.max()),
+            "steady_force": float(steady),
+            "vibration_force": float(vibration),
+        },
+    }
+    return frame

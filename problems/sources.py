@@ -1,0 +1,11 @@
+"""Names of the sources that declarations and curves cite; what was derived from one, its family says."""
+
+S0 = "S0 (Szoke 1966)"
+S1 = "S1 (lecture on friction clutches)"
+S2 = "S2 (Kozma et al.)"
+S3 = "S3 (Szoke 1967)"
+S4 = "S4 (notes on centrifugal clutches)"
+SHIGLEY = "Shigley, Mechanical Engineering Design"
+PRACTICE = "common practice"
+TYPICAL = "engineering-typical value"
+DRIVE = "requirement of the drive"
