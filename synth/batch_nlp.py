@@ -26,7 +26,7 @@ from synth.interior_point import CONVERGED, INFEASIBLE, Ends, Layout, Problems
 from synth.lanes import InteriorPoint
 from synth.native import Solver, native
 from synth.native_general import General, general
-from synth.nlp import GUARD_MARGIN, Rows
+from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import Program
 
 # Rows broken by more than this count as missed, and the problem is tried again from another start.

@@ -61,17 +61,6 @@ class Root:
 
 
 @dataclass(frozen=True)
-class Contracted:
-    """Boxes after propagation: what is alive, variables, lower bounds of goals, and limits not decided yet."""
-
-    alive: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    bounds: np.ndarray
-    open: np.ndarray
-
-
-@dataclass(frozen=True)
 class Assign:
     """A name takes the value of an expression."""
 

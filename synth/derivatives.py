@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.nlp import Rows
+from synth.nlp_rows import Rows
 from synth.program import TEMPLATES, Node, Program
 from synth.sweeps import LOG, Graph, Rule, Sweeps, reached, with_shared_inverses
 

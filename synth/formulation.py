@@ -19,7 +19,7 @@ from synth.intervals import Cut, Goal
 from synth.margins import above, below
 from synth.model import Evaluation
 from synth.native_tree import CapTables
-from synth.nlp import ParametricNlp, Rows, Solution, Task
+from synth.nlp_rows import Rows
 from synth.pareto import non_dominated
 from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.propagation import Propagation
@@ -539,15 +539,11 @@ class Formulation:
 
     def candidates(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
         """Return those of the points that are feasible, and keep them in the archive."""
-        found = self.feasible_points(variables, combinations)
+        rows, phi = self.feasible_rows(variables, combinations)
+        found = [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
         if found:
             self.archive.add(*rows_of(found))
         return found
-
-    def feasible_points(self, variables: np.ndarray, combinations: np.ndarray) -> list[Candidate]:
-        """Return those of the points that are feasible."""
-        rows, phi = self.feasible_rows(variables, combinations)
-        return [Candidate(int(combinations[k]), variables[k].copy(), phi[k]) for k in rows]
 
     def feasible_rows(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of the feasible points, and phi of all points.
@@ -712,14 +708,6 @@ class Formulation:
             )
         return self._rows
 
-    def nlp(self) -> ParametricNlp:
-        """Return the NLP of this question for one design at a time (IPOPT); built once per model and set of rows."""
-        rows = self.rows()
-        made: ParametricNlp = self.model.function(
-            ("nlp", rows), lambda: ParametricNlp(self.model.program, self.n, rows)
-        )
-        return made
-
     def batch_nlp(self) -> BatchNlp | KinkedNlp:
         """Return the NLP of this question for many designs at once; built once per model and set of rows."""
         try:
@@ -831,19 +819,3 @@ class Formulation:
             if limit.void_without:
                 void[:, j] = limit.void(data, (count,))
         return void
-
-    def solve(
-        self,
-        task: Task,
-        combination: int,
-        start: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        skipped: np.ndarray | None = None,
-    ) -> Solution | None:
-        """Solve the continuous problem of one combination inside a box, from one start; leave some limits out."""
-        data = [float(np.asarray(x).ravel()[0]) for x in self.instance.data(np.array([combination]))]
-        self.solved_combinations.add(combination)
-        self.nlp_solves += 1
-        void = self.void(data, 1)[0] if skipped is None else skipped | self.void(data, 1)[0]
-        return self.nlp().solve(task, data, start, low, high, self.bounds, void)

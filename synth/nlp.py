@@ -1,14 +1,14 @@
-"""The continuous problem of one combination of parts and counts, as a parametric NLP.
+"""The referee: one continuous problem of one combination of parts and counts, solved by IPOPT.
 
-Built once per model, set of rows and smooth branch, then called with numbers only. Positive
-variables and positive quantities enter by their logarithm: scaling, utilisation and elasticity
-then come free. All scalar problems of the search are one problem with different parameters:
+No search uses it. Tests and benchmarks ask it what the engine's own solvers (:mod:`synth.batch_nlp`) should have found:
+it shares the rows with them, but neither derivatives nor method. Positive variables and positive quantities enter by
+their logarithm, as there. All scalar problems are one problem with different parameters:
 
     minimise  weights . phi + t_weight t + variable_weights . y
     over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k
 
-``min``, ``max`` and ``where`` never reach the solver: a branch fixes which piece is used and
-carries the piece's condition as a row of its own.
+``min``, ``max`` and ``where`` never reach IPOPT: a branch fixes which piece is used and carries the piece's condition
+as a row of its own.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.intervals import Cut, Goal
+from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import OP_SELECT, Program
 
 IPOPT: dict[str, Any] = {
@@ -38,31 +38,7 @@ IPOPT: dict[str, Any] = {
     "calc_lam_p": False,
 }
 ACTIVE = 1e-6
-GUARD_MARGIN = 1e-6
 MAX_FLIPS = 6
-
-
-@dataclass(frozen=True)
-class Rows:
-    """What the NLP knows of limits and objectives.
-
-    Parameters
-    ----------
-    cuts : tuple of Cut
-        Limits; a constant right side is handed over with each call.
-    goals : tuple of Goal
-        Objectives.
-    log_cuts, log_goals : tuple of bool
-        Which are positive on both sides, and so enter by logarithm.
-    log_variables : tuple of bool
-        Which variables are positive.
-    """
-
-    cuts: tuple[Cut, ...]
-    goals: tuple[Goal, ...]
-    log_cuts: tuple[bool, ...]
-    log_goals: tuple[bool, ...]
-    log_variables: tuple[bool, ...]
 
 
 @dataclass(frozen=True)

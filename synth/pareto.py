@@ -4,97 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import moocore
 import numpy as np
 
 SAME = 1e-9
 DIGITS = 9
-
-
-@dataclass(eq=False)
-class Zone:
-    """A region ``phi < upper`` that may hold a further non-dominated point.
-
-    ``upper`` comes from known points: component k from the point ``makers[k]`` (None: it is open, infinite).
-    ``cover`` is the searcher's own: what it knows of the region; parts of a zone inherit it.
-    """
-
-    upper: np.ndarray
-    makers: tuple[int | None, ...]
-    cover: Any = None
-
-
-class Zones:
-    """Search zones of a growing front of any dimension (local upper bounds, Klamroth et al. 2015).
-
-    Parameters
-    ----------
-    ideal, nadir : array (objectives,)
-        Least and largest values of the extreme designs, in phi; they set the scale. Designs beyond the
-        nadir are not left out: with three objectives the extremes do not tell where the front ends.
-    cover : object
-        What the searcher knows of the whole region.
-    """
-
-    def __init__(self, ideal: np.ndarray, nadir: np.ndarray, cover: Any = None) -> None:
-        self.ideal, self.nadir = ideal, nadir
-        self.range = np.maximum(nadir - ideal, 1e-300)
-        self.points: list[np.ndarray] = []
-        self.zones = [Zone(np.full(len(nadir), np.inf), (None,) * len(nadir), cover)]
-
-    def add(self, point: np.ndarray) -> None:
-        """Take a new non-dominated point: zones that it lies in are replaced by what remains of them."""
-        number = len(self.points)
-        self.points.append(point)
-        kept, made = [], []
-        for zone in self.zones:
-            if not np.all(point < zone.upper - SAME * self.range):
-                kept.append(zone)
-                continue
-            for k in range(len(point)):
-                upper = zone.upper.copy()
-                upper[k] = point[k]
-                makers = tuple(number if j == k else m for j, m in enumerate(zone.makers))
-                if np.all(upper > self.ideal + SAME * self.range):
-                    made.append(Zone(upper, makers, zone.cover))
-        self.zones = kept + self._irredundant(made, kept)
-
-    @staticmethod
-    def _irredundant(made: list[Zone], kept: list[Zone]) -> list[Zone]:
-        result: list[Zone] = []
-        for zone in made:
-            others = [z for z in made + kept if z is not zone]
-            inside = any(
-                np.all(zone.upper <= z.upper) and (np.any(zone.upper < z.upper) or z in result) for z in others
-            )
-            if not inside:
-                result.append(zone)
-        return result
-
-    def lower(self, zone: Zone) -> np.ndarray:
-        """Return the corner from which the middle of a zone is sought: what its makers leave possible."""
-        result = self.ideal.copy()
-        if len(result) == 2:
-            # Between two neighbours the front cannot fall below what each of them reached.
-            for k, maker in enumerate(zone.makers):
-                if maker is not None:
-                    other = 1 - k
-                    result[other] = max(result[other], self.points[maker][other])
-        corner: np.ndarray = np.minimum(result, zone.upper - SAME * self.range)
-        return corner
-
-    def size(self, zone: Zone) -> float:
-        """Return how large a hole in the front the zone is, 0 .. 1."""
-        edges = np.clip((np.minimum(zone.upper, self.nadir) - self.lower(zone)) / self.range, 0.0, None)
-        if len(edges) == 2:
-            return float(np.linalg.norm(edges) / np.sqrt(2))
-        return float(np.prod(edges) ** (1 / len(edges)))
-
-    def close(self, zone: Zone) -> None:
-        """Take a zone away that was found to hold nothing."""
-        self.zones = [z for z in self.zones if z is not zone]
 
 
 def non_dominated(phi: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ import numpy as np
 
 from synth.batch_nlp import MISSED, BatchNlp, Code, Solutions, Tasks, worth_of
 from synth.intervals import Cut
-from synth.nlp import Rows
+from synth.nlp_rows import Rows
 from synth.program import OP_SELECT, Program
 
 DECISIONS = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)

@@ -1,4 +1,4 @@
-"""A referee of problems with kinks: IPOPT in every regime, each with its conditions as limits."""
+"""IPOPT as the referee: of one design at a time, and of kinks in every regime with its conditions as limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,25 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from synth.nlp import ParametricNlp, Task
+from synth.formulation import Formulation
+from synth.nlp import ParametricNlp, Solution, Task
+
+
+def referee(form: Formulation) -> ParametricNlp:
+    """Return the problem of a question for IPOPT; built once per model and set of rows."""
+    rows = form.rows()
+    made: ParametricNlp = form.model.function(
+        ("referee", rows), lambda: ParametricNlp(form.model.program, form.n, rows)
+    )
+    return made
+
+
+def refereed(
+    form: Formulation, task: Task, combination: int, start: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> Solution | None:
+    """Return what IPOPT finds for one combination inside a box (SI), from one start; None where it finds nothing."""
+    data = [float(np.asarray(x).ravel()[0]) for x in form.instance.data(np.array([combination]))]
+    return referee(form).solve(task, data, start, low, high, form.bounds, form.void(data, 1)[0])
 
 
 def best_in_any_regime(

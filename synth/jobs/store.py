@@ -518,11 +518,6 @@ class Store:
                 .values(state=OPEN, owner=None, lease=None)
             )
 
-    def release_unit(self, claim: Claim, owner: str) -> None:
-        """Give one unit back, untried."""
-        with self.engine.begin() as connection:
-            connection.execute(sa.update(Unit).where(*_held(claim, owner)).values(state=OPEN, owner=None, lease=None))
-
     def release_dead(self, job: str) -> int:
         """Take units back from processes of this machine that are gone, without waiting for their leases."""
         with self.engine.begin() as connection:

@@ -12,7 +12,8 @@ import synth
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.instance import Instance, as_catalogs
 from synth.intervals import Cut, Goal
-from synth.nlp import ParametricNlp, Rows, Task
+from synth.nlp import ParametricNlp, Task
+from synth.nlp_rows import Rows
 
 REQUIREMENTS = {
     "load_torque": "600 N*m",

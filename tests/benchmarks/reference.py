@@ -20,7 +20,7 @@ from synth.batch_nlp import BatchNlp, Tasks
 from synth.instance import Instance
 from synth.intervals import Cut, Goal
 from synth.model import Evaluation
-from synth.nlp import Rows
+from synth.nlp_rows import Rows
 from synth.tables import Catalogs
 from tests.benchmarks import cases, hypervolume
 

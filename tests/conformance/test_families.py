@@ -14,6 +14,7 @@ from synth.nlp import Task
 from synth.special import expanded
 from synth.units import parse_unit
 from tests.conformance.cases import CASES, answer, question
+from tests.regimes import refereed
 
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
@@ -326,7 +327,7 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
         for _ in range(2 * len(box)):
             low, high = box.low[0, : form.n], box.high[0, : form.n]  # a box may carry inner nodes too
             start = low * (high / low) ** rng.random(form.n)
-            solution = form.solve(task, int(combination), start, low, high)
+            solution = refereed(form, task, int(combination), start, low, high)
             if solution is not None:
                 value = form.evaluate(solution.variables[None, :], np.array([combination]))
                 if value.feasible[0]:

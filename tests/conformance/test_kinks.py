@@ -16,7 +16,7 @@ from synth.formulation import Formulation
 from synth.instance import Instance, as_catalogs
 from synth.nlp import Task
 from tests.conformance.cases import CASES, Case, answer
-from tests.regimes import best_in_any_regime
+from tests.regimes import best_in_any_regime, referee
 
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 STARTS = 8
@@ -102,7 +102,7 @@ class Question:
         """Return the least cost that IPOPT finds in any regime."""
         ends = np.maximum(self.form.lower, low), np.minimum(self.form.upper, high)
         return best_in_any_regime(
-            self.form.nlp(),
+            referee(self.form),
             task,
             self.data,
             starts,

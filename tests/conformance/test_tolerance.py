@@ -9,6 +9,7 @@ from synth.formulation import Formulation
 from synth.nlp import Task
 from synth.special import expanded
 from tests.conformance.cases import CASES, answer
+from tests.regimes import refereed
 
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 CLOSE = 1e-8
@@ -63,7 +64,7 @@ def reached(form, combination, variables, phi):
     """
     low, high = (np.where(form.gridded, variables, ends) for ends in (form.lower, form.upper))
     task = Task(np.zeros(len(phi)), np.ones(len(phi)), phi, form.goal_scales)
-    solution = form.solve(task, combination, variables, low, high)
+    solution = refereed(form, task, combination, variables, low, high)
     if solution is None:
         return None
     rows, found = form.feasible_rows(solution.variables[None, :], np.array([combination]))

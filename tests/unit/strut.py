@@ -3,7 +3,7 @@
 import pandas as pd
 
 import synth
-from synth.formulation import Formulation
+from synth.formulation import Candidate, Formulation
 from synth.instance import Instance, catalogs_for
 from synth.tuning import TUNING
 
@@ -64,3 +64,9 @@ def designs_of(form, rng, count):
     combinations = rng.integers(form.instance.combinations.count, size=count)
     rows, phi = form.feasible_rows(points, combinations)
     return points[rows], combinations[rows], phi[rows]
+
+
+def feasible_candidates(form, points, combinations):
+    """Return those of some designs that are feasible, without the search learning of them."""
+    rows, phi = form.feasible_rows(points, combinations)
+    return [Candidate(int(combinations[k]), points[k].copy(), phi[k]) for k in rows]

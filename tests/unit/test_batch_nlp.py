@@ -18,7 +18,8 @@ from synth import native, native_general
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.instance import Instance, as_catalogs
 from synth.intervals import Cut, Goal
-from synth.nlp import GUARD_MARGIN, ParametricNlp, Rows, Task
+from synth.nlp import ParametricNlp, Task
+from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import Program
 
 HAS_COMPILER = shutil.which("cc") is not None

@@ -15,7 +15,7 @@ from synth.feasibility import SMALLEST, holds
 from synth.formulation import Formulation
 from synth.instance import Instance, as_catalogs, catalogs_for
 from synth.intervals import Cut
-from synth.nlp import GUARD_MARGIN
+from synth.nlp_rows import GUARD_MARGIN
 from synth.posed import posed
 from synth.prooftree import Point
 from synth.rating import Rater

@@ -1,6 +1,7 @@
 """Contraction never loses a design: random programs with tables, a small problem, and the multi-plate family."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import casadi as ca
 import numpy as np
@@ -13,7 +14,7 @@ import synth
 from problems.mechanics.guide_friction import sum_geometric
 from synth import native
 from synth.clusters import ClusterTree, Factor
-from synth.contractor import Contracted, Contractor, Layout
+from synth.contractor import Contractor, Layout
 from synth.formulation import Formulation
 from synth.instance import Instance, as_catalogs, catalogs_for
 from synth.intervals import Cut, Goal
@@ -90,12 +91,12 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
     function = contractor.code(root, caps is not None).function(root)
     with np.errstate(all="ignore"):
         dead, goals, opens = function(variables, tables, constants, right, caps, root.low, root.high, passes, count)
-    return Contracted(
-        ~dead & (not root.empty),
-        np.stack([np.broadcast_to(a, (count,)) for a, _ in variables], axis=1),
-        np.stack([np.broadcast_to(b, (count,)) for _, b in variables], axis=1),
-        np.stack([np.broadcast_to(g, (count,)) for g in goals], axis=1) if goals else np.empty((count, 0)),
-        np.stack([np.broadcast_to(o, (count,)) for o in opens], axis=1) if opens else np.empty((count, 0)),
+    return SimpleNamespace(
+        alive=~dead & (not root.empty),
+        low=np.stack([np.broadcast_to(a, (count,)) for a, _ in variables], axis=1),
+        high=np.stack([np.broadcast_to(b, (count,)) for _, b in variables], axis=1),
+        bounds=np.stack([np.broadcast_to(g, (count,)) for g in goals], axis=1) if goals else np.empty((count, 0)),
+        open=np.stack([np.broadcast_to(o, (count,)) for o in opens], axis=1) if opens else np.empty((count, 0)),
     )
 
 

@@ -17,7 +17,7 @@ from synth.purposes import Cover, Staircase
 from synth.search import distinct
 from synth.seeker import spread_choice
 from synth.tuning import TUNING
-from tests.unit.strut import NEEDED, RODS, Strut
+from tests.unit.strut import NEEDED, RODS, Strut, feasible_candidates
 
 TIE = TUNING.tolerances.tie
 
@@ -193,7 +193,7 @@ def form():
 def sampled(form, rng, count=20000):
     share = rng.random((count, form.n))
     points = form.makeable(form.lower + share * (form.upper - form.lower))
-    return form.feasible_points(points, rng.integers(form.instance.combinations.count, size=count))
+    return feasible_candidates(form, points, rng.integers(form.instance.combinations.count, size=count))
 
 
 def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):

@@ -1,4 +1,4 @@
-"""Dominance, search zones, spreading and ranking of a front."""
+"""Dominance, spreading and ranking of a front."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.pareto import Zones, non_dominated, rank, spread_subset
+from synth.pareto import non_dominated, rank, spread_subset
 
 
 def dominated_by_hand(phi):
@@ -37,74 +37,6 @@ def test_rows_that_differ_by_rounding_are_one():
 
 def test_nothing_is_not_dominated():
     assert non_dominated(np.empty((0, 2))).tolist() == []
-
-
-# -- zones -------------------------------------------------------------------------------------------
-
-
-def front_points(rng, objectives, count):
-    """Return mutually non-dominated points inside the unit cube."""
-    phi = rng.random((count, objectives))
-    return phi[dominated_by_hand(phi)]
-
-
-@given(st.integers(0, 10**6), st.integers(2, 4), st.integers(0, 12))
-@settings(deadline=None, derandomize=True, max_examples=80)
-def test_zones_cover_all_that_no_point_dominates_and_nothing_else(seed, objectives, count):
-    rng = np.random.default_rng(seed)
-    zones = Zones(np.zeros(objectives), np.ones(objectives))
-    known = front_points(rng, objectives, count)
-    for point in known:
-        zones.add(point)
-    probes = rng.random((300, objectives)) * (1 - 1e-6)
-    in_zone = np.zeros(300, dtype=bool)
-    for zone in zones.zones:
-        in_zone |= np.all(probes < zone.upper, axis=1)
-    dominated = np.zeros(300, dtype=bool)
-    for point in known:
-        dominated |= np.all(probes >= point, axis=1)
-    assert (in_zone == ~dominated).all()
-
-
-@given(st.integers(0, 10**6), st.integers(2, 4), st.integers(1, 10))
-@settings(deadline=None, derandomize=True, max_examples=50)
-def test_no_zone_lies_in_another(seed, objectives, count):
-    rng = np.random.default_rng(seed)
-    zones = Zones(np.zeros(objectives), np.ones(objectives))
-    points = np.round(front_points(rng, objectives, count), 1)  # shared coordinates make equal corners
-    for point in points[dominated_by_hand(points)]:
-        zones.add(point)
-    uppers = [z.upper for z in zones.zones]
-    for k, upper in enumerate(uppers):
-        assert not any(np.all(upper <= other) for j, other in enumerate(uppers) if j != k)
-
-
-def test_two_objectives_make_one_zone_more_than_points():
-    zones = Zones(np.zeros(2), np.ones(2))
-    for k, x in enumerate((0.5, 0.2, 0.8, 0.35)):
-        zones.add(np.array([x, 1 - x]))
-        assert len(zones.zones) == k + 2
-    assert len({tuple(z.upper) for z in zones.zones}) == 5
-
-
-def test_a_zone_between_neighbours_is_bounded_by_both():
-    zones = Zones(np.zeros(2), np.ones(2))
-    zones.add(np.array([0.2, 0.7]))
-    zones.add(np.array([0.6, 0.3]))
-    middle = next(z for z in zones.zones if z.upper.tolist() == [0.6, 0.7])
-    assert zones.lower(middle).tolist() == [0.2, 0.3]
-    assert zones.size(middle) == pytest.approx(0.4)
-    assert zones.size(max(zones.zones, key=zones.size)) >= zones.size(middle)
-    zones.close(middle)
-    assert len(zones.zones) == 2
-    assert all(z is not middle for z in zones.zones)
-
-
-def test_points_on_the_border_of_the_region_close_nothing_inside():
-    zones = Zones(np.zeros(2), np.ones(2))
-    zones.add(np.array([0.0, 1.0]))
-    zones.add(np.array([1.0, 0.0]))
-    assert [z.upper.tolist() for z in zones.zones] == [[1.0, 1.0]]
 
 
 # -- spreading ---------------------------------------------------------------------------------------

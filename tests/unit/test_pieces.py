@@ -18,10 +18,11 @@ from synth.batch_nlp import MISSED, BatchNlp, Code, Solutions, Tasks
 from synth.feasibility import residual
 from synth.formulation import EDGE, Formulation
 from synth.intervals import Cut, Goal
-from synth.nlp import ParametricNlp, Rows, Task
+from synth.nlp import ParametricNlp, Task
+from synth.nlp_rows import Rows
 from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.program import Program
-from tests.regimes import best_in_any_regime
+from tests.regimes import best_in_any_regime, referee
 
 ROOT = Path(__file__).parents[2]
 HAS_COMPILER = shutil.which("cc") is not None
@@ -352,7 +353,7 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
 
     ends, void = (form.lower, form.upper), form.void(data, 1)[0]
     starts = np.array([*start[:3], found.variables[rows[0]]])
-    least = best_in_any_regime(form.nlp(), task, data, starts, ends, form.bounds, void, mass_of)
+    least = best_in_any_regime(referee(form), task, data, starts, ends, form.bounds, void, mass_of)
     assert found.converged.sum() >= 11
     assert np.isfinite(least)
     np.testing.assert_allclose(phi[rows, 0][found.converged[rows]], least, atol=1e-7)

@@ -11,7 +11,7 @@ from synth.together_search import TogetherSearch
 from synth.tuning import TUNING, SettleLimits
 from tests.asking import pose
 from tests.tuned import tuned
-from tests.unit.strut import RODS, Strut
+from tests.unit.strut import RODS, Strut, feasible_candidates
 
 TIE = TUNING.tolerances.tie
 
@@ -84,7 +84,7 @@ def some_designs(form, count):
     rng = np.random.default_rng(7)
     low, high = form.lower, form.upper
     points = form.makeable(low + (high - low) * rng.random((20 * count, form.n)))
-    found = form.feasible_points(points, rng.integers(0, form.instance.combinations.count, len(points)))
+    found = feasible_candidates(form, points, rng.integers(0, form.instance.combinations.count, len(points)))
     assert len(found) >= count
     return found[:count]
 

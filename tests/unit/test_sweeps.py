@@ -8,7 +8,7 @@ import pytest
 
 from synth.derivatives import RowFunctions
 from synth.intervals import Cut, Goal
-from synth.nlp import Rows
+from synth.nlp_rows import Rows
 from synth.program import Program
 
 N, COUNT = 3, 50
