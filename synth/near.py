@@ -32,6 +32,7 @@ from synth.output_folder import NEAR_EQUALS, save_result
 from synth.purposes import Cover
 from synth.question import question_of
 from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.seeker import Seeker, roundings
 from synth.settle import settle_discrete, settle_variables
 from synth.units import parse_quantity
@@ -169,11 +170,13 @@ def near_equals(
     InputError
         When the design is not one of the question, or a number is not of its kind.
     """
+    settings = SearchSettings(seed=seed, time_limit=time_limit)
+    check_progress(progress)
     reference = _chosen(front, design)
     share = _share(within)
     whole_number(count, "count", INPUT_LIMITS.listed, path=("count",))
     instance = question_of(front, problem, catalogs)
-    search = _Enumeration(instance, reference, front, share, seed, progress, time_limit)
+    search = _Enumeration(instance, reference, front, share, settings, progress)
     return search.run(int(count))
 
 
@@ -256,9 +259,8 @@ class _Enumeration:
         reference: Design,
         front: ParetoFront,
         share: float,
-        seed: int,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-        time_limit: float | None,
+        settings: SearchSettings,
+        progress: Progress | None,
     ) -> None:
         self.started = time.monotonic()
         self.instance, self.reference, self.share = instance, reference, share
@@ -266,10 +268,10 @@ class _Enumeration:
         self.m = len(self.chosen)
         self.own = instance.combinations.number(reference)
         self.form = Formulation(instance, with_ties(instance.model, self.chosen), self.m)
-        self.rng = np.random.default_rng(seed)
+        self.rng = np.random.default_rng(settings.seed)
         self.progress, self.stage = progress, "enumerate"
-        deadline = math.inf if time_limit is None else self.started + time_limit
-        self.clock = Clock(deadline, self._working)
+        limit = settings.time_limit
+        self.clock = Clock(math.inf if limit is None else self.started + limit, self._working)
         self.near = self._purpose(front)
         self.tried: set[int] = set()
         self.undecided: set[int] = set()

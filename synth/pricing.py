@@ -30,6 +30,7 @@ from synth.price_list import CHANGE, CONFIRMED, FIXED, FORMAT, NOTHING, WITHHELD
 from synth.question import question_of
 from synth.resolve import ALL, FINE, Move, Resolver
 from synth.results import Design, ParetoFront
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.units import parse_quantity
 
 LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
@@ -81,6 +82,8 @@ def prices(
     InputError
         When a design is not one of the front, or the step is not of its kind.
     """
+    settings = SearchSettings(time_limit=time_limit)
+    check_progress(progress)
     chosen = _chosen(front, design)
     share = parse_quantity(step, "-", "step")
     if not LEAST_STEP <= share <= WIDEST_STEP:
@@ -91,7 +94,7 @@ def prices(
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
         store = Store.of(place, own)
-        return _Pricing(instance, front, share, progress, time_limit).run(chosen, store)
+        return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
 def _chosen(front: ParetoFront, design: Any) -> list[Design]:
@@ -125,11 +128,11 @@ class _Pricing:
         instance: Instance,
         front: ParetoFront,
         step: float,
-        progress: Callable[[Mapping[str, Any]], None] | None,
-        time_limit: float | None,
+        settings: SearchSettings,
+        progress: Progress | None,
     ) -> None:
         self.started = time.monotonic()
-        self.deadline = math.inf if time_limit is None else self.started + time_limit
+        self.deadline = math.inf if settings.time_limit is None else self.started + settings.time_limit
         self.instance, self.frame, self.step, self.progress = instance, front.frame, step, progress
         self.again = Resolver(instance, front, step)
 

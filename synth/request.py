@@ -167,7 +167,7 @@ class Request:
             "family": self.problem.name,
             "options": dict(self.problem.options),
             "requirements": stated({word: value for word, value in self.requirements.items() if value is not None}),
-            "objectives": _listed(self.objectives),
+            "objectives": listed_objectives(self.objectives),
             "limits": stated(self.limits),
             "fix": stated(self.fix),
             "parts": self.rules(),
@@ -195,7 +195,7 @@ def check_grid(grid: Any) -> bool:
     return bool(grid)
 
 
-def _listed(objectives: Any) -> Any:
+def listed_objectives(objectives: Any) -> Any:
     """Return objectives as files keep them."""
     if objectives is None or isinstance(objectives, Mapping):
         return objectives if objectives is None else dict(objectives)

@@ -24,7 +24,7 @@ from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.scatter import check_rows
-from synth.search_settings import Progress
+from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.uncertainty import LIMITS, Uncertainty, read_block
 
 if TYPE_CHECKING:
@@ -147,6 +147,8 @@ def rate(
     InputError
         When the block is not understood, or there are no designs.
     """
+    settings = SearchSettings(time_limit=time_limit)
+    check_progress(progress)
     designs = (
         list(source.designs)
         if isinstance(source, ParetoFront)
@@ -164,7 +166,7 @@ def rate(
     own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
     tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
     rater = Rater(own, frame.requirements, tables, frame.restated.get("limits"), asked)
-    deadline = math.inf if time_limit is None else time.monotonic() + time_limit
+    deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
     found, stopped = rater.rate(designs, progress, deadline)
     rated = [replace(d, robust=r) for d, r in zip(designs, found, strict=False)]
     return Ratings(rated, asked.block(), len(designs) - len(rated), stopped)

@@ -93,17 +93,15 @@ def batch_job(
 ) -> BatchJob:
     """Return the batch that flags describe."""
     from synth.jobs.run import BatchJob
+    from synth.search_settings import SearchSettings
     from synth.units import parse_quantity
 
     check_output(folder)
     seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
-    settings = {
-        "objectives": objectives(objective or []), "points": 30 if points is None else points,
-        "gap": 1e-3 if gap is None else gap, "grid": grid, "seed": seed, "time_limit": seconds,
-    }  # fmt: skip
-    return BatchJob(
-        family, rows, folder, mapping, catalogs, {"parts": None, "limits": None, "fix": None}, database, settings
-    )
+    stated: dict[str, Any] = {"points": points, "gap": gap, "seed": seed, "time_limit": seconds}
+    settings = SearchSettings(**{name: value for name, value in stated.items() if value is not None})
+    common = {"parts": None, "limits": None, "fix": None, "objectives": objectives(objective or []), "grid": grid}
+    return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common)
 
 
 def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:

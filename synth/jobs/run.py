@@ -30,8 +30,8 @@ from synth.jobs.table import read_table
 from synth.output_folder import claimed, settle
 from synth.plain_text import as_meant
 from synth.problem import families, load
-from synth.request import check_grid
-from synth.search_settings import SearchSettings
+from synth.request import EXAMPLES, check_grid, listed_objectives
+from synth.search_settings import SearchSettings, check_progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -143,13 +143,15 @@ def batch(
     InputError
         The table as a whole is wrong, or none of its rows asks a question.
     """
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
     keep = None
     if output is None:
         keep = _TemporaryFolder()
         output = keep.path
     job = BatchJob(
-        p, table, Path(output), mapping, catalogs, {"parts": parts, "limits": limits, "fix": fix}, database,
-        {"objectives": objectives, "points": points, "gap": gap, "grid": grid, "seed": seed, "time_limit": time_limit},
+        p, table, Path(output), mapping, catalogs, database, settings,
+        {"parts": parts, "limits": limits, "fix": fix, "objectives": objectives, "grid": grid},
     )  # fmt: skip
     with closing(job), claimed(job.folder, job.id):
         job.plan()
@@ -175,10 +177,10 @@ class BatchJob:
         As for :func:`batch`.
     folder : Path
         For the results.
+    settings : SearchSettings
+        Of every row.
     common : mapping
-        ``parts``, ``limits`` and ``fix`` of all rows.
-    settings : mapping
-        ``objectives``, ``points``, ``gap``, ``grid``, ``seed``, ``time_limit``.
+        What is asked in all rows: ``parts``, ``limits``, ``fix``, ``objectives``, ``grid``.
 
     Raises
     ------
@@ -193,24 +195,28 @@ class BatchJob:
         folder: Path,
         mapping: Any,
         catalogs: Any,
-        common: Mapping[str, Any],
         database: str | None,
-        settings: Mapping[str, Any],
+        settings: SearchSettings,
+        common: Mapping[str, Any],
     ) -> None:
-        SearchSettings(**{name: settings[name] for name in ("points", "gap", "seed", "time_limit")})
-        check_grid(settings["grid"])
+        check_grid(common["grid"])
         if folder.exists() and not folder.is_dir():
             raise InputError("--output", str(folder), "a folder; this is a file")
         self.folder = self.place = folder
         self.table = read_table(table)
         self.mapping = dict(mapping) if isinstance(mapping, Mapping) else read_mapping(mapping)
-        self.settings = dict(settings)
-        if self.settings["objectives"] is not None and not isinstance(self.settings["objectives"], Mapping):
-            asked = self.settings["objectives"]
-            self.settings["objectives"] = [asked] if isinstance(asked, str) else list(asked)
+        self.settings: dict[str, Any] = {
+            "objectives": listed_objectives(common["objectives"]),
+            "points": settings.points,
+            "gap": settings.gap,
+            "grid": common["grid"],
+            "seed": settings.seed,
+            "time_limit": settings.time_limit,
+        }
         self.common = {
-            name: {str(key): stated_value(value) for key, value in as_mapping(given, name, "{'mass': '...'}").items()}
-            for name, given in common.items()
+            name: {str(key): stated_value(value) for key, value in as_mapping(given, name, EXAMPLES[name]).items()}
+            for name in ("parts", "limits", "fix")
+            for given in [common[name]]
         }
         self.catalog_spec = str(Path(catalogs).resolve()) if isinstance(catalogs, (str, Path)) else catalogs
         self.catalogs = as_catalogs(self.catalog_spec)

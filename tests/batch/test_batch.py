@@ -22,6 +22,7 @@ from synth.jobs import runner
 from synth.jobs.executors import Inline, Processes
 from synth.jobs.run import BatchJob, Shares, resume, work_off
 from synth.jobs.store import CANCELLED, Store, file_url
+from synth.search_settings import SearchSettings
 from tests.batch.deadly import deadly_unit, faulty_unit
 from tests.batch.rod import Rod
 
@@ -225,9 +226,8 @@ class Slow(Inline):
 
 
 def job_of(folder: Path, count: int) -> BatchJob:
-    settings = {"objectives": ["mass"], "points": 1, "gap": 1e-3, "grid": True, "seed": 0, "time_limit": None}
-    common = {"parts": {"steel": ["S185"]}, "limits": None, "fix": None}
-    job = BatchJob(Rod, rows(count), folder, None, None, common, None, settings)
+    common = {"parts": {"steel": ["S185"]}, "limits": None, "fix": None, "objectives": ["mass"], "grid": True}
+    job = BatchJob(Rod, rows(count), folder, None, None, None, SearchSettings(points=1), common)
     job.plan()
     return job
 

@@ -25,6 +25,7 @@ from synth.jobs import runner
 from synth.jobs.models import Job
 from synth.jobs.outputs import write_outputs
 from synth.jobs.run import BatchJob
+from synth.search_settings import SearchSettings
 from synth.variants.choose import Chooser
 from tests.benchmarks import cases
 from tests.benchmarks.tables import Report
@@ -53,16 +54,10 @@ def case(rows: int, points: int, size: str, folder: Path) -> BatchJob:
         more = cases.more_rows(name, count)
         if len(more):
             spec[name] = ["+", more]
-    settings = {
-        "objectives": ["mass"] if points == 1 else ["mass", "actuation_force"],
-        "points": points,
-        "gap": 1e-3,
-        "grid": True,
-        "seed": 0,
-        "time_limit": None,
-    }
-    common = {"parts": question["parts"], "limits": None, "fix": None}
-    return BatchJob(FAMILY, cases.requirement_rows(rows), folder, None, spec or None, common, None, settings)
+    asked = ["mass"] if points == 1 else ["mass", "actuation_force"]
+    common = {"parts": question["parts"], "limits": None, "fix": None, "objectives": asked, "grid": True}
+    settings = SearchSettings(points=points)
+    return BatchJob(FAMILY, cases.requirement_rows(rows), folder, None, spec or None, None, settings, common)
 
 
 def measure(rows: int, points: int, size: str, workers: int | None) -> dict[str, Any]:
