@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from synth.constraint import SIGNS, Constraint
-from synth.declaration import Declaration, DeclarationError, Limit, Origin, Part, Refusal
+from synth.declaration import Declaration, DeclarationError, Origin, Part, Refusal
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
@@ -130,14 +130,20 @@ class Model:
         self.program = Program(self.inputs, outputs, calls)
         numbers = iter(self.program.outputs)
         self.quantity_node = {name: next(numbers) for name in named}
-        self._sides = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+        sides = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
         self.advice_nodes = [next(numbers) for _ in declaration.advices]
         self._evaluate = self.program.compile()
-        self.void_inputs = self._void_inputs()
         self.refusal_kinds = [self._refusal_inputs(r.code, r.when) for r in declaration.refusals]
         self._function_cache: dict[Any, Any] = {}
-        self._null_values, behind = self._behind_guards()
-        self.constraints = tuple(self._constraint(x, tuple(behind[x.name])) for x in self.limits)
+        self._null_values, behind = self._behind_guards(sides)
+        void = self._void_inputs(sides)
+        self.constraints = tuple(
+            Constraint(
+                name=x.name, sense=x.sense, value=sides[x.name][0], bound=sides[x.name][1], unit=x.unit, scale=x.scale,
+                guard=x.guard, origin=x.origin, void_without=tuple(void[x.name]), behind=tuple(behind[x.name]),
+            )
+            for x in self.limits
+        )  # fmt: skip
 
     # -- the trace -----------------------------------------------------------------------------
 
@@ -188,7 +194,7 @@ class Model:
             if strange:
                 raise DeclarationError(f"{self.title}: {label} uses {strange}, which the declaration does not make")
 
-    def _void_inputs(self) -> dict[str, list[int]]:
+    def _void_inputs(self, sides: Mapping[str, tuple[int, int]]) -> dict[str, list[int]]:
         """Return, per limit, the optional data inputs that make it void where they have no value.
 
         What a user limits must have a value: such a limit is missed where there is none.
@@ -199,7 +205,7 @@ class Model:
         for k in optional:
             marked = self.program.dependence([k])
             for limit in self.limits:
-                if limit.origin not in (Origin.USER, Origin.PIN) and any(marked[n] for n in self._sides[limit.name]):
+                if limit.origin not in (Origin.USER, Origin.PIN) and any(marked[n] for n in sides[limit.name]):
                     result[limit.name].append(k - first)
         return result
 
@@ -212,7 +218,7 @@ class Model:
             i.name for i in self.data_inputs if i.kind in ("count", "choice", "part") and str(i.sx) in used
         )
 
-    def _behind_guards(self) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+    def _behind_guards(self, sides: Mapping[str, tuple[int, int]]) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
         """Return, per quantity and per limit, the guards without which it does not exist."""
         values: dict[str, list[str]] = {name: [] for name in self.quantity_node}
         limits: dict[str, list[str]] = {limit.name: [] for limit in self.limits}
@@ -222,7 +228,7 @@ class Model:
             for name, node in self.quantity_node.items():
                 if marked[node]:
                     values[name].append(guard)
-            for name, nodes in self._sides.items():
+            for name, nodes in sides.items():
                 if name != guard and any(marked[n] for n in nodes):
                     limits[name].append(guard)
         return values, limits
@@ -230,13 +236,6 @@ class Model:
     def guards_of(self, name: str) -> tuple[str, ...]:
         """Return the guards without which a quantity does not exist."""
         return tuple(self._null_values[name])
-
-    def _constraint(self, limit: Limit, behind: tuple[str, ...]) -> Constraint:
-        value, bound = self._sides[limit.name]
-        return Constraint(
-            name=limit.name, sense=limit.sense, value=value, bound=bound, unit=limit.unit, scale=limit.scale,
-            guard=limit.guard, origin=limit.origin, void_without=tuple(self.void_inputs[limit.name]), behind=behind,
-        )  # fmt: skip
 
     def constraint_on(
         self, quantity: str, sense: str, bound: float, name: str = "", origin: Origin = Origin.USER

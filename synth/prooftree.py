@@ -22,12 +22,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from synth.enclosure import INF, LOOSE, Cut, Enclosed, Encloser, Pair, Slopes
 from synth.feasibility import TOLERANCE
 from synth.instance import Instance
+from synth.model import Model
 from synth.program import Program
+from synth.special import expanded
 from synth.tape import Expr, Ref, Tape, sign_of
 
 CHUNK = 4096
@@ -217,6 +220,16 @@ class Boxes:
         return Boxes(np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.whole for p in parts], axis=1))
 
 
+def void_without(model: Model) -> dict[str, list[int]]:
+    """Return, per limit of the family, the data inputs without a value for which it does not count."""
+    optional = {str(e.sx): k for k, e in enumerate(model.data_inputs) if not e.required}
+    found: dict[str, list[int]] = {}
+    for limit in model.limits:
+        sides = expanded(ca.vertcat(limit.value, limit.limit), model.calls) if optional else ca.SX()
+        found[limit.name] = sorted(optional[str(s)] for s in ca.symvar(sides) if str(s) in optional)
+    return found
+
+
 class ProofTree:
     """A question as a tree can prove it; made once, asked for any regions of the objectives.
 
@@ -314,9 +327,10 @@ class ProofTree:
         first = len(model.variables)
         self._goals = [next(outputs) for _ in range(objectives)]
         self._limits: list[LimitSides] = []
+        void_inputs = void_without(model)
         for limit in model.limits:
             value, bound = next(outputs), next(outputs)
-            optional = [self._inputs[first + k] for k in model.void_inputs[limit.name]]
+            optional = [self._inputs[first + k] for k in void_inputs[limit.name]]
             if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
                 void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
                 self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))

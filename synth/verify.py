@@ -8,9 +8,9 @@ with requirement values, bounds, grids and the combinations that are allowed), t
 (``synth.program``, ``synth.special``) and the tolerance at which a limit holds (``synth.feasibility``). Elasticities,
 statistics and explanations are only covered by the checksum of the file.
 
-On purpose limits are read a second time, here and in ``synth.prooftree``: sides, scales and guards come from the
-declaration itself, not from the constraints that everything else reads. Of what a user limits both take the quantity,
-sense and bound of the question, and nothing else.
+On purpose limits are read a second time, here and in ``synth.prooftree``: sides, scales, guards and what makes a limit
+void come from the declaration itself, not from the constraints that everything else reads. Of what a user limits both
+take the quantity, sense and bound of the question, and nothing else.
 
 A file that contradicts itself is told in a sentence (``synth.contradictions``) before anything is computed from it;
 whatever fails after that is a fault of the program and is not caught.
@@ -36,7 +36,7 @@ from synth.front_record import changed
 from synth.inputs import inputs_of_design
 from synth.instance import Instance
 from synth.problem import DesignProblem
-from synth.prooftree import NO_SCALE, Outcome, Point, ProofTree
+from synth.prooftree import NO_SCALE, Outcome, Point, ProofTree, void_without
 from synth.question import asked_again, problem_of
 from synth.special import expanded
 from synth.units import format_quantity
@@ -189,6 +189,7 @@ class Check:
         self.instance, self.model = instance, instance.model
         self._evaluate = _evaluator(instance)
         self._refused = _refusal_functions(instance)
+        self._void_without = void_without(instance.model)
 
     def listed(self) -> bool:
         """Check what the record says of the question and of the designs; tell whether it claims what can be proven."""
@@ -334,7 +335,7 @@ class Check:
     ) -> Iterator[_Reading]:
         """Yield how every limit stands at a design; behind a guard that fails the guard alone says that it is none."""
         for x in self.model.limits:
-            void = any(math.isnan(point.data[k]) for k in self.model.void_inputs[x.name])
+            void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
             yield _Reading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
         for own in self.instance.own:
             yield _Reading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)

@@ -159,10 +159,10 @@ def test_optional_columns_are_those_of_the_table(named):
     everything = [*everything, plain.model]  # an optional requirement may take the place of a column
     wanted = {r["name"] for r in rows if r["kind"] == "col?"}
     for model in everything:
-        for limit in model.limits:
-            for k in model.void_inputs[limit.name]:
+        for limit in model.constraints:
+            for k in limit.void_without:
                 assert model.data_inputs[k].label in wanted, limit.name
-    voids = {model.data_inputs[k].label for model in everything for v in model.void_inputs.values() for k in v}
+    voids = {model.data_inputs[k].label for model in everything for x in model.constraints for k in x.void_without}
     assert voids == wanted
 
 

@@ -17,10 +17,10 @@ from synth.instance import Instance, as_catalogs, catalogs_for
 from synth.intervals import Cut
 from synth.nlp_rows import GUARD_MARGIN
 from synth.posed import posed
-from synth.prooftree import Point
+from synth.prooftree import Point, void_without
 from synth.rating import Rater
 from synth.relaxation import AMOUNT, Relaxed
-from synth.scatter import read_block
+from synth.uncertainty import read_block
 from synth.units import format_quantity
 from synth.verify import Check
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
@@ -228,6 +228,8 @@ def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
 def test_verification_reads_limits_by_itself_and_alike(asked):
     check, result = Check(None, math.inf), asked.result
     check.ask(asked.instance)
+    model = asked.instance.model
+    assert void_without(model) == {x.name: list(x.void_without) for x in model.constraints}
     every = guarded(asked, result)
     for k in range(CHECKED):
         data = [float(x[k]) if np.ndim(x) else float(x) for x in asked.data]
