@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from problems.centrifugal.duty import COMMON, Duty, declare_duty
+from problems.centrifugal.duty import COMMON, SOURCES, Duty, declare_duty
 from problems.centrifugal.engagement import (
     Contact,
     advise_stop_load,
@@ -22,7 +22,6 @@ from problems.centrifugal.flyweights import (
 )
 from problems.centrifugal.lining import Lining, advise_release_gap, declare_lining, declare_wear
 from problems.centrifugal.size import declare_objectives, declare_size
-from problems.centrifugal.sources import DERIVED, DRIVE, S4, SOURCES, TYPICAL
 from problems.centrifugal.springs import (
     SpringSet,
     advise_springs,
@@ -33,11 +32,7 @@ from problems.centrifugal.springs import (
 
 __all__ = [
     "COMMON",
-    "DERIVED",
-    "DRIVE",
-    "S4",
     "SOURCES",
-    "TYPICAL",
     "Contact",
     "Duty",
     "Flyweights",

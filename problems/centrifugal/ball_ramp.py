@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
-from problems.centrifugal import DERIVED, S4, curves
 from problems.centrifugal import balls as ball_blocks
+from problems.centrifugal import curves
 from problems.centrifugal import state as states
 from problems.mechanics import ball_ramp, centrifugal
+from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
 from synth.declaration import Declaration
 
@@ -80,7 +81,7 @@ class CentrifugalBallRamp(DesignProblem):
         )  # fmt: skip
         d.at_most(
             "no_snap", deflection * balls.ratio, rest, "mm",
-            text="The plate moves gradually: a larger speed for every further travel, no jump", source=DERIVED,
+            text="The plate moves gradually: a larger speed for every further travel, no jump", source=NOT_IN_S4,
         )  # fmt: skip
         blocks.limit_spring_force(
             d, "spring_force", springs, deflection + gap, "The return springs stand their deflection at contact"

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from problems.centrifugal import DERIVED, DRIVE, S4, TYPICAL, Duty, SpringSet
+from problems.centrifugal import Duty, SpringSet
 from problems.mechanics import centrifugal
 from problems.mechanics.contact import contact_modulus
+from problems.sources import DRIVE, NOT_IN_S4, S4, TYPICAL
 from synth.declaration import Block, Declaration, Part, Requirement
 
 # Least share of the axial force that friction must leave when the balls come back; at 0 the ramp locks.
@@ -111,7 +112,7 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
     """
     friction = d.requirement(
         "ball_friction", "-", 0.03, lower=0, upper=0.1, symbol="mu_b",
-        text="Friction at the contacts of the balls, greased hardened track; a guess, 0 to 0.1", source=DERIVED,
+        text="Friction at the contacts of the balls, greased hardened track; a guess, 0 to 0.1", source=NOT_IN_S4,
     )  # fmt: skip
     pressure_limit = d.requirement(
         "hertz_pressure_limit", "GPa", 3.5, lower=0.5, upper=4.2, symbol="p_hertz_allow",
@@ -135,7 +136,7 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
     loss = centrifugal.contact_loss(friction, ratio)
     d.at_least(
         "ramp_returns", 1 - loss, RETURN_SHARE_MIN, "-", guard=True,
-        text="The balls come back by themselves: the ramp does not lock", source=DERIVED,
+        text="The balls come back by themselves: the ramp does not lock", source=NOT_IN_S4,
     )  # fmt: skip
     d.at_least(
         "hub_clearance", rest_radius, duty.hub_radius + part.diameter / 2, "mm",
@@ -147,14 +148,14 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
         release_ratio < HYSTERESIS_RATIO,
         "friction at the balls makes the clutch let go more than 5 % below the speed at which it takes hold; "
         "release_speed counts it",
-        source=DERIVED,
+        source=NOT_IN_S4,
     )
     d.advise(
         "rests_on_guesses",
         True,
         "speeds and forces rest on ball_friction, which is a guess, and hertz_pressure on a flat ramp: vary the one, "
         "and measure, before a design is released",
-        source=DERIVED,
+        source=NOT_IN_S4,
     )
     return Balls(
         count=count,

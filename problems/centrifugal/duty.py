@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from problems.centrifugal.sources import DRIVE, TYPICAL
+from problems.sources import DRIVE, TYPICAL, UNIFORM_WEAR
 from synth.declaration import Block, Declaration, Requirement
+
+SOURCES = (
+    "S4: notes on centrifugal and magnetic-powder clutches (in Hungarian), analyses 1 and 2, practices 1 to 3",
+    UNIFORM_WEAR,
+)
 
 # What a sheet for several families may state.
 COMMON = (

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.centrifugal.sources import DERIVED, DRIVE, S4, SHIGLEY
 from problems.mechanics import centrifugal
+from problems.sources import DRIVE, NOT_IN_S4, S4, UNIFORM_WEAR
 
 if TYPE_CHECKING:
     from problems.centrifugal.duty import Duty
@@ -53,7 +53,7 @@ def declare_contact(
     if release is None:
         release = contact
         text += "; friction in the mechanism is not modelled, so it is the contact speed"
-    d.derive("release_speed", "1/min", release, symbol="omega_release", text=text, source=DERIVED, needs=needs)
+    d.derive("release_speed", "1/min", release, symbol="omega_release", text=text, source=NOT_IN_S4, needs=needs)
     d.derive(
         "idle_margin", "-", release / duty.idle_speed, symbol="S_i", needs=needs,
         text="Release speed over idle_speed", source="definition",
@@ -104,7 +104,7 @@ def declare_full_clamp(
     """
     torque = d.derive(
         "worn_torque", "N*m", lining.torque(worn_force), symbol="M_worn",
-        text="Torque with full clamp force and worn lining", source=SHIGLEY,
+        text="Torque with full clamp force and worn lining", source=UNIFORM_WEAR,
     )  # fmt: skip
     d.derive(
         "full_clamp_speed", "1/min", full_clamp_speed, symbol="omega_stop", needs=needs,
@@ -112,7 +112,7 @@ def declare_full_clamp(
     )  # fmt: skip
     d.at_least(
         "torque_worn", torque, duty.torque_to_carry, "N*m",
-        text="The worn clutch carries required_torque with its reserve", source=SHIGLEY,
+        text="The worn clutch carries required_torque with its reserve", source=UNIFORM_WEAR,
     )  # fmt: skip
     d.at_most(
         "full_clamp_speed", full_clamp_speed, duty.full_torque_speed, "1/min",
@@ -137,11 +137,11 @@ def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source:
     d.derive("clamp_force", "N", force, symbol="F_N", text=text, source=source)
     pressure = d.derive(
         "lining_pressure", "N/mm2", centrifugal.lining_pressure(force, lining.inner_radius, lining.outer_radius),
-        symbol="p_l", text="Largest pressure of the worn-in lining, at its inner radius", source=SHIGLEY,
+        symbol="p_l", text="Largest pressure of the worn-in lining, at its inner radius", source=UNIFORM_WEAR,
     )  # fmt: skip
     d.at_most(
         "lining_pressure", pressure, lining.pair.p_allow, "N/mm2",
-        text="The lining stands the pressure", source=SHIGLEY,
+        text="The lining stands the pressure", source=UNIFORM_WEAR,
     )  # fmt: skip
 
 
@@ -166,5 +166,5 @@ def advise_stop_load(d: Declaration, stop_force: Any, clamp_force: Any) -> None:
         "stop_bears_more_than_lining",
         stop_force > clamp_force,
         "at top_speed stop_force is larger than clamp_force: stop, plates and bearings must be sized for it",
-        source=DERIVED,
+        source=NOT_IN_S4,
     )

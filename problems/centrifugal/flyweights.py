@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.centrifugal.sources import DERIVED, S4, TYPICAL
 from problems.mechanics import centrifugal
+from problems.sources import NOT_IN_S4, S4, TYPICAL
 
 if TYPE_CHECKING:
     from problems.centrifugal.duty import Duty
@@ -65,7 +65,7 @@ def declare_weights(d: Declaration, duty: Duty) -> Weights:
     )  # fmt: skip
     angle = d.requirement(
         "lever_angle_limit", "rad", 0.35, lower=0.02, upper=0.35, symbol="phi_lim",
-        text="Largest angle of the levers; the model takes sine and tangent for the angle", source=DERIVED,
+        text="Largest angle of the levers; the model takes sine and tangent for the angle", source=NOT_IN_S4,
     )  # fmt: skip
     mass = d.variable(
         "flyweight_mass", "kg", 0.05, 5, symbol="m_f",
@@ -81,7 +81,7 @@ def declare_weights(d: Declaration, duty: Duty) -> Weights:
     )  # fmt: skip
     thickness = d.derive(
         "weight_thickness", "mm", centrifugal.weight_thickness(mass, count, duty.steel_density, width), symbol="t_w",
-        text="Radial size of a weight of square section", source=f"geometry; {DERIVED}",
+        text="Radial size of a weight of square section", source=f"geometry; {NOT_IN_S4}",
     )  # fmt: skip
     return Weights(mass, count, arm, thickness, angle)
 
@@ -104,7 +104,7 @@ def limit_weight_room(d: Declaration, duty: Duty, weights: Weights, rest_radius:
     """
     d.at_most(
         "weight_clear_of_hub", duty.hub_radius + weights.thickness / 2 + pivot_arm, rest_radius, "mm",
-        text="The weights at rest clear the hub", source=f"geometry; {DERIVED}",
+        text="The weights at rest clear the hub", source=f"geometry; {NOT_IN_S4}",
     )  # fmt: skip
 
 
@@ -124,5 +124,5 @@ def advise_gravity(d: Declaration, rest_radius: Any, start_speed: Any) -> None:
         "gravity_at_start",
         centrifugal.gravity_ratio(rest_radius, start_speed) < 10,
         "the flyweights leave their rest below ten times gravity: on a horizontal shaft they move once per turn",
-        source=DERIVED,
+        source=NOT_IN_S4,
     )

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
-from problems.centrifugal import DERIVED, S4
 from problems.centrifugal import curves as centrifugal_curves
 from problems.centrifugal import lever_curves as centrifugal_lever_curves
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal import state as states
 from problems.centrifugal.levers import RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
+from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # Ranges of the arms [mm]; refusals reason with them.
 SPRING_ARM, ROD_ARM = (10.0, 200.0), (3.0, 150.0)
-PLACES = f"{S4}, what if rod and spring change places; {DERIVED}"
+PLACES = f"{S4}, what if rod and spring change places; {NOT_IN_S4}"
 # Guards: the rod inside the spring, and springs under load at the stop.
 GUARDS = ("rod_inside_spring", "clamp_springs_loaded")
 
@@ -139,7 +139,7 @@ class CentrifugalLever(DesignProblem):
             ),
             retraction_min=d.requirement(
                 "retraction_force_min", "N", 150, lower=0, upper=1e5, symbol="F_retract_min",
-                text="Least force at the spring's arm that draws the lever back at standstill", source=DERIVED,
+                text="Least force at the spring's arm that draws the lever back at standstill", source=NOT_IN_S4,
             ),
             spring_arm=d.variable(
                 "spring_arm", "mm", *SPRING_ARM, grid=0.5, symbol="l_s",
@@ -159,7 +159,7 @@ class CentrifugalLever(DesignProblem):
         )  # fmt: skip
         d.at_least(
             GUARDS[1], lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=DERIVED,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=NOT_IN_S4,
         )  # fmt: skip
 
     def _declare_speeds(
@@ -188,14 +188,14 @@ class CentrifugalLever(DesignProblem):
         d.at_most(
             "no_snap_travel", formulas.gradual_radius(lever.deflection, arm, rods.lead), lever.rest_radius, "mm",
             text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
-            "the rest radius below which it would jump", source=DERIVED,
+            "the rest radius below which it would jump", source=NOT_IN_S4,
         )  # fmt: skip
         d.at_most(
             "no_snap_clamp",
             formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, rods.spring_arm),
             lever.rest_radius, "mm",
             text="The lever clamps step by step: the rod is free at a lower speed than it stops at; shown is the rest "
-            "radius below which it would jump", source=DERIVED,
+            "radius below which it would jump", source=NOT_IN_S4,
         )  # fmt: skip
 
     def _declare_retraction(
@@ -208,5 +208,5 @@ class CentrifugalLever(DesignProblem):
         force = formulas.retraction_force(springs.force(lever.deflection), rods.spring_arm, rods.rod_arm)
         d.at_least(
             "retraction_force", force, rods.retraction_min, "N",
-            text="At standstill the spring draws the lever back", source=DERIVED,
+            text="At standstill the spring draws the lever back", source=NOT_IN_S4,
         )  # fmt: skip

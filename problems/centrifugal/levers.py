@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import centrifugal as blocks
-from problems.centrifugal import DERIVED, S4, TYPICAL
 from problems.mechanics import centrifugal
 from problems.mechanics import centrifugal_levers as formulas
+from problems.sources import NOT_IN_S4, S4, TYPICAL
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +106,7 @@ def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
     )
     d.at_most(
         "lever_angle", lever.stop_angle, weights.angle_limit, "rad",
-        text="The lever swings so little that sine and tangent are the angle", source=DERIVED,
+        text="The lever swings so little that sine and tangent are the angle", source=NOT_IN_S4,
     )  # fmt: skip
     return lever
 
@@ -135,7 +135,7 @@ def limit_contact(d: Declaration, lever: Lever, plate_arm: Any, longest: float, 
     )
     d.at_most(
         "stop_after_contact", lever.worn_travel / plate_arm, lever.stop_angle, "rad",
-        text="With worn linings too the plate is on the disc before the lever meets its stop", source=DERIVED,
+        text="With worn linings too the plate is on the disc before the lever meets its stop", source=NOT_IN_S4,
     )  # fmt: skip
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import centrifugal as blocks
-from problems.centrifugal import DERIVED
 from problems.centrifugal import curves as centrifugal_curves
 from problems.centrifugal import lever_curves as centrifugal_lever_curves
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal import state as states
 from problems.centrifugal.levers import RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
+from problems.sources import NOT_IN_S4
 from synth import DesignProblem
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class CentrifugalReversed(DesignProblem):
         squeeze = leg.arm * lever.stop_angle
         d.at_least(
             LOADED, lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=DERIVED,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=NOT_IN_S4,
         )  # fmt: skip
         lift = squeeze - lever.contact_travel
         push = springs.force(lever.deflection + lift)
@@ -165,14 +165,14 @@ class CentrifugalReversed(DesignProblem):
         d.at_most(
             "no_snap_travel", formulas.gradual_radius(leg.deflection, arm, leg.arm), lever.rest_radius, "mm",
             text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
-            "the rest radius below which it would jump", source=DERIVED,
+            "the rest radius below which it would jump", source=NOT_IN_S4,
         )  # fmt: skip
         d.at_most(
             "no_snap_clamp",
             formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, leg.arm),
             lever.rest_radius, "mm",
             text="Disc 1 lifts step by step: it leaves the housing at a lower speed than the lever stops at; shown is "
-            "the rest radius below which it would jump", source=DERIVED,
+            "the rest radius below which it would jump", source=NOT_IN_S4,
         )  # fmt: skip
 
     def _declare_springs(
@@ -180,7 +180,7 @@ class CentrifugalReversed(DesignProblem):
     ) -> None:
         d.at_most(
             "preload_order", leg.force(lever.contact_travel), springs.force(lever.deflection), "N",
-            text="The plate is on the friction disc before disc 1 lifts", source=DERIVED,
+            text="The plate is on the friction disc before disc 1 lifts", source=NOT_IN_S4,
         )  # fmt: skip
         blocks.limit_spring_force(
             d, "spring_force", springs, lever.deflection + lift, "The clamp springs stand the stop"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from problems.centrifugal.sources import DRIVE
 from problems.mechanics import centrifugal
+from problems.sources import DRIVE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

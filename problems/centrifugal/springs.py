@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.centrifugal.sources import DERIVED, S4
 from problems.mechanics import centrifugal
+from problems.sources import NOT_IN_S4, S4
 
 if TYPE_CHECKING:
     from problems.centrifugal.duty import Duty
@@ -141,7 +141,7 @@ def advise_springs(
         load > centrifugal.spring_force(part.rate_R, preload + travel),
         f"at top_speed the centrifugal force of the coils of {what} is larger than their spring force: they bow "
         "outwards and rub unless they sit in pockets or on guides",
-        source=DERIVED,
+        source=NOT_IN_S4,
     )
     amplitude = part.optional("tau_k_n_corrected") * part.rate_R * travel / (2 * part.max_force_Fn)
     d.advise(

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
-from problems.centrifugal import DERIVED, S4, TYPICAL, curves
 from problems.centrifugal import balls as ball_blocks
+from problems.centrifugal import curves
 from problems.centrifugal import state as states
 from problems.mechanics import centrifugal, two_spring
+from problems.sources import NOT_IN_S4, S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Declaration
 
@@ -238,7 +239,7 @@ class CentrifugalTwoSpring(DesignProblem):
         )  # fmt: skip
         d.at_most(
             "lever_angle", way.stop_travel / arm, weights.angle_limit, "rad",
-            text="The levers turn so little that the model holds", source=DERIVED,
+            text="The levers turn so little that the model holds", source=NOT_IN_S4,
         )  # fmt: skip
         blocks.limit_weight_room(d, duty, weights, rest)
         d.advise(
@@ -246,7 +247,7 @@ class CentrifugalTwoSpring(DesignProblem):
             True,
             "the drawings of the levers are lost: their arms and the room they need are a reconstruction, and "
             "mechanism_efficiency is a typical value",
-            source=DERIVED,
+            source=NOT_IN_S4,
         )
         return Drive(
             mass=weights.mass,
@@ -264,26 +265,26 @@ class CentrifugalTwoSpring(DesignProblem):
         d.at_most(
             "preload_order", way.clamp_preload, way.return_preload, "N",
             text="The clamp springs do not push the plate onto the lining at rest: it would drag at idle",
-            source=f"{DERIVED}; practice 1",
+            source=f"{NOT_IN_S4}; practice 1",
         )  # fmt: skip
         worn = two_spring.worn_contact_travel(way.contact_travel, way.return_rate, way.clamp_rate, wear)
         d.at_most(
             "stop_after_contact", worn, way.stop_travel, "mm",
-            text="The tension disc reaches its stop only after the worn lining is in contact", source=DERIVED,
+            text="The tension disc reaches its stop only after the worn lining is in contact", source=NOT_IN_S4,
         )  # fmt: skip
         # Speeds of the same flyweights: mass and transmission cancel, and with them most of what blurs a bound.
         text = "The {} gradually: every further travel asks for a larger speed (speed before over speed after)"
         d.at_most(
             "no_snap_tension", centrifugal.speed_ratio(way.clamp_preload, rest, way.return_preload, at_start), 1, "-",
-            text=text.format("tension disc moves alone"), source=DERIVED,
+            text=text.format("tension disc moves alone"), source=NOT_IN_S4,
         )  # fmt: skip
         d.at_most(
             "no_snap_plate", centrifugal.speed_ratio(way.return_preload, at_start, way.contact_force, at_contact), 1,
-            "-", text=text.format("plate moves"), source=DERIVED,
+            "-", text=text.format("plate moves"), source=NOT_IN_S4,
         )  # fmt: skip
         d.at_least(
             "no_snap_clamp", band, 1, "-",
-            text="The clamp force rises gradually: full clamp speed over contact speed", source=DERIVED,
+            text="The clamp force rises gradually: full clamp speed over contact speed", source=NOT_IN_S4,
         )  # fmt: skip
 
     def _declare_remarks(

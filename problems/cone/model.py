@@ -13,15 +13,14 @@ from problems import friction
 from problems.cone import formulas as cone
 from problems.friction import startup_curves
 from problems.mechanics import heat, plates
+from problems.sources import S1, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Part, Requirement
 
 if TYPE_CHECKING:
     import pandas as pd
 
-S1 = "S1 (lecture on friction clutches)"
 DERIVED = f"{S1}, cone clutch; formula lost in print, derived"
-TYPICAL = "engineering-typical value"
 # The friction work is shared by the inner and the outer cone.
 SHELL_SHARE = 0.5
 COOLING = "still_air"

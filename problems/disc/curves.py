@@ -10,6 +10,7 @@ import numpy as np
 from problems import friction
 from problems.mechanics import disc
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S1
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -54,7 +55,7 @@ def diameter_over_lining(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.
         "title": f"{problem.title}: outer diameter of the friction ring for {required:.4g} N*m",
         "panels": [{"label": "ring outer diameter [mm]", "columns": names}],
         "lines": lines,
-        "source": "S1 (lecture on friction clutches), sizing for pressure",
+        "source": f"{S1}, sizing for pressure",
     }
     return frame
 
@@ -140,6 +141,6 @@ def torque_over_force(problem: DesignProblem, spec: Mapping[str, Any], design: A
         ],
         "marks": [{"x": value["actuation_force"], "label": "F0"}],
         "lines": lines,
-        "source": "S1 (lecture on friction clutches); Shigley, Mechanical Engineering Design, uniform wear",
+        "source": f"{S1}; Shigley, Mechanical Engineering Design, uniform wear",
     }
     return frame

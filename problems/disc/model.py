@@ -10,6 +10,7 @@ from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S1
 from synth import DesignProblem
 from synth.declaration import Declaration
 
@@ -40,7 +41,7 @@ class DiscClutch(DesignProblem):
         pack = disc_pack.declare_disc_pack(d, duty, ring)
         force = d.variable(
             "actuation_force", "N", 50, 200000, symbol="F0",
-            text="Axial force of the springs on the pressure plate", source="S1 (lecture on friction clutches), F",
+            text="Axial force of the springs on the pressure plate", source=f"{S1}, F",
         )  # fmt: skip
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, self.name, duty, "dry")

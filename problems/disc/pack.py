@@ -8,9 +8,9 @@ from typing import Any
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup, Torques, advise_frequent_switching, declare_heated_body
 from problems.friction.ring import Ring
-from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import disc, heat, plates
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Declaration, Requirement
 
 

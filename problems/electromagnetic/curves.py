@@ -12,13 +12,14 @@ from problems.electromagnetic import formulas as pot_magnet
 from problems.magnet import coil_curves
 from problems.magnet.coil_curves import POINTS
 from problems.mechanics import magnetics
+from problems.sources import S4
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from synth import DesignProblem
 
-SOURCE = "S4 (notes on centrifugal clutches), section 6.6; derived, not measured"
+SOURCE = f"{S4}, section 6.6; derived, not measured"
 
 
 @dataclass(frozen=True)

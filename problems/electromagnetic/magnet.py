@@ -9,9 +9,9 @@ import numpy as np
 
 from problems.electromagnetic import formulas as pot_magnet
 from problems.friction.duty import Duty
-from problems.friction.sources import S4, TYPICAL
 from problems.magnet import coil as coil_blocks
 from problems.mechanics import heat, magnetics
+from problems.sources import S0, S4, TYPICAL
 from synth.declaration import Block, Declaration, Requirement
 
 HOLDS = "magnet_overcomes_springs"
@@ -36,7 +36,7 @@ class MagnetRequirements(Block):
         upper=1e5,
         symbol="F_drag",
         text=f"Push of the first phase: plates that slide in their guides ({TYPICAL})",
-        source="S0 (Szoke 1966), first phase of engagement",
+        source=f"{S0}, first phase of engagement",
     )
     pull_in_margin = Requirement(
         "-",

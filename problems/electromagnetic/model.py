@@ -15,6 +15,7 @@ from problems.mechanics import magnetics
 from problems.mechanics import ring as ring_formulas
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
+from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
 
@@ -46,7 +47,7 @@ class ElectromagneticClutch(DesignProblem):
         pack = d.option(
             "pack", ("multi_plate", "disc"), "multi_plate", symbol="pk",
             text="Friction pack that the magnet presses: many plates in a drum, or one or two dry discs",
-            source="S4 (notes on centrifugal clutches), section 6.6",
+            source=f"{S4}, section 6.6",
         )  # fmt: skip
         if pack == "disc":
             self._declare_disc(d)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import plates, startup
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Declaration, Option, Requirement
 from synth.errors import InputError
 

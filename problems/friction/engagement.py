@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems.friction.duty import Duty
-from problems.friction.sources import PRACTICE, S0, S1
 from problems.mechanics import heat, plates, startup
+from problems.sources import PRACTICE, S0, S1
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration, Part

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from problems.friction.sources import S0, S1
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S0, S1
 
 if TYPE_CHECKING:
     from synth.declaration import Declaration

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from problems.friction.sources import S4, TYPICAL
 from problems.mechanics import magnetics
+from problems.sources import S4, TYPICAL
 from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 
 

@@ -12,6 +12,7 @@ from problems.magnet import coil_curves
 from problems.magnet.coil_curves import POINTS
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
+from problems.sources import S4
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from synth import DesignProblem
 
 POLE_LENGTHS = (0.01, 0.02, 0.04)  # [m]
-SOURCE = "S4 (notes on centrifugal clutches) [P1] to [P8]; the shear curve of the powder is unverified"
+SOURCE = f"{S4} [P1] to [P8]; the shear curve of the powder is unverified"
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,7 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
     frame.attrs = {
         "title": f"{problem.title}: shear stress for {needed:.4g} N*m",
         "panels": [{"label": "shear stress [kPa]", "columns": list(frame.columns[1:]), "log": True}],
-        "source": "S4 (notes on centrifugal clutches) [P5]",
+        "source": f"{S4} [P5]",
     }
     return frame
 

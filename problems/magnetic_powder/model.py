@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems.friction.sources import S4, TYPICAL
 from problems.magnet import coil as coil_blocks
 from problems.magnetic_powder import curves as powder_curves
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
+from problems.sources import S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
 

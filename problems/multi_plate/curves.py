@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems.mechanics import guide_friction
+from problems.sources import S0
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from synth import DesignProblem
 
 SERIES = {"eq. (5)": "geometric", "eq. (10)": "exponential_K", "eq. (5'')": "lipka", "exact": "exact"}
-SOURCE = "S0 (Szoke 1966), eq. (5), (10), (14) to (16), appendix by I. Lipka (5''); exact: balance of every plate."
+SOURCE = f"{S0}, eq. (5), (10), (14) to (16), appendix by I. Lipka (5''); exact: balance of every plate."
 MOST_SURFACES = 120
 FRICTIONS = (0.05, 0.10, 0.15)  # where no design says which lining it is
 

@@ -9,6 +9,7 @@ from problems import friction
 from problems.friction import startup_curves
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
+from problems.sources import S0
 from synth import DesignProblem
 from synth.declaration import Declaration
 
@@ -88,7 +89,7 @@ class MultiPlateClutch(DesignProblem):
     def _declare_force(self, d: Declaration) -> Any:
         return d.variable(
             "actuation_force", "N", 50, 200000, symbol="F0",
-            text="Axial force of the actuator on the first plate", source="S0 (Szoke 1966), F0",
+            text="Axial force of the actuator on the first plate", source=f"{S0}, F0",
         )  # fmt: skip
 
     def _declare_objectives(self, d: Declaration) -> None:

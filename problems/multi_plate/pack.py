@@ -11,9 +11,9 @@ import numpy as np
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup, advise_frequent_switching, declare_heated_body
 from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
-from problems.friction.sources import S0, S1, TYPICAL
 from problems.mechanics import guide_friction, heat, plates
 from problems.mechanics import ring as ring_formulas
+from problems.sources import S0, S1, TYPICAL
 from synth.declaration import Block, Declaration, Option, Requirement
 
 

@@ -10,12 +10,10 @@ import numpy as np
 
 from problems.roller_coupling import formulas
 from problems.roller_coupling import motion as kinematics
-from problems.sources import S3
+from problems.sources import EXTENDS_S3, S3
 
 if TYPE_CHECKING:
     import pandas as pd
-
-EXT = "extension of S3"
 
 
 def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
@@ -45,7 +43,7 @@ def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
         "title": "Pin force over the arm radius",
         "panels": [{"label": "force [N]", "columns": list(frame.columns[1:])}],
         "marks": marks,
-        "source": f"{S3}, eq. (15), with the float: {EXT}",
+        "source": f"{S3}, eq. (15), with the float: {EXTENDS_S3}",
     }
     return frame
 

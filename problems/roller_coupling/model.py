@@ -12,8 +12,7 @@ import numpy as np
 
 from problems.mechanics import contact as hertz
 from problems.roller_coupling import curves, formulas
-from problems.roller_coupling.curves import EXT
-from problems.sources import DRIVE, S3, TYPICAL
+from problems.sources import DRIVE, EXTENDS_S3, S3, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -113,7 +112,7 @@ class Wants(Block):
         upper=90,
         symbol="chi",
         text="Acute angle between the guides; forces are checked down to 60 degrees",
-        source=f"{S3}, chapter XI; forces: {EXT}",
+        source=f"{S3}, chapter XI; forces: {EXTENDS_S3}",
     )
     roller_gap_min = Requirement(
         "mm",
@@ -210,7 +209,7 @@ class Wants(Block):
         upper=10,
         symbol="k_ret",
         text=f"Margin against the lighter loaded roller losing contact ({TYPICAL})",
-        source=EXT,
+        source=EXTENDS_S3,
     )
     ligament_factor = Requirement(
         "-",
@@ -219,7 +218,7 @@ class Wants(Block):
         upper=10,
         symbol="k_lig",
         text="Bending and notch in the bridges at the guide ends (estimate)",
-        source=EXT,
+        source=EXTENDS_S3,
     )
     roller_modulus = Requirement(
         "N/mm2",
@@ -371,7 +370,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             ),
             rim=d.variable(
                 "rim", "mm", 3, 60, grid=0.5, symbol="t",
-                text="Rim of the float around the corners of the guide ends", source=EXT,
+                text="Rim of the float around the corners of the guide ends", source=EXTENDS_S3,
             ),
             offset_capacity=d.variable(
                 "offset_capacity", "mm", 0.1, 80, symbol="e_cap",
@@ -475,13 +474,13 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         diameter, radius = roller.outer_diameter, unknowns.arm_radius
         d.derive(
             "effective_offset", "mm", offset, symbol="e_eff",
-            text="Offset seen in the plane of the float", source=f"{EXT}, sqrt(e**2 + h**2 tan(alpha)**2)",
+            text="Offset seen in the plane of the float", source=f"{EXTENDS_S3}, sqrt(e**2 + h**2 tan(alpha)**2)",
         )  # fmt: skip
         slide = d.derive(
             "axial_slide", "mm",
             formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle),
             symbol="z_ax", text="Slide of the rollers along shaft 2 per turn, peak to peak",
-            source=f"{EXT}; generalises {S3}, eq. (25)",
+            source=f"{EXTENDS_S3}; generalises {S3}, eq. (25)",
         )  # fmt: skip
         width = d.derive(
             "float_width", "mm", formulas.float_width(unknowns.contact_length, slide, wants.axial_play), symbol="b_f",
@@ -509,7 +508,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         d.step(
             "least_force_radius", "mm",
             formulas.optimum_arm_radius_with_float(wants.required_torque, roller_mass, wants.driver_speed, centrifugal),
-            symbol="r_best", text="Arm radius of the least pin force with this float", source=f"{S3}, eq. (15); {EXT}",
+            symbol="r_best", text="Arm radius of the least pin force with this float", source=f"{S3}, eq. (15); {EXTENDS_S3}",
         )  # fmt: skip
         normal = tangential + centrifugal
         pin = d.derive(
@@ -523,7 +522,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         counter = unknowns.balance.select({"no": 0.0, "yes": 1.0})
         d.derive(
             "steady_force", "N", centrifugal * (1 + counter), symbol="F_st",
-            text="Steady push on each shaft, away from the other; balance doubles it", source=f"{EXT} to {S3}, XIV.1",
+            text="Steady push on each shaft, away from the other; balance doubles it", source=f"{EXTENDS_S3} to {S3}, XIV.1",
         )  # fmt: skip
         vibration = d.derive(
             "vibration_force", "N", centrifugal * (1 - counter), symbol="F_vib",
@@ -535,7 +534,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         )  # fmt: skip
         d.derive(
             "efficiency", "-", formulas.rolling_efficiency(wants.rolling_friction, offset, radius), symbol="eta",
-            text="Efficiency with rolling friction in the guides", source=f"{EXT}, guides at right angles",
+            text="Efficiency with rolling friction in the guides", source=f"{EXTENDS_S3}, guides at right angles",
         )  # fmt: skip
         float_radius = formulas.float_radius(unknowns.guide_half_length, diameter, unknowns.rim)
         outer = d.derive(
@@ -633,9 +632,11 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         stress = d.derive(
             "pin_stress", "N/mm2",
             formulas.pin_equivalent_stress(loads.pin, roller.width, wants.pin_gap, roller.bore), symbol="sigma_v",
-            text="Equivalent stress at the root of a pin", source=EXT,
+            text="Equivalent stress at the root of a pin", source=EXTENDS_S3,
         )  # fmt: skip
-        d.at_most("pin_stress", stress, wants.pin_stress_limit, "N/mm2", text="The pins stand the bending", source=EXT)
+        d.at_most(
+            "pin_stress", stress, wants.pin_stress_limit, "N/mm2", text="The pins stand the bending", source=EXTENDS_S3
+        )
         d.at_most(
             "bearing_static", loads.pin,
             formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety), "N",
@@ -645,12 +646,12 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         d.at_most(
             "ligament",
             formulas.ligament_stress(wants.ligament_factor, loads.normal, unknowns.rim, width),
-            material.strength_allow, "N/mm2", text="The bridges at the guide ends hold", source=EXT,
+            material.strength_allow, "N/mm2", text="The bridges at the guide ends hold", source=EXTENDS_S3,
         )  # fmt: skip
         d.at_least("rim", unknowns.rim, wants.rim_min, "mm", text="The rim is not too thin", source=TYPICAL)
         d.at_least(
             "contact_retention", loads.tangential, wants.retention_margin * loads.centrifugal, "N",
-            text="The lighter loaded rollers keep contact, the float does not hammer", source=EXT,
+            text="The lighter loaded rollers keep contact, the float does not hammer", source=EXTENDS_S3,
         )  # fmt: skip
 
     def _declare_remarks(self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str) -> None:
@@ -704,7 +705,7 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             "push_doubled",
             unknowns.balance.select({"no": 0.0, "yes": offset > 0}),
             "the counter float removes the vibration and doubles the steady push on the bearings of both shafts",
-            source=f"{EXT} to {S3}, XIV.1",
+            source=f"{EXTENDS_S3} to {S3}, XIV.1",
         )
 
     # -- curves and motion -------------------------------------------------------------------------

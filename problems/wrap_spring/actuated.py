@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from problems.sources import DRIVE, NOT_IN_S2, TYPICAL
 from problems.wrap_spring import blocks, curves, formulas
-from problems.wrap_spring.blocks import DERIVED, DRIVE, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -92,11 +92,11 @@ class ActuatedWrapSpringClutch(DesignProblem):
         wants = d.block(Wants)
         clearance = d.variable(
             "clearance", "mm", 0.005, 5, symbol="c",
-            text="By how much the mean radius of the free coils is larger than that of the closed ones", source=DERIVED,
+            text="By how much the mean radius of the free coils is larger than that of the closed ones", source=NOT_IN_S2,
         )  # fmt: skip
         actuator = d.variable(
             "actuator_torque", "N*m", 1e-4, 1e4, symbol="T0",
-            text="Energising torque at the free end of the spring", source=DERIVED,
+            text="Energising torque at the free end of the spring", source=NOT_IN_S2,
         )  # fmt: skip
         wire = blocks.declare_wire(d, options)
         coils = blocks.declare_coils(d, options, duty, wire)
@@ -113,18 +113,18 @@ class ActuatedWrapSpringClutch(DesignProblem):
         effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
         d.at_least(
             "grip", actuator, -effective, "N*m", guard=True,
-            text="The energising torque closes the widest clearance; otherwise nothing grips", source=DERIVED,
+            text="The energising torque closes the widest clearance; otherwise nothing grips", source=NOT_IN_S2,
         )  # fmt: skip
         blocks.declare_closing(
             d, duty, formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
         )
         d.at_least(
             "clearance_kept", narrowest, wants.clearance_min, "mm",
-            text="Released, the coils stand clear of the hub", source=DERIVED,
+            text="Released, the coils stand clear of the hub", source=NOT_IN_S2,
         )  # fmt: skip
         load = d.derive(
             "wire_torque", "N*m", duty.peak_torque, symbol="T_load",
-            text="Torque that the wire sees at overload: peak_torque", source=DERIVED,
+            text="Torque that the wire sees at overload: peak_torque", source=NOT_IN_S2,
         )  # fmt: skip
         bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
         stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight, load)
@@ -140,7 +140,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             tired > 1,
             "engaged again and again up to wire_torque the wire tires: its stress swings between 0 and wire_stress and "
             "lies above Goodman's line",
-            source=f"Goodman; {DERIVED}",
+            source=f"Goodman; {NOT_IN_S2}",
         )
         d.objective("mass")
         d.objective("actuator_torque")
@@ -159,11 +159,11 @@ class ActuatedWrapSpringClutch(DesignProblem):
         closing = coils.per_hub + duty.gap_coils
         angle = d.derive(
             "wrap_angle", "rad", formulas.wrap_angle(closing, widest, coils.mean_radius), symbol="phi",
-            text="Angle until the coils are closed, at the widest clearance", source=DERIVED,
+            text="Angle until the coils are closed, at the widest clearance", source=NOT_IN_S2,
         )  # fmt: skip
         d.derive(
             "engagement_time", "s", angle / wants.relative_speed, symbol="t_e",
-            text="Time until the coils are closed when the free end is held", source=DERIVED,
+            text="Time until the coils are closed when the free end is held", source=NOT_IN_S2,
         )  # fmt: skip
         if wants.wrap_angle_limit is not None:
             d.at_most(

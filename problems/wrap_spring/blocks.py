@@ -7,14 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from problems.wrap_spring import formulas
 from synth.declaration import Block, Declaration, Option, Part, Requirement
 from synth.errors import InputError
 
-S2 = "S2 (Kozma et al.)"
-DERIVED = f"derived; not in {S2}"
-TYPICAL = "engineering-typical value"
-DRIVE = "requirement of the drive"
 SOURCES = (
     "S2: M. Kozma, G. Molnar, K. Varadi, R. Oroszvary, Preloaded force-locking clutch with a helical spring "
     "(wrap spring clutch, in Hungarian)",
@@ -163,7 +160,7 @@ class Duty(Block):
         symbol="beta_max",
         text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
         "means little",
-        source=DERIVED,
+        source=NOT_IN_S2,
     )
 
 
@@ -425,20 +422,20 @@ def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> F
     if duty.belt_exponent_limit is not None:
         d.at_most(
             "belt_exponent", high, duty.belt_exponent_limit, "-",
-            text="The clutch still slips before everything else breaks", source=DERIVED,
+            text="The clutch still slips before everything else breaks", source=NOT_IN_S2,
         )  # fmt: skip
     d.advise(
         "locks_at_any_peak",
         high > 6,
         "at the highest friction the belt exponent is above 6: any peak is locked instead of slipping through; "
         "belt_exponent_limit 6 keeps the search to clutches that can slip",
-        source=DERIVED,
+        source=NOT_IN_S2,
     )
     d.advise(
         "locked",
         high > formulas.LOCKED_BELT_EXPONENT,
         "at the highest friction the clutch is locked; the belt exponent counts up to 50 only",
-        source=DERIVED,
+        source=NOT_IN_S2,
     )
     return Friction(part, low, high)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems.sources import S2
 from problems.wrap_spring import formulas
 
 if TYPE_CHECKING:
@@ -243,7 +244,7 @@ def over_belt_exponent(spec: Mapping[str, Any], drag_limit: float | None) -> pd.
         title="Least drag and slip torque for the required torque, by the spread of friction mu_max/mu_min",
         panels=[panel("drag torque [N*m]", drag, log=True), panel("slip torque [N*m]", slip, log=True)],
         lines=[*line(0, drag_limit, "drag_torque_limit"), *line(1, spec["peak_torque"], "peak_torque")],
-        source="S2 (Kozma et al.), eq. (15), (20); the moment is the least that holds, without tolerance",
+        source=f"{S2}, eq. (15), (20); the moment is the least that holds, without tolerance",
     )
 
 
@@ -300,7 +301,7 @@ def _torque_over_friction(clutch: Fitted, spec: Mapping[str, Any], low: float, h
         panels=[panel("closing torque [N*m]", names[1:3], log=True), panel("opening torque [N*m]", names[3:])],
         marks=friction_marks(clutch),
         lines=[*torque_lines(spec), *line(1, spec["drag_torque_limit"], "drag_torque_limit")],
-        source="S2 (Kozma et al.), eq. (15), (20)",
+        source=f"{S2}, eq. (15), (20)",
     )
 
 
@@ -331,7 +332,7 @@ def _torque_over_interference(clutch: Fitted, spec: Mapping[str, Any], values: M
             *torque_lines(spec, 1)[1:],
             *line(2, spec["drag_torque_limit"], "drag_torque_limit"),
         ],
-        source="S2 (Kozma et al.), eq. (6), (8), (15), (20)",
+        source=f"{S2}, eq. (6), (8), (15), (20)",
     )
 
 
@@ -350,7 +351,7 @@ def _interference_along(
         "resting": (high, np.full_like(coil, high)),
         "overrunning": (high, high * np.exp(-from_free_end)),
     }
-    return along_the_coils(clutch, cases, coil, "S2 (Kozma et al.), eq. (6), (18), (22) corrected; derived")
+    return along_the_coils(clutch, cases, coil, f"{S2}, eq. (6), (18), (22) corrected; derived")
 
 
 def _windup(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) -> pd.DataFrame:
@@ -489,7 +490,7 @@ def _actuated_over_friction(
         panels=[panel("closing torque [N*m]", list(columns)[1:], log=True)],
         marks=friction_marks(clutch),
         lines=torque_lines(spec),
-        source="S2 (Kozma et al.), eq. (18), with an energising torque; derived",
+        source=f"{S2}, eq. (18), with an energising torque; derived",
     )
 
 
@@ -510,7 +511,7 @@ def _actuated_over_actuator(
         panels=[panel(name, [name]) for name in list(columns)[1:]],
         marks=[mark(here, "actuator_torque")],
         lines=[*torque_lines(spec)[:1], *torque_lines(spec, 1)[1:]],
-        source="S2 (Kozma et al.), eq. (18), with an energising torque; derived",
+        source=f"{S2}, eq. (18), with an energising torque; derived",
     )
 
 
@@ -555,7 +556,7 @@ def _actuated_along(
         "required": carried(spec["required_torque"], wide, clutch.mu_min),
         "overload": carried(values["wire_torque"], narrow, clutch.mu_max),
     }
-    return along_the_coils(clutch, cases, coil, "S2 (Kozma et al.), eq. (18), with an energising torque; derived")
+    return along_the_coils(clutch, cases, coil, f"{S2}, eq. (18), with an energising torque; derived")
 
 
 def actuator_over_belt_exponent(spec: Mapping[str, Any]) -> pd.DataFrame:

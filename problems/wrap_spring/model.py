@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from problems.wrap_spring import blocks, curves, formulas
-from problems.wrap_spring.blocks import DERIVED, DRIVE, S2, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -126,7 +126,7 @@ class WrapSpringClutch(DesignProblem):
             symbol="pol",
             text="slip_limited: the wire sees peak_torque or the largest slip torque, whichever is smaller; "
             "torque_limited: it sees peak_torque",
-            source=DERIVED,
+            source=NOT_IN_S2,
         )
         duty = blocks.declare_duty(d, InterferenceDuty)
         wants = d.block(Wants)
@@ -201,7 +201,7 @@ class WrapSpringClutch(DesignProblem):
     ) -> None:
         d.at_least(
             "interference_positive", interference, duty.interference_tolerance, "mm", guard=True,
-            text="The preload survives the tolerance", source=DERIVED,
+            text="The preload survives the tolerance", source=NOT_IN_S2,
         )  # fmt: skip
         most = interference + duty.interference_tolerance
         d.at_most(
@@ -235,7 +235,7 @@ class WrapSpringClutch(DesignProblem):
             return ("interference_positive",)
         d.at_least(
             "grip", low, blocks.centrifugal_moment(options, duty, wire, coils), "N*m", guard=True,
-            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips", source=DERIVED,
+            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips", source=NOT_IN_S2,
         )  # fmt: skip
         return ("grip",)  # without interference there is no preload either
 
@@ -246,12 +246,12 @@ class WrapSpringClutch(DesignProblem):
             "liftoff_speed", "1/min",
             formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, coils.mean_radius),
             symbol="omega_lift", needs="interference_positive",
-            text="Speed at which the loosest spring lifts off its hub", source=DERIVED,
+            text="Speed at which the loosest spring lifts off its hub", source=NOT_IN_S2,
         )  # fmt: skip
         d.at_most(
             "liftoff", duty.spring_speed, wants.liftoff_margin * speed, "1/min",
             text="The spring stays on its hub at spring_speed, also with model seed, which counts torques at rest",
-            source=DERIVED,
+            source=NOT_IN_S2,
         )  # fmt: skip
 
     def _declare_overload(
@@ -269,12 +269,12 @@ class WrapSpringClutch(DesignProblem):
                 "slips_below_peak",
                 slip < duty.peak_torque,
                 "the clutch always slips below peak_torque: slip_torque loads the wire, not the drive",
-                source=DERIVED,
+                source=NOT_IN_S2,
             )
         return d.derive(
             "wire_torque", "N*m", np.minimum(duty.peak_torque, slip) if limited else duty.peak_torque,
             symbol="T_load",
-            text="Torque that the wire sees at overload", source=DERIVED,
+            text="Torque that the wire sees at overload", source=NOT_IN_S2,
         )  # fmt: skip
 
     def _declare_fatigue(
@@ -302,11 +302,11 @@ class WrapSpringClutch(DesignProblem):
             ),
             symbol="u_F",
             text="Fatigue of the wire between no torque and service_factor required_torque",
-            source=f"Goodman; {DERIVED}",
+            source=f"Goodman; {NOT_IN_S2}",
         )  # fmt: skip
         d.at_most(
             "fatigue", used, 1.0, "-",
-            text="The wire does not tire", source=f"Goodman; {DERIVED}",
+            text="The wire does not tire", source=f"Goodman; {NOT_IN_S2}",
         )  # fmt: skip
 
     def _declare_hub(self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
@@ -346,11 +346,11 @@ class WrapSpringClutch(DesignProblem):
         preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
         rubbing = d.derive(
             "overrun_pv", "W/mm2", formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius), symbol="pv",
-            text="Pressure of the preload times sliding speed when overrunning", source=DERIVED,
+            text="Pressure of the preload times sliding speed when overrunning", source=NOT_IN_S2,
         )  # fmt: skip
         d.at_most(
             "overrun_pv", rubbing, friction.part.pv_allow, "W/mm2",
-            text="Wire and hub stand the rubbing", source=DERIVED,
+            text="Wire and hub stand the rubbing", source=NOT_IN_S2,
         )  # fmt: skip
         rise = d.derive(
             "temperature_rise", "K",
@@ -358,11 +358,11 @@ class WrapSpringClutch(DesignProblem):
                 drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, size.diameter, size.length
             ),
             symbol="dT",
-            text="Steady rise over ambient when overrunning", source=f"lumped heat balance; {DERIVED}",
+            text="Steady rise over ambient when overrunning", source=f"lumped heat balance; {NOT_IN_S2}",
         )  # fmt: skip
         d.at_most(
             "overrun_temperature", rise, wants.temperature_rise_limit, "K",
-            text="The clutch stays cool when overrunning", source=f"lumped heat balance; {DERIVED}",
+            text="The clutch stays cool when overrunning", source=f"lumped heat balance; {NOT_IN_S2}",
         )  # fmt: skip
 
     def _declare_windup(
@@ -385,7 +385,7 @@ class WrapSpringClutch(DesignProblem):
         d.derive(
             "windup_angle", "deg", angle, symbol="theta", needs="interference_positive",
             text="Angle between the hubs until required_torque is carried: least friction, loosest fit, at rest",
-            source=DERIVED,
+            source=NOT_IN_S2,
         )  # fmt: skip
 
     def _declare_utilisation(
@@ -417,7 +417,7 @@ class WrapSpringClutch(DesignProblem):
             friction.exponent_low < 2,
             "at the least friction the belt exponent is below 2: the drag when overrunning is above some 15 % of the "
             "torque held",
-            source=DERIVED,
+            source=NOT_IN_S2,
         )
         factor = formulas.curved_bar_factor(2 * coils.mean_radius / wire.thickness)
         d.advise(
@@ -434,7 +434,7 @@ class WrapSpringClutch(DesignProblem):
             formulas.closing_torque(effective, tips) < duty.required_torque,
             "the tip of a free end lifts off and about 0.05 coils there do not grip; counting that, the least closing "
             "torque is below required_torque: raise slip_safety",
-            source=DERIVED,
+            source=NOT_IN_S2,
         )
         d.advise(
             "overrun_sliding_speed",
