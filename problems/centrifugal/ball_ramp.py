@@ -36,13 +36,24 @@ class CentrifugalBallRamp(DesignProblem):
         wants = ball_blocks.declare_force_limits(d, duty)
         rest = blocks.declare_rest_radius(d)
         gap = d.variable(
-            "plate_gap", "mm", 1.5, 6, symbol="h",
-            text="Travel of the pressure plate to contact", source=f"{S4}, h",
-        )  # fmt: skip
+            "plate_gap",
+            "mm",
+            1.5,
+            6,
+            symbol="h",
+            text="Travel of the pressure plate to contact",
+            source=f"{S4}, h",
+        )
         deflection = d.variable(
-            "spring_preload_deflection", "mm", 1, 20, grid=0.1, symbol="delta",
-            text="Deflection of the return springs at rest", source=f"{S4}, F_R0/s",
-        )  # fmt: skip
+            "spring_preload_deflection",
+            "mm",
+            1,
+            20,
+            grid=0.1,
+            symbol="delta",
+            text="Deflection of the return springs at rest",
+            source=f"{S4}, F_R0/s",
+        )
         balls = ball_blocks.declare_balls(d, duty, rest)
         springs = blocks.declare_springs(d, "return_spring", "sp", "N_s", "they push the pressure plate back")
         lining = blocks.declare_lining(d, self.name, duty)
@@ -55,34 +66,48 @@ class CentrifugalBallRamp(DesignProblem):
         blocks.declare_contact(d, duty, speed, release, needs="ramp_returns")
         needed = lining.force(duty.torque_to_carry)
         blocks.declare_band(
-            d, ball_ramp.clamp_speed_ratio(at_contact, needed),
+            d,
+            ball_ramp.clamp_speed_ratio(at_contact, needed),
             "Speed at which required_torque with its reserve is reached, over the contact speed",
-        )  # fmt: skip
+        )
         # The two clamp forces share their terms, so that a bound of one bounds the other.
         gain = centrifugal.axial_gain(balls.mass, end, balls.push)
         at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
         clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
         full = d.derive(
-            "full_speed_torque", "N*m", lining.torque(at_full_speed), symbol="M_full",
-            text="Torque at full_torque_speed, worn-in lining", source=f"{S4}, analysis 1, eq. (12), corrected",
-        )  # fmt: skip
+            "full_speed_torque",
+            "N*m",
+            lining.torque(at_full_speed),
+            symbol="M_full",
+            text="Torque at full_torque_speed, worn-in lining",
+            source=f"{S4}, analysis 1, eq. (12), corrected",
+        )
         d.at_least(
-            "torque_at_full_speed", full, duty.torque_to_carry, "N*m",
+            "torque_at_full_speed",
+            full,
+            duty.torque_to_carry,
+            "N*m",
             text="At full_torque_speed the clutch carries required_torque with its reserve",
             source=f"{S4}, analysis 1, eq. (12), corrected",
-        )  # fmt: skip
+        )
         blocks.declare_clamp(
             d, lining, clamp, "Clamp force at top_speed, the largest", f"{S4}, analysis 1, eq. (12), corrected"
         )
         ball_blocks.limit_contact_and_clamp(d, wants, speed, clamp, " at top_speed")
         blocks.declare_stop_force(
-            d, clamp, "Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
+            d,
+            clamp,
+            "Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
             f"{S4}, analysis 1",
-        )  # fmt: skip
+        )
         d.at_most(
-            "no_snap", deflection * balls.ratio, rest, "mm",
-            text="The plate moves gradually: a larger speed for every further travel, no jump", source=NOT_IN_S4,
-        )  # fmt: skip
+            "no_snap",
+            deflection * balls.ratio,
+            rest,
+            "mm",
+            text="The plate moves gradually: a larger speed for every further travel, no jump",
+            source=NOT_IN_S4,
+        )
         blocks.limit_spring_force(
             d, "spring_force", springs, deflection + gap, "The return springs stand their deflection at contact"
         )

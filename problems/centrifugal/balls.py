@@ -111,37 +111,70 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
         Symbols of the block.
     """
     friction = d.requirement(
-        "ball_friction", "-", 0.03, lower=0, upper=0.1, symbol="mu_b",
-        text="Friction at the contacts of the balls, greased hardened track; a guess, 0 to 0.1", source=NOT_IN_S4,
-    )  # fmt: skip
+        "ball_friction",
+        "-",
+        0.03,
+        lower=0,
+        upper=0.1,
+        symbol="mu_b",
+        text="Friction at the contacts of the balls, greased hardened track; a guess, 0 to 0.1",
+        source=NOT_IN_S4,
+    )
     pressure_limit = d.requirement(
-        "hertz_pressure_limit", "GPa", 3.5, lower=0.5, upper=4.2, symbol="p_hertz_allow",
+        "hertz_pressure_limit",
+        "GPa",
+        3.5,
+        lower=0.5,
+        upper=4.2,
+        symbol="p_hertz_allow",
         text=f"Largest pressure of a ball on a flat ramp ({TYPICAL}; 2.8 to 4, static limit of ball contacts 4.2)",
         source=f"{TYPICAL}; ISO 76",
-    )  # fmt: skip
+    )
     count = d.count("balls", 3, 12, symbol="n_b", text="Number of balls, each in a ramp", source=f"{S4}, balls")
     part = d.part("ball", "balls", symbol="ball", text="One ball", source="table balls")
     ratio = d.variable(
-        "ramp_ratio", "-", 0.4, 2, symbol="i",
-        text="Transmission of the ramp dr/dx, the tangent of ramp_angle", source=f"{S4}, tan(alpha)",
-    )  # fmt: skip
+        "ramp_ratio",
+        "-",
+        0.4,
+        2,
+        symbol="i",
+        text="Transmission of the ramp dr/dx, the tangent of ramp_angle",
+        source=f"{S4}, tan(alpha)",
+    )
     d.derive(
-        "ramp_angle", "deg", centrifugal.ramp_angle(ratio), symbol="alpha",
-        text="Angle of the ramp, measured from the shaft axis", source=f"{S4}, alpha",
-    )  # fmt: skip
+        "ramp_angle",
+        "deg",
+        centrifugal.ramp_angle(ratio),
+        symbol="alpha",
+        text="Angle of the ramp, measured from the shaft axis",
+        source=f"{S4}, alpha",
+    )
     mass = d.derive(
-        "flyweight_mass", "kg", centrifugal.ball_set_mass(count, part.density, part.diameter), symbol="m_f",
-        text="Mass of all balls together", source=f"{S4}, m",
-    )  # fmt: skip
+        "flyweight_mass",
+        "kg",
+        centrifugal.ball_set_mass(count, part.density, part.diameter),
+        symbol="m_f",
+        text="Mass of all balls together",
+        source=f"{S4}, m",
+    )
     loss = centrifugal.contact_loss(friction, ratio)
     d.at_least(
-        "ramp_returns", 1 - loss, RETURN_SHARE_MIN, "-", guard=True,
-        text="The balls come back by themselves: the ramp does not lock", source=NOT_IN_S4,
-    )  # fmt: skip
+        "ramp_returns",
+        1 - loss,
+        RETURN_SHARE_MIN,
+        "-",
+        guard=True,
+        text="The balls come back by themselves: the ramp does not lock",
+        source=NOT_IN_S4,
+    )
     d.at_least(
-        "hub_clearance", rest_radius, duty.hub_radius + part.diameter / 2, "mm",
-        text="The balls at rest clear the hub", source="geometry",
-    )  # fmt: skip
+        "hub_clearance",
+        rest_radius,
+        duty.hub_radius + part.diameter / 2,
+        "mm",
+        text="The balls at rest clear the hub",
+        source="geometry",
+    )
     release_ratio = centrifugal.release_ratio(loss)
     d.advise(
         "hysteresis",
@@ -186,18 +219,25 @@ def declare_ball_pressure(d: Declaration, duty: Duty, balls: Balls, end_radius: 
     one = centrifugal.ball_set_mass(1, ball.density, ball.diameter)
     pull = centrifugal.centrifugal_force(one, end_radius, duty.top_speed)
     pressure = d.derive(
-        "hertz_pressure", "GPa",
+        "hertz_pressure",
+        "GPa",
         centrifugal.ball_pressure(
-            centrifugal.ramp_normal_force(pull, balls.ratio), ball.diameter,
+            centrifugal.ramp_normal_force(pull, balls.ratio),
+            ball.diameter,
             contact_modulus(ball.E, ball.nu, ball.E, ball.nu),
         ),
-        symbol="p_h", text="Pressure of a ball on a flat ramp of the same steel, at top_speed",
+        symbol="p_h",
+        text="Pressure of a ball on a flat ramp of the same steel, at top_speed",
         source="K. L. Johnson, Contact Mechanics (1985), eq. (4.24)",
-    )  # fmt: skip
+    )
     d.at_most(
-        "ball_hertz", pressure, balls.pressure_limit, "GPa",
-        text="The ramps keep their shape", source="ISO 76, static contact pressure",
-    )  # fmt: skip
+        "ball_hertz",
+        pressure,
+        balls.pressure_limit,
+        "GPa",
+        text="The ramps keep their shape",
+        source="ISO 76, static contact pressure",
+    )
 
 
 def limit_contact_and_clamp(
@@ -219,13 +259,21 @@ def limit_contact_and_clamp(
         At which speed it is the largest.
     """
     d.at_least(
-        "contact_not_too_early", contact_speed, wants.contact_speed_min, "1/min",
-        text="The plates touch at contact_speed_min at the earliest", source=DRIVE,
-    )  # fmt: skip
+        "contact_not_too_early",
+        contact_speed,
+        wants.contact_speed_min,
+        "1/min",
+        text="The plates touch at contact_speed_min at the earliest",
+        source=DRIVE,
+    )
     d.at_most(
-        "clamp_cap", clamp_force, wants.clamp_force_limit, "N",
-        text=f"The release bearing stands the clamp force{speed_text}", source="practice",
-    )  # fmt: skip
+        "clamp_cap",
+        clamp_force,
+        wants.clamp_force_limit,
+        "N",
+        text=f"The release bearing stands the clamp force{speed_text}",
+        source="practice",
+    )
 
 
 def limit_circle_room(
@@ -250,8 +298,12 @@ def limit_circle_room(
     if balls is not None:
         taken = taken + balls.count * (balls.part.diameter + wants.pocket_gap)
     d.at_most(
-        "pitch_circle_room", taken, 2 * np.pi * rest_radius, "mm",
-        text="Balls and springs have room on the circle of the balls" if balls is not None
+        "pitch_circle_room",
+        taken,
+        2 * np.pi * rest_radius,
+        "mm",
+        text="Balls and springs have room on the circle of the balls"
+        if balls is not None
         else "The springs have room on the circle of the weights",
         source="geometry",
-    )  # fmt: skip
+    )

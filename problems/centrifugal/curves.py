@@ -80,13 +80,9 @@ def over_speed(
         ``engaging_over_speed`` with the friction of flyweights going out, ``releasing_over_speed`` coming in.
     """
     return {
-        "engaging_over_speed": _branch(
-            problem, spec, path, path.outward, "speeding up, flyweights going out", lines
-        ),
-        "releasing_over_speed": _branch(
-            problem, spec, path, path.inward, "slowing down, flyweights coming in", lines
-        ),
-    }  # fmt: skip
+        "engaging_over_speed": _branch(problem, spec, path, path.outward, "speeding up, flyweights going out", lines),
+        "releasing_over_speed": _branch(problem, spec, path, path.inward, "slowing down, flyweights coming in", lines),
+    }
 
 
 def _branch(
@@ -112,12 +108,14 @@ def _branch(
     stretches.append((path.force(np.linspace(borders[-1], top, POINTS), last, efficiency), np.full(POINTS, last)))
     force, travel = (np.concatenate([stretch[k] for stretch in stretches]) for k in (0, 1))
     speed = path.speed(force, travel, efficiency)
-    frame = pd.DataFrame({
-        SPEED_AXIS: speed / RPM,
-        "centrifugal force [N]": centrifugal.centrifugal_force(path.mass, path.radius(travel), speed),
-        **path.columns(force, travel),
-        "radius [mm]": path.radius(travel) / MM,
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            SPEED_AXIS: speed / RPM,
+            "centrifugal force [N]": centrifugal.centrifugal_force(path.mass, path.radius(travel), speed),
+            **path.columns(force, travel),
+            "radius [mm]": path.radius(travel) / MM,
+        }
+    )
     jumps = any(later < earlier * (1 - 1e-9) for earlier, later in itertools.pairwise(borders))
     title = f"{problem.title}: {words}"
     if jumps:

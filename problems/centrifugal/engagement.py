@@ -46,26 +46,44 @@ def declare_contact(
         Symbols of the block.
     """
     d.derive(
-        "contact_speed", "1/min", contact, symbol="omega_contact", needs=needs if release is None else (),
-        text="Speed at which the plates touch when the driver speeds up", source=f"{S4}, analyses 1 and 2",
-    )  # fmt: skip
+        "contact_speed",
+        "1/min",
+        contact,
+        symbol="omega_contact",
+        needs=needs if release is None else (),
+        text="Speed at which the plates touch when the driver speeds up",
+        source=f"{S4}, analyses 1 and 2",
+    )
     text = "Speed at which the plates part when the driver slows down"
     if release is None:
         release = contact
         text += "; friction in the mechanism is not modelled, so it is the contact speed"
     d.derive("release_speed", "1/min", release, symbol="omega_release", text=text, source=NOT_IN_S4, needs=needs)
     d.derive(
-        "idle_margin", "-", release / duty.idle_speed, symbol="S_i", needs=needs,
-        text="Release speed over idle_speed", source="definition",
-    )  # fmt: skip
+        "idle_margin",
+        "-",
+        release / duty.idle_speed,
+        symbol="S_i",
+        needs=needs,
+        text="Release speed over idle_speed",
+        source="definition",
+    )
     d.at_least(
-        "idle_release", release, duty.idle_margin_min * duty.idle_speed, "1/min",
-        text="At idle speed the clutch has let go, with a margin", source=S4,
-    )  # fmt: skip
+        "idle_release",
+        release,
+        duty.idle_margin_min * duty.idle_speed,
+        "1/min",
+        text="At idle speed the clutch has let go, with a margin",
+        source=S4,
+    )
     d.at_most(
-        "contact_not_too_late", contact, duty.contact_speed_max, "1/min",
-        text="The plates touch at contact_speed_max at the latest", source=DRIVE,
-    )  # fmt: skip
+        "contact_not_too_late",
+        contact,
+        duty.contact_speed_max,
+        "1/min",
+        text="The plates touch at contact_speed_max at the latest",
+        source=DRIVE,
+    )
     return Contact(contact, release)
 
 
@@ -103,21 +121,38 @@ def declare_full_clamp(
         Guards without which the full-clamp speed does not exist.
     """
     torque = d.derive(
-        "worn_torque", "N*m", lining.torque(worn_force), symbol="M_worn",
-        text="Torque with full clamp force and worn lining", source=UNIFORM_WEAR,
-    )  # fmt: skip
+        "worn_torque",
+        "N*m",
+        lining.torque(worn_force),
+        symbol="M_worn",
+        text="Torque with full clamp force and worn lining",
+        source=UNIFORM_WEAR,
+    )
     d.derive(
-        "full_clamp_speed", "1/min", full_clamp_speed, symbol="omega_stop", needs=needs,
-        text="Speed from which on the mechanism lies at its stop and the clamp force does not grow", source=source,
-    )  # fmt: skip
+        "full_clamp_speed",
+        "1/min",
+        full_clamp_speed,
+        symbol="omega_stop",
+        needs=needs,
+        text="Speed from which on the mechanism lies at its stop and the clamp force does not grow",
+        source=source,
+    )
     d.at_least(
-        "torque_worn", torque, duty.torque_to_carry, "N*m",
-        text="The worn clutch carries required_torque with its reserve", source=UNIFORM_WEAR,
-    )  # fmt: skip
+        "torque_worn",
+        torque,
+        duty.torque_to_carry,
+        "N*m",
+        text="The worn clutch carries required_torque with its reserve",
+        source=UNIFORM_WEAR,
+    )
     d.at_most(
-        "full_clamp_speed", full_clamp_speed, duty.full_torque_speed, "1/min",
-        text="The clamp force is complete at full_torque_speed", source=source,
-    )  # fmt: skip
+        "full_clamp_speed",
+        full_clamp_speed,
+        duty.full_torque_speed,
+        "1/min",
+        text="The clamp force is complete at full_torque_speed",
+        source=source,
+    )
 
 
 def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source: str) -> None:
@@ -136,13 +171,21 @@ def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source:
     """
     d.derive("clamp_force", "N", force, symbol="F_N", text=text, source=source)
     pressure = d.derive(
-        "lining_pressure", "N/mm2", centrifugal.lining_pressure(force, lining.inner_radius, lining.outer_radius),
-        symbol="p_l", text="Largest pressure of the worn-in lining, at its inner radius", source=UNIFORM_WEAR,
-    )  # fmt: skip
+        "lining_pressure",
+        "N/mm2",
+        centrifugal.lining_pressure(force, lining.inner_radius, lining.outer_radius),
+        symbol="p_l",
+        text="Largest pressure of the worn-in lining, at its inner radius",
+        source=UNIFORM_WEAR,
+    )
     d.at_most(
-        "lining_pressure", pressure, lining.pair.p_allow, "N/mm2",
-        text="The lining stands the pressure", source=UNIFORM_WEAR,
-    )  # fmt: skip
+        "lining_pressure",
+        pressure,
+        lining.pair.p_allow,
+        "N/mm2",
+        text="The lining stands the pressure",
+        source=UNIFORM_WEAR,
+    )
 
 
 def declare_stop_force(d: Declaration, force: Any, text: str, source: str) -> Any:

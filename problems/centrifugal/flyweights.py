@@ -28,9 +28,15 @@ class Flyweights:
 def declare_rest_radius(d: Declaration) -> Any:
     """Declare the radius of the flyweights at rest and return it [m]."""
     return d.variable(
-        "rest_radius", "mm", 30, 250, grid=1, symbol="r0",
-        text="Radius of the flyweight centres at rest", source=f"{S4}, r0",
-    )  # fmt: skip
+        "rest_radius",
+        "mm",
+        30,
+        250,
+        grid=1,
+        symbol="r0",
+        text="Radius of the flyweight centres at rest",
+        source=f"{S4}, r0",
+    )
 
 
 @dataclass(frozen=True)
@@ -60,29 +66,60 @@ def declare_weights(d: Declaration, duty: Duty) -> Weights:
         Symbols of the block.
     """
     width = d.requirement(
-        "weight_width", "mm", 30, lower=2, upper=300, symbol="b_w",
-        text=f"Axial width of a weight ({TYPICAL})", source=TYPICAL,
-    )  # fmt: skip
+        "weight_width",
+        "mm",
+        30,
+        lower=2,
+        upper=300,
+        symbol="b_w",
+        text=f"Axial width of a weight ({TYPICAL})",
+        source=TYPICAL,
+    )
     angle = d.requirement(
-        "lever_angle_limit", "rad", 0.35, lower=0.02, upper=0.35, symbol="phi_lim",
-        text="Largest angle of the levers; the model takes sine and tangent for the angle", source=NOT_IN_S4,
-    )  # fmt: skip
+        "lever_angle_limit",
+        "rad",
+        0.35,
+        lower=0.02,
+        upper=0.35,
+        symbol="phi_lim",
+        text="Largest angle of the levers; the model takes sine and tangent for the angle",
+        source=NOT_IN_S4,
+    )
     mass = d.variable(
-        "flyweight_mass", "kg", 0.05, 5, symbol="m_f",
-        text="Mass of all weights together", source=f"{S4}, m",
-    )  # fmt: skip
+        "flyweight_mass",
+        "kg",
+        0.05,
+        5,
+        symbol="m_f",
+        text="Mass of all weights together",
+        source=f"{S4}, m",
+    )
     arm = d.variable(
-        "flyweight_arm", "mm", 10, 200, grid=0.5, symbol="l_c",
-        text="Arm of the weights on their levers", source=f"{S4}, l_c",
-    )  # fmt: skip
+        "flyweight_arm",
+        "mm",
+        10,
+        200,
+        grid=0.5,
+        symbol="l_c",
+        text="Arm of the weights on their levers",
+        source=f"{S4}, l_c",
+    )
     count = d.count(
-        "weights", 2, 6, symbol="n_w",
-        text="Number of weights, each on a lever", source=f"{S4}, levers around the shaft",
-    )  # fmt: skip
+        "weights",
+        2,
+        6,
+        symbol="n_w",
+        text="Number of weights, each on a lever",
+        source=f"{S4}, levers around the shaft",
+    )
     thickness = d.derive(
-        "weight_thickness", "mm", centrifugal.weight_thickness(mass, count, duty.steel_density, width), symbol="t_w",
-        text="Radial size of a weight of square section", source=f"geometry; {NOT_IN_S4}",
-    )  # fmt: skip
+        "weight_thickness",
+        "mm",
+        centrifugal.weight_thickness(mass, count, duty.steel_density, width),
+        symbol="t_w",
+        text="Radial size of a weight of square section",
+        source=f"geometry; {NOT_IN_S4}",
+    )
     return Weights(mass, count, arm, thickness, angle)
 
 
@@ -103,9 +140,13 @@ def limit_weight_room(d: Declaration, duty: Duty, weights: Weights, rest_radius:
         Length of the lever that lies below the weight [m].
     """
     d.at_most(
-        "weight_clear_of_hub", duty.hub_radius + weights.thickness / 2 + pivot_arm, rest_radius, "mm",
-        text="The weights at rest clear the hub", source=f"geometry; {NOT_IN_S4}",
-    )  # fmt: skip
+        "weight_clear_of_hub",
+        duty.hub_radius + weights.thickness / 2 + pivot_arm,
+        rest_radius,
+        "mm",
+        text="The weights at rest clear the hub",
+        source=f"geometry; {NOT_IN_S4}",
+    )
 
 
 def advise_gravity(d: Declaration, rest_radius: Any, start_speed: Any) -> None:

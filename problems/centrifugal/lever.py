@@ -78,9 +78,7 @@ class CentrifugalLever(DesignProblem):
         full = springs.force(lever.deflection + travel)
         self._declare_guards(d, lever, rods, squeeze)
         self._declare_speeds(d, duty, lining, lever, rods, springs, full)
-        blocks.declare_clamp(
-            d, lining, full, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED
-        )  # fmt: skip
+        blocks.declare_clamp(d, lining, full, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED)
         self._declare_retraction(d, lever, rods, springs)
         blocks.limit_spring_force(
             d, "spring_force", springs, lever.deflection + travel, "The clamp springs stand the stop"
@@ -133,34 +131,65 @@ class CentrifugalLever(DesignProblem):
     def _declare_rods(self, d: Declaration) -> Rods:
         return Rods(
             ratio_max=d.requirement(
-                "rod_ratio_max", "-", 0.8, lower=0.1, upper=0.99, symbol="rho_rod",
+                "rod_ratio_max",
+                "-",
+                0.8,
+                lower=0.1,
+                upper=0.99,
+                symbol="rho_rod",
                 text="Largest arm of the rod over arm of the spring; at 1 nothing draws the lever back",
                 source=PLACES,
             ),
             retraction_min=d.requirement(
-                "retraction_force_min", "N", 150, lower=0, upper=1e5, symbol="F_retract_min",
-                text="Least force at the spring's arm that draws the lever back at standstill", source=NOT_IN_S4,
+                "retraction_force_min",
+                "N",
+                150,
+                lower=0,
+                upper=1e5,
+                symbol="F_retract_min",
+                text="Least force at the spring's arm that draws the lever back at standstill",
+                source=NOT_IN_S4,
             ),
             spring_arm=d.variable(
-                "spring_arm", "mm", *SPRING_ARM, grid=0.5, symbol="l_s",
-                text="Arm of the clamp springs on the lever", source=RECONSTRUCTED,
+                "spring_arm",
+                "mm",
+                *SPRING_ARM,
+                grid=0.5,
+                symbol="l_s",
+                text="Arm of the clamp springs on the lever",
+                source=RECONSTRUCTED,
             ),
             rod_arm=d.variable(
-                "rod_arm", "mm", *ROD_ARM, grid=0.5, symbol="l_r",
-                text="Arm of the headed rod on the lever", source=RECONSTRUCTED,
+                "rod_arm",
+                "mm",
+                *ROD_ARM,
+                grid=0.5,
+                symbol="l_r",
+                text="Arm of the headed rod on the lever",
+                source=RECONSTRUCTED,
             ),
-        )  # fmt: skip
+        )
 
     def _declare_guards(self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(
-            GUARDS[0], rods.spring_arm, rods.rod_arm, "mm", guard=True,
+            GUARDS[0],
+            rods.spring_arm,
+            rods.rod_arm,
+            "mm",
+            guard=True,
             text="The rod sits nearer to the pivot than the spring; otherwise the lever cannot retract and the clutch "
-            "stays engaged", source=PLACES,
-        )  # fmt: skip
+            "stays engaged",
+            source=PLACES,
+        )
         d.at_least(
-            GUARDS[1], lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=NOT_IN_S4,
-        )  # fmt: skip
+            GUARDS[1],
+            lever.deflection + squeeze,
+            lever.contact_travel,
+            "mm",
+            guard=True,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force",
+            source=NOT_IN_S4,
+        )
 
     def _declare_speeds(
         self,
@@ -186,27 +215,41 @@ class CentrifugalLever(DesignProblem):
         blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, GUARDS[1])
         blocks.declare_band(d, band, "Full-clamp speed over contact speed; a small one is sharp", GUARDS)
         d.at_most(
-            "no_snap_travel", formulas.gradual_radius(lever.deflection, arm, rods.lead), lever.rest_radius, "mm",
+            "no_snap_travel",
+            formulas.gradual_radius(lever.deflection, arm, rods.lead),
+            lever.rest_radius,
+            "mm",
             text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
-            "the rest radius below which it would jump", source=NOT_IN_S4,
-        )  # fmt: skip
+            "the rest radius below which it would jump",
+            source=NOT_IN_S4,
+        )
         d.at_most(
             "no_snap_clamp",
             formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, rods.spring_arm),
-            lever.rest_radius, "mm",
+            lever.rest_radius,
+            "mm",
             text="The lever clamps step by step: the rod is free at a lower speed than it stops at; shown is the rest "
-            "radius below which it would jump", source=NOT_IN_S4,
-        )  # fmt: skip
+            "radius below which it would jump",
+            source=NOT_IN_S4,
+        )
 
     def _declare_retraction(
         self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet
     ) -> None:
         d.at_most(
-            "retraction_arm", rods.rod_arm, rods.ratio_max * rods.spring_arm, "mm",
-            text="The spring draws the lever back with an arm to spare", source=PLACES,
-        )  # fmt: skip
+            "retraction_arm",
+            rods.rod_arm,
+            rods.ratio_max * rods.spring_arm,
+            "mm",
+            text="The spring draws the lever back with an arm to spare",
+            source=PLACES,
+        )
         force = formulas.retraction_force(springs.force(lever.deflection), rods.spring_arm, rods.rod_arm)
         d.at_least(
-            "retraction_force", force, rods.retraction_min, "N",
-            text="At standstill the spring draws the lever back", source=NOT_IN_S4,
-        )  # fmt: skip
+            "retraction_force",
+            force,
+            rods.retraction_min,
+            "N",
+            text="At standstill the spring draws the lever back",
+            source=NOT_IN_S4,
+        )

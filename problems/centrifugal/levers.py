@@ -80,9 +80,15 @@ def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
         Symbols of the block.
     """
     travel = d.requirement(
-        "contact_travel", "mm", 3, lower=0.2, upper=30, symbol="x0",
-        text=f"Gap between pressure plate and friction disc at rest ({TYPICAL})", source=f"{S4}, x0; {TYPICAL}",
-    )  # fmt: skip
+        "contact_travel",
+        "mm",
+        3,
+        lower=0.2,
+        upper=30,
+        symbol="x0",
+        text=f"Gap between pressure plate and friction disc at rest ({TYPICAL})",
+        source=f"{S4}, x0; {TYPICAL}",
+    )
     wear = blocks.declare_wear(d)
     weights = blocks.declare_weights(d, duty)
     lever = Lever(
@@ -91,23 +97,38 @@ def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
         contact_travel=travel,
         wear=wear,
         deflection=d.variable(
-            "spring_preload_deflection", "mm", 1, 20, grid=0.1, symbol="delta",
-            text="Deflection of the clamp springs at rest", source=f"{S4}, F_R0/s",
+            "spring_preload_deflection",
+            "mm",
+            1,
+            20,
+            grid=0.1,
+            symbol="delta",
+            text="Deflection of the clamp springs at rest",
+            source=f"{S4}, F_R0/s",
         ),
         stop_angle=d.variable(
-            "lever_stop_angle", "rad", STOP_ANGLE_MIN, STOP_ANGLE_MAX, symbol="phi_max",
-            text=f"Angle at which the lever meets its stop: {stop_text}", source=RECONSTRUCTED,
+            "lever_stop_angle",
+            "rad",
+            STOP_ANGLE_MIN,
+            STOP_ANGLE_MAX,
+            symbol="phi_max",
+            text=f"Angle at which the lever meets its stop: {stop_text}",
+            source=RECONSTRUCTED,
         ),
-    )  # fmt: skip
+    )
     d.refuse(
         "stop_angle_out_of_range",
         weights.angle_limit < STOP_ANGLE_MIN,
         f"a lever_angle_limit of at least {STOP_ANGLE_MIN:g} rad, the least angle of the stop",
     )
     d.at_most(
-        "lever_angle", lever.stop_angle, weights.angle_limit, "rad",
-        text="The lever swings so little that sine and tangent are the angle", source=NOT_IN_S4,
-    )  # fmt: skip
+        "lever_angle",
+        lever.stop_angle,
+        weights.angle_limit,
+        "rad",
+        text="The lever swings so little that sine and tangent are the angle",
+        source=NOT_IN_S4,
+    )
     return lever
 
 
@@ -134,9 +155,13 @@ def limit_contact(d: Declaration, lever: Lever, plate_arm: Any, longest: float, 
         "lever closes more",
     )
     d.at_most(
-        "stop_after_contact", lever.worn_travel / plate_arm, lever.stop_angle, "rad",
-        text="With worn linings too the plate is on the disc before the lever meets its stop", source=NOT_IN_S4,
-    )  # fmt: skip
+        "stop_after_contact",
+        lever.worn_travel / plate_arm,
+        lever.stop_angle,
+        "rad",
+        text="With worn linings too the plate is on the disc before the lever meets its stop",
+        source=NOT_IN_S4,
+    )
 
 
 def refuse_room(d: Declaration, duty: blocks.Duty, least_leg: Any, name: str) -> None:
@@ -218,9 +243,11 @@ def advise_lever(
     """
     pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
     stop_force = blocks.declare_stop_force(
-        d, pull - stop_pull,
-        "Force of all levers on their stops at top_speed, at flyweight_arm", RECONSTRUCTED,
-    )  # fmt: skip
+        d,
+        pull - stop_pull,
+        "Force of all levers on their stops at top_speed, at flyweight_arm",
+        RECONSTRUCTED,
+    )
     d.advise(
         "assumed_values",
         True,

@@ -56,37 +56,68 @@ def declare_lining(d: Declaration, family: str, duty: Duty) -> Lining:
         Symbols of the block.
     """
     inner = d.variable(
-        "lining_inner_radius", "mm", 20, 250, grid=0.5, symbol="r_i",
-        text="Inner radius of the lining", source="geometry",
-    )  # fmt: skip
+        "lining_inner_radius",
+        "mm",
+        20,
+        250,
+        grid=0.5,
+        symbol="r_i",
+        text="Inner radius of the lining",
+        source="geometry",
+    )
     outer = d.variable(
-        "lining_outer_radius", "mm", 30, 300, grid=0.5, symbol="r_o",
-        text="Outer radius of the lining", source="geometry",
-    )  # fmt: skip
+        "lining_outer_radius",
+        "mm",
+        30,
+        300,
+        grid=0.5,
+        symbol="r_o",
+        text="Outer radius of the lining",
+        source="geometry",
+    )
     surfaces = d.count(
-        "friction_surfaces", 2, 8, step=2, symbol="z_f",
-        text="Friction surfaces, two per friction disc", source="geometry",
-    )  # fmt: skip
+        "friction_surfaces",
+        2,
+        8,
+        step=2,
+        symbol="z_f",
+        text="Friction surfaces, two per friction disc",
+        source="geometry",
+    )
     pair = d.part(
-        "friction_pair", "friction_materials", where=f"'{family}' in family_hint", symbol="pair",
-        text="Lining and the plate it rubs on", source="table friction_materials",
-    )  # fmt: skip
+        "friction_pair",
+        "friction_materials",
+        where=f"'{family}' in family_hint",
+        symbol="pair",
+        text="Lining and the plate it rubs on",
+        source="table friction_materials",
+    )
     d.at_least(
-        "ring_ratio_min", inner / outer, duty.ring_ratio_min, "-",
-        text="The lining is not too wide: it wears evenly", source="practice",
-    )  # fmt: skip
+        "ring_ratio_min",
+        inner / outer,
+        duty.ring_ratio_min,
+        "-",
+        text="The lining is not too wide: it wears evenly",
+        source="practice",
+    )
     d.at_most(
-        "ring_ratio_max", inner / outer, duty.ring_ratio_max, "-",
-        text="The lining is not too narrow", source="practice",
-    )  # fmt: skip
+        "ring_ratio_max",
+        inner / outer,
+        duty.ring_ratio_max,
+        "-",
+        text="The lining is not too narrow",
+        source="practice",
+    )
     energy = centrifugal.engagement_energy(duty.driven_inertia, duty.full_torque_speed)
     allowed = duty.engagement_heat_limit
     d.at_most(
-        "engagement_heat", heat.single_heat(energy, centrifugal.lining_area(surfaces, inner, outer)),
-        pair.optional("q_single_allow") if allowed is None else allowed, "J/mm2",
+        "engagement_heat",
+        heat.single_heat(energy, centrifugal.lining_area(surfaces, inner, outer)),
+        pair.optional("q_single_allow") if allowed is None else allowed,
+        "J/mm2",
         text="The lining stands the heat of bringing driven_inertia up to full_torque_speed, without a load torque",
         source="energy balance",
-    )  # fmt: skip
+    )
     d.advise(
         "bad_ring",
         inner >= outer,
@@ -99,9 +130,15 @@ def declare_lining(d: Declaration, family: str, duty: Duty) -> Lining:
 def declare_wear(d: Declaration) -> Any:
     """Declare the wear of the linings that the types with capped clamp force must stand, and return it [m]."""
     return d.requirement(
-        "lining_wear", "mm", 0.6, lower=0, upper=10, symbol="wear",
-        text="Wear of all linings together, by which the pressure plate travels further", source="practice",
-    )  # fmt: skip
+        "lining_wear",
+        "mm",
+        0.6,
+        lower=0,
+        upper=10,
+        symbol="wear",
+        text="Wear of all linings together, by which the pressure plate travels further",
+        source="practice",
+    )
 
 
 def advise_release_gap(d: Declaration, gap: Any, lining: Lining) -> None:

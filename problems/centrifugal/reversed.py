@@ -67,16 +67,19 @@ class CentrifugalReversed(DesignProblem):
 
         squeeze = leg.arm * lever.stop_angle
         d.at_least(
-            LOADED, lever.deflection + squeeze, lever.contact_travel, "mm", guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force", source=NOT_IN_S4,
-        )  # fmt: skip
+            LOADED,
+            lever.deflection + squeeze,
+            lever.contact_travel,
+            "mm",
+            guard=True,
+            text="At the stop the clamp springs are under load; otherwise there is no clamp force",
+            source=NOT_IN_S4,
+        )
         lift = squeeze - lever.contact_travel
         push = springs.force(lever.deflection + lift)
         clamp = push - leg.force(lever.contact_travel)
         self._declare_speeds(d, duty, lining, lever, leg, springs, push)
-        blocks.declare_clamp(
-            d, lining, clamp, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED
-        )  # fmt: skip
+        blocks.declare_clamp(d, lining, clamp, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED)
         self._declare_springs(d, lever, leg, springs, lift)
         blocks.limit_weight_room(d, duty, lever.weights, lever.rest_radius, leg.arm)
         lever_blocks.declare_size(d, duty, lining, lever, [springs, leg.springs])
@@ -128,15 +131,26 @@ class CentrifugalReversed(DesignProblem):
     def _declare_leg(self, d: Declaration) -> Leg:
         return Leg(
             arm=d.variable(
-                "plate_arm", "mm", *PLATE_ARM, grid=0.5, symbol="l_p",
-                text="Short leg of the lever, which pushes the plate", source=RECONSTRUCTED,
+                "plate_arm",
+                "mm",
+                *PLATE_ARM,
+                grid=0.5,
+                symbol="l_p",
+                text="Short leg of the lever, which pushes the plate",
+                source=RECONSTRUCTED,
             ),
             springs=blocks.declare_springs(d, "return_spring", "spr", "N_r", "draw the plate off the friction disc"),
             deflection=d.variable(
-                "return_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta_r",
-                text="Deflection of the return springs at rest", source=RECONSTRUCTED,
+                "return_preload_deflection",
+                "mm",
+                0.5,
+                20,
+                grid=0.1,
+                symbol="delta_r",
+                text="Deflection of the return springs at rest",
+                source=RECONSTRUCTED,
             ),
-        )  # fmt: skip
+        )
 
     def _declare_speeds(
         self,
@@ -163,29 +177,42 @@ class CentrifugalReversed(DesignProblem):
             d, np.sqrt(band_squared), "Full-clamp speed over contact speed; a small one is sharp", LOADED
         )
         d.at_most(
-            "no_snap_travel", formulas.gradual_radius(leg.deflection, arm, leg.arm), lever.rest_radius, "mm",
+            "no_snap_travel",
+            formulas.gradual_radius(leg.deflection, arm, leg.arm),
+            lever.rest_radius,
+            "mm",
             text="The lever travels to contact step by step: it starts at a lower speed than it touches at; shown is "
-            "the rest radius below which it would jump", source=NOT_IN_S4,
-        )  # fmt: skip
+            "the rest radius below which it would jump",
+            source=NOT_IN_S4,
+        )
         d.at_most(
             "no_snap_clamp",
             formulas.gradual_radius(lever.deflection - lever.contact_travel, arm, leg.arm),
-            lever.rest_radius, "mm",
+            lever.rest_radius,
+            "mm",
             text="Disc 1 lifts step by step: it leaves the housing at a lower speed than the lever stops at; shown is "
-            "the rest radius below which it would jump", source=NOT_IN_S4,
-        )  # fmt: skip
+            "the rest radius below which it would jump",
+            source=NOT_IN_S4,
+        )
 
     def _declare_springs(
         self, d: Declaration, lever: lever_blocks.Lever, leg: Leg, springs: blocks.SpringSet, lift: Any
     ) -> None:
         d.at_most(
-            "preload_order", leg.force(lever.contact_travel), springs.force(lever.deflection), "N",
-            text="The plate is on the friction disc before disc 1 lifts", source=NOT_IN_S4,
-        )  # fmt: skip
+            "preload_order",
+            leg.force(lever.contact_travel),
+            springs.force(lever.deflection),
+            "N",
+            text="The plate is on the friction disc before disc 1 lifts",
+            source=NOT_IN_S4,
+        )
         blocks.limit_spring_force(
             d, "spring_force", springs, lever.deflection + lift, "The clamp springs stand the stop"
         )
         blocks.limit_spring_force(
-            d, "return_spring_force", leg.springs, leg.deflection + lever.contact_travel,
+            d,
+            "return_spring_force",
+            leg.springs,
+            leg.deflection + lever.contact_travel,
             "The return springs stand the travel to contact",
-        )  # fmt: skip
+        )

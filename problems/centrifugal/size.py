@@ -41,31 +41,45 @@ def declare_size(
         All springs.
     """
     diameter = d.derive(
-        "outer_diameter", "mm",
+        "outer_diameter",
+        "mm",
         centrifugal.outside_diameter(
             lining.outer_radius + duty.rim_width,
             flyweights.end_radius + flyweights.half_height + duty.wall_thickness,
         ),
-        symbol="D", text="Outside diameter over lining and flyweights, whichever reaches further", source="geometry",
-    )  # fmt: skip
+        symbol="D",
+        text="Outside diameter over lining and flyweights, whichever reaches further",
+        source="geometry",
+    )
     spring_mass: Any = sum(spring_set.mass for spring_set in springs)
     plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.equivalent_plate_thickness)
     d.derive(
-        "mass", "kg", plates + flyweights.mass + spring_mass, symbol="m",
-        text="Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs", source="geometry",
-    )  # fmt: skip
+        "mass",
+        "kg",
+        plates + flyweights.mass + spring_mass,
+        symbol="m",
+        text="Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs",
+        source="geometry",
+    )
     d.derive(
-        "inertia", "kg*m2",
+        "inertia",
+        "kg*m2",
         centrifugal.clutch_inertia(
             plates, diameter, duty.hub_radius, flyweights.mass, flyweights.end_radius, spring_mass, rest_radius
         ),
-        symbol="J", text="Inertia of plates, flyweights at the end of their way, and springs", source="geometry",
-    )  # fmt: skip
+        symbol="J",
+        text="Inertia of plates, flyweights at the end of their way, and springs",
+        source="geometry",
+    )
     if duty.outer_diameter_limit is not None:
         d.at_most(
-            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
-            text="The clutch fits the room across", source=DRIVE,
-        )  # fmt: skip
+            "outer_diameter",
+            diameter,
+            duty.outer_diameter_limit,
+            "mm",
+            text="The clutch fits the room across",
+            source=DRIVE,
+        )
     d.advise(
         "fast_rim",
         centrifugal.rim_stress(duty.steel_density, diameter / 2, duty.top_speed) > RIM_STRESS_MAX,

@@ -63,13 +63,20 @@ def declare_springs(d: Declaration, slot: str, symbol: str, count_symbol: str, t
         Symbols of the block.
     """
     count = d.count(
-        f"{slot}s", 2, 12, symbol=count_symbol,
-        text=f"Number of springs: {text}", source=f"{S4}, springs around the shaft",
-    )  # fmt: skip
+        f"{slot}s",
+        2,
+        12,
+        symbol=count_symbol,
+        text=f"Number of springs: {text}",
+        source=f"{S4}, springs around the shaft",
+    )
     part = d.part(
-        slot, "compression_springs", symbol=symbol,
-        text=f"One spring of the set: {text}", source="table compression_springs",
-    )  # fmt: skip
+        slot,
+        "compression_springs",
+        symbol=symbol,
+        text=f"One spring of the set: {text}",
+        source="table compression_springs",
+    )
     return SpringSet(part, count)
 
 

@@ -98,15 +98,17 @@ def of_path(spec: Mapping[str, Any], path: Path, speed: float) -> pd.DataFrame:
         columns = {name: float(values[0]) for name, values in path.columns(force, travel).items()}
         regime = path.regimes[found.stretch] if returns else "held out: the flyweights do not come back"
         radius = path.radius(found.position) / MM
-        rows.append({
-            "course": course,
-            "regime": regime,
-            SPEED_AXIS: speed / RPM,
-            "centrifugal force [N]": float(pull),
-            "axial force [N]": found.force,
-            **columns,
-            "radius [mm]": float(radius),
-        })  # fmt: skip
+        rows.append(
+            {
+                "course": course,
+                "regime": regime,
+                SPEED_AXIS: speed / RPM,
+                "centrifugal force [N]": float(pull),
+                "axial force [N]": found.force,
+                **columns,
+                "radius [mm]": float(radius),
+            }
+        )
     return _frame(spec, rows, S4)
 
 

@@ -81,10 +81,13 @@ class CentrifugalTwoSpring(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         mechanism = d.option(
-            "mechanism", MECHANISMS, "ball_ramp", symbol="mech",
+            "mechanism",
+            MECHANISMS,
+            "ball_ramp",
+            symbol="mech",
             text="ball_ramp: balls in ramps push the tension disc; lever: weights on single levers do",
             source=f"{S4}, analysis 2; practice 2",
-        )  # fmt: skip
+        )
         duty = blocks.declare_duty(d)
         wants = ball_blocks.declare_force_limits(d, duty)
         wear = blocks.declare_wear(d)
@@ -111,21 +114,29 @@ class CentrifugalTwoSpring(DesignProblem):
         ball_blocks.limit_contact_and_clamp(d, wants, contact, clamp)
         self._limit_order(d, way, wear, rest, at_contact, radius(way.start_travel), band)
         blocks.limit_share_of_force(
-            d, "spring1_force", way.returning, way.contact_force,
+            d,
+            "spring1_force",
+            way.returning,
+            way.contact_force,
             "The return springs stand their deflection at contact",
-        )  # fmt: skip
+        )
         blocks.limit_share_of_force(
-            d, "spring2_force", way.clamping, way.stop_force,
+            d,
+            "spring2_force",
+            way.clamping,
+            way.stop_force,
             "The clamp springs stand their deflection at the stop",
-        )  # fmt: skip
+        )
         if drive.balls is not None:
             ball_blocks.declare_ball_pressure(d, duty, drive.balls, end)
         ball_blocks.limit_circle_room(d, wants, rest, drive.balls, [way.returning, way.clamping])
         push = centrifugal.axial_gain(drive.mass, end, drive.push) * duty.top_speed**2
         load = blocks.declare_stop_force(
-            d, two_spring.stop_load(push, way.stop_force),
-            "Force on the stop of the tension disc at top_speed", ANALYSIS,
-        )  # fmt: skip
+            d,
+            two_spring.stop_load(push, way.stop_force),
+            "Force on the stop of the tension disc at top_speed",
+            ANALYSIS,
+        )
         springs = [way.returning, way.clamping]
         blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(drive.mass, end, drive.half_height), springs)
         self._declare_remarks(d, duty, drive, way, lining, rest)
@@ -171,21 +182,45 @@ class CentrifugalTwoSpring(DesignProblem):
 
     def _declare_way(self, d: Declaration) -> Way:
         plate = d.variable(
-            "plate_travel", "mm", 1, 10, grid=0.1, symbol="a",
-            text="Travel of the pressure plate to contact", source=f"{S4}, h1",
-        )  # fmt: skip
+            "plate_travel",
+            "mm",
+            1,
+            10,
+            grid=0.1,
+            symbol="a",
+            text="Travel of the pressure plate to contact",
+            source=f"{S4}, h1",
+        )
         stop = d.variable(
-            "stop_travel", "mm", 1, 40, grid=0.1, symbol="b",
-            text="Travel of the tension disc to its stop", source=f"{S4}, h2",
-        )  # fmt: skip
+            "stop_travel",
+            "mm",
+            1,
+            40,
+            grid=0.1,
+            symbol="b",
+            text="Travel of the tension disc to its stop",
+            source=f"{S4}, h2",
+        )
         return_deflection = d.variable(
-            "return_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta1",
-            text="Deflection of the return springs at rest", source=f"{S4}, F_R10/s1",
-        )  # fmt: skip
+            "return_preload_deflection",
+            "mm",
+            0.5,
+            20,
+            grid=0.1,
+            symbol="delta1",
+            text="Deflection of the return springs at rest",
+            source=f"{S4}, F_R10/s1",
+        )
         clamp_deflection = d.variable(
-            "clamp_preload_deflection", "mm", 0.5, 20, grid=0.1, symbol="delta2",
-            text="Deflection of the clamp springs at rest", source=f"{S4}, F_R20/s2",
-        )  # fmt: skip
+            "clamp_preload_deflection",
+            "mm",
+            0.5,
+            20,
+            grid=0.1,
+            symbol="delta2",
+            text="Deflection of the clamp springs at rest",
+            source=f"{S4}, F_R20/s2",
+        )
         returning = blocks.declare_springs(
             d, "return_spring", "sp1", "N_1", "they push the pressure plate off the lining (R1)"
         )
@@ -225,22 +260,42 @@ class CentrifugalTwoSpring(DesignProblem):
 
     def _declare_levers(self, d: Declaration, duty: blocks.Duty, rest: Any, way: Way) -> Drive:
         efficiency = d.requirement(
-            "mechanism_efficiency", "-", 0.95, lower=0.5, upper=1, symbol="eta_m",
-            text=f"Efficiency of the levers, going out as coming in ({TYPICAL})", source=TYPICAL,
-        )  # fmt: skip
+            "mechanism_efficiency",
+            "-",
+            0.95,
+            lower=0.5,
+            upper=1,
+            symbol="eta_m",
+            text=f"Efficiency of the levers, going out as coming in ({TYPICAL})",
+            source=TYPICAL,
+        )
         weights = blocks.declare_weights(d, duty)
         arm = d.variable(
-            "axial_arm", "mm", 5, 150, grid=0.5, symbol="l_a",
-            text="Arm of the levers on the tension disc", source=f"{S4}, l_a",
-        )  # fmt: skip
+            "axial_arm",
+            "mm",
+            5,
+            150,
+            grid=0.5,
+            symbol="l_a",
+            text="Arm of the levers on the tension disc",
+            source=f"{S4}, l_a",
+        )
         ratio = d.derive(
-            "lever_ratio", "-", weights.arm / arm, symbol="i_l",
-            text="Transmission of the levers dr/dx, l_c/l_a", source=f"{S4}, practice 2",
-        )  # fmt: skip
+            "lever_ratio",
+            "-",
+            weights.arm / arm,
+            symbol="i_l",
+            text="Transmission of the levers dr/dx, l_c/l_a",
+            source=f"{S4}, practice 2",
+        )
         d.at_most(
-            "lever_angle", way.stop_travel / arm, weights.angle_limit, "rad",
-            text="The levers turn so little that the model holds", source=NOT_IN_S4,
-        )  # fmt: skip
+            "lever_angle",
+            way.stop_travel / arm,
+            weights.angle_limit,
+            "rad",
+            text="The levers turn so little that the model holds",
+            source=NOT_IN_S4,
+        )
         blocks.limit_weight_room(d, duty, weights, rest)
         d.advise(
             "levers_reconstructed",
@@ -263,29 +318,48 @@ class CentrifugalTwoSpring(DesignProblem):
         self, d: Declaration, way: Way, wear: Any, rest: Any, at_contact: Any, at_start: Any, band: Any
     ) -> None:
         d.at_most(
-            "preload_order", way.clamp_preload, way.return_preload, "N",
+            "preload_order",
+            way.clamp_preload,
+            way.return_preload,
+            "N",
             text="The clamp springs do not push the plate onto the lining at rest: it would drag at idle",
             source=f"{NOT_IN_S4}; practice 1",
-        )  # fmt: skip
+        )
         worn = two_spring.worn_contact_travel(way.contact_travel, way.return_rate, way.clamp_rate, wear)
         d.at_most(
-            "stop_after_contact", worn, way.stop_travel, "mm",
-            text="The tension disc reaches its stop only after the worn lining is in contact", source=NOT_IN_S4,
-        )  # fmt: skip
+            "stop_after_contact",
+            worn,
+            way.stop_travel,
+            "mm",
+            text="The tension disc reaches its stop only after the worn lining is in contact",
+            source=NOT_IN_S4,
+        )
         # Speeds of the same flyweights: mass and transmission cancel, and with them most of what blurs a bound.
         text = "The {} gradually: every further travel asks for a larger speed (speed before over speed after)"
         d.at_most(
-            "no_snap_tension", centrifugal.speed_ratio(way.clamp_preload, rest, way.return_preload, at_start), 1, "-",
-            text=text.format("tension disc moves alone"), source=NOT_IN_S4,
-        )  # fmt: skip
+            "no_snap_tension",
+            centrifugal.speed_ratio(way.clamp_preload, rest, way.return_preload, at_start),
+            1,
+            "-",
+            text=text.format("tension disc moves alone"),
+            source=NOT_IN_S4,
+        )
         d.at_most(
-            "no_snap_plate", centrifugal.speed_ratio(way.return_preload, at_start, way.contact_force, at_contact), 1,
-            "-", text=text.format("plate moves"), source=NOT_IN_S4,
-        )  # fmt: skip
+            "no_snap_plate",
+            centrifugal.speed_ratio(way.return_preload, at_start, way.contact_force, at_contact),
+            1,
+            "-",
+            text=text.format("plate moves"),
+            source=NOT_IN_S4,
+        )
         d.at_least(
-            "no_snap_clamp", band, 1, "-",
-            text="The clamp force rises gradually: full clamp speed over contact speed", source=NOT_IN_S4,
-        )  # fmt: skip
+            "no_snap_clamp",
+            band,
+            1,
+            "-",
+            text="The clamp force rises gradually: full clamp speed over contact speed",
+            source=NOT_IN_S4,
+        )
 
     def _declare_remarks(
         self, d: Declaration, duty: blocks.Duty, drive: Drive, way: Way, lining: blocks.Lining, rest: Any

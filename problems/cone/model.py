@@ -136,9 +136,12 @@ class ConeClutch(DesignProblem):
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, self.name, duty, None)
         layout = d.part(
-            "cone_layout", "cone_layouts", symbol="lay",
-            text="Outer spring, or inner cone that closes the axial force inside", source=f"{S1}, inner-cone clutch",
-        )  # fmt: skip
+            "cone_layout",
+            "cone_layouts",
+            symbol="lay",
+            text="Outer spring, or inner cone that closes the axial force inside",
+            source=f"{S1}, inner-cone clutch",
+        )
 
         def torque(peripheral_force: Any) -> Any:
             return cone.friction_torque(peripheral_force, shape.mean_diameter, shape.ratio, shape.angle)
@@ -169,10 +172,13 @@ class ConeClutch(DesignProblem):
             length=cone.overall_length(shape.length, shape.angle, layout.length_add),
         )
         friction.declare_size(
-            d, size, "Both shells and the lining, times the mass_factor of the layout", "Outside of the outer cone",
+            d,
+            size,
+            "Both shells and the lining, times the mass_factor of the layout",
+            "Outside of the outer cone",
             "dm + l_g sin(alpha) + 2 (t_s + t_lining)",
             "Length of the cone and what the layout adds to it",
-        )  # fmt: skip
+        )
         self._declare_temperature(d, duty, wants, pair, start, size, shell_mass)
         friction.declare_envelope(d, duty, shape.force, size.diameter, size.length)
         d.objective("mass")
@@ -198,52 +204,100 @@ class ConeClutch(DesignProblem):
 
     def _declare_cone(self, d: Declaration, wants: Wants) -> Cone:
         force = d.variable(
-            "actuation_force", "N", 50, 100000, symbol="F0",
-            text="Spring force: the axial force that engages the cones", source=f"{S1}, the spring is sized for it",
-        )  # fmt: skip
+            "actuation_force",
+            "N",
+            50,
+            100000,
+            symbol="F0",
+            text="Spring force: the axial force that engages the cones",
+            source=f"{S1}, the spring is sized for it",
+        )
         mean_diameter = d.variable(
-            "mean_diameter", "mm", 40, 800, grid=1, symbol="dm",
-            text="Mean diameter of the friction cone", source=f"{S1}, dm",
-        )  # fmt: skip
+            "mean_diameter",
+            "mm",
+            40,
+            800,
+            grid=1,
+            symbol="dm",
+            text="Mean diameter of the friction cone",
+            source=f"{S1}, dm",
+        )
         length = d.variable(
-            "generator_length", "mm", 4, 200, grid=0.5, symbol="l_g",
-            text="Length of the friction face along its generator", source=f"{S1}, b",
-        )  # fmt: skip
+            "generator_length",
+            "mm",
+            4,
+            200,
+            grid=0.5,
+            symbol="l_g",
+            text="Length of the friction face along its generator",
+            source=f"{S1}, b",
+        )
         angle = d.variable(
-            "cone_half_angle", "deg", 6, 26, grid=0.5, symbol="alpha",
-            text="Between generator and axis", source=f"{S1}, alpha",
-        )  # fmt: skip
+            "cone_half_angle",
+            "deg",
+            6,
+            26,
+            grid=0.5,
+            symbol="alpha",
+            text="Between generator and axis",
+            source=f"{S1}, alpha",
+        )
         shell_thickness = d.variable(
-            "shell_thickness", "mm", 3, 20, grid=0.5, symbol="t_s",
-            text="Wall of the inner and of the outer cone, which store the heat", source="geometry",
-        )  # fmt: skip
+            "shell_thickness",
+            "mm",
+            3,
+            20,
+            grid=0.5,
+            symbol="t_s",
+            text="Wall of the inner and of the outer cone, which store the heat",
+            source="geometry",
+        )
         ratio = d.derive(
-            "ring_ratio", "-", length / mean_diameter, symbol="c",
-            text="Generator length over mean diameter", source=f"{S1}, c = b/dm",
-        )  # fmt: skip
+            "ring_ratio",
+            "-",
+            length / mean_diameter,
+            symbol="c",
+            text="Generator length over mean diameter",
+            source=f"{S1}, c = b/dm",
+        )
         d.at_least(
-            "ring_ratio_min", ratio, wants.ring_ratio_min, "-",
-            text="The face is not too narrow", source=f"{S1}, empirical range of c",
-        )  # fmt: skip
+            "ring_ratio_min",
+            ratio,
+            wants.ring_ratio_min,
+            "-",
+            text="The face is not too narrow",
+            source=f"{S1}, empirical range of c",
+        )
         d.at_most(
-            "ring_ratio_max", ratio, wants.ring_ratio_max, "-",
-            text="The face is not too wide", source=f"{S1}, empirical range of c",
-        )  # fmt: skip
+            "ring_ratio_max",
+            ratio,
+            wants.ring_ratio_max,
+            "-",
+            text="The face is not too wide",
+            source=f"{S1}, empirical range of c",
+        )
         area = d.step(
-            "face_area", "cm2", cone.face_area(mean_diameter, length), symbol="A_face",
-            text="Area of the friction face", source="geometry",
-        )  # fmt: skip
+            "face_area",
+            "cm2",
+            cone.face_area(mean_diameter, length),
+            symbol="A_face",
+            text="Area of the friction face",
+            source="geometry",
+        )
         practice = "practice of cone clutches: 8 to 15, at most 18 degrees"
         d.advise(
-            "slender_cone", angle < np.radians(8), "half angles below 8 degrees tend to grab and to stick",
+            "slender_cone",
+            angle < np.radians(8),
+            "half angles below 8 degrees tend to grab and to stick",
             source=practice,
-        )  # fmt: skip
+        )
         d.advise(
-            "blunt_cone", angle > np.radians(18),
+            "blunt_cone",
+            angle > np.radians(18),
             "above 18 degrees little is left of the wedge effect for which a cone is chosen; a lining with less "
             "friction at rest allows a smaller angle",
             source=practice,
-        )  # fmt: skip
+        )
         return Cone(
             force=force,
             mean_diameter=mean_diameter,
@@ -267,19 +321,29 @@ class ConeClutch(DesignProblem):
     ) -> None:
         """Declare torque and pressure after vibration has removed the axial friction."""
         d.derive(
-            "seated_torque", "N*m", torque, symbol="M_seat",
+            "seated_torque",
+            "N*m",
+            torque,
+            symbol="M_seat",
             text="Torque after vibration has seated the cones under the same spring (worst_case: with mu_max)",
             source="derived, N = F/sin(alpha)",
-        )  # fmt: skip
+        )
         seated = d.derive(
-            "seated_pressure", "N/mm2", pressure, symbol="p_seat",
+            "seated_pressure",
+            "N/mm2",
+            pressure,
+            symbol="p_seat",
             text="Pressure after vibration has seated the cones under the same spring",
             source="derived, N = F/sin(alpha)",
-        )  # fmt: skip
+        )
         d.at_most(
-            "seated_pressure", seated, wants.seating_pressure_factor * pair.part.p_allow, "N/mm2",
-            text="The lining stands the pressure of the seated cones", source="premise of the cone model",
-        )  # fmt: skip
+            "seated_pressure",
+            seated,
+            wants.seating_pressure_factor * pair.part.p_allow,
+            "N/mm2",
+            text="The lining stands the pressure of the seated cones",
+            source="premise of the cone model",
+        )
         if duty.overload_torque is None:
             d.advise(
                 "seating",
@@ -294,25 +358,40 @@ class ConeClutch(DesignProblem):
     ) -> None:
         """Declare the release force and the limit against self-locking."""
         release = d.derive(
-            "release_force", "N", force, symbol="F_rel",
+            "release_force",
+            "N",
+            force,
+            symbol="F_rel",
             text="Force with which the cones push apart; negative: they must be pulled (worst_case: with mu_max)",
             source=DERIVED,
-        )  # fmt: skip
+        )
         static = pair.part.mu_static
         if duty.friction_basis == "worst_case":
             static = np.maximum(static, pair.part.mu_max)
         d.step(
-            "locking_angle", "deg", cone.locking_angle(static), symbol="alpha_lock",
-            text="Below this half angle the cones may lock", source=DERIVED,
-        )  # fmt: skip
+            "locking_angle",
+            "deg",
+            cone.locking_angle(static),
+            symbol="alpha_lock",
+            text="Below this half angle the cones may lock",
+            source=DERIVED,
+        )
         d.step(
-            "kept_angle", "deg", cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)),
-            symbol="alpha_kept", text="Half angle that keeps locking_margin", source=DERIVED,
-        )  # fmt: skip
+            "kept_angle",
+            "deg",
+            cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)),
+            symbol="alpha_kept",
+            text="Half angle that keeps locking_margin",
+            source=DERIVED,
+        )
         d.at_least(
-            "self_locking", np.tan(shape.angle), wants.locking_margin * static, "-",
-            text="The cones come apart by themselves", source=f"{DERIVED}: tan(alpha) >= mu_static",
-        )  # fmt: skip
+            "self_locking",
+            np.tan(shape.angle),
+            wants.locking_margin * static,
+            "-",
+            text="The cones come apart by themselves",
+            source=f"{DERIVED}: tan(alpha) >= mu_static",
+        )
         d.advise(
             "pulled_apart",
             release < 0,
@@ -322,15 +401,22 @@ class ConeClutch(DesignProblem):
 
     def _declare_bearing(self, d: Declaration, wants: Wants, shape: Cone, layout: Part) -> None:
         force = d.derive(
-            "bearing_force", "N", cone.bearing_force(shape.force, layout.force_closed), symbol="F_bear",
+            "bearing_force",
+            "N",
+            cone.bearing_force(shape.force, layout.force_closed),
+            symbol="F_bear",
             text="Axial load of the shaft bearings: the spring force, 0 with an inner cone",
             source=f"{S1}, cone and inner-cone clutch",
-        )  # fmt: skip
+        )
         if wants.bearing_force_limit is not None:
             d.at_most(
-                "bearing_axial", force, wants.bearing_force_limit, "N",
-                text="The shaft bearings stand the spring", source="requirement of the drive",
-            )  # fmt: skip
+                "bearing_axial",
+                force,
+                wants.bearing_force_limit,
+                "N",
+                text="The shaft bearings stand the spring",
+                source="requirement of the drive",
+            )
         else:
             d.advise(
                 "bearing_thrust",
@@ -354,15 +440,21 @@ class ConeClutch(DesignProblem):
             d, shell_mass * duty.steel_specific_heat, plates.cylinder_surface(size.diameter, size.length), "A shell"
         )
         rise = d.derive(
-            "temperature_rise", "K",
-            heat.adiabatic_rise(start.friction_work, shell_mass, duty.steel_specific_heat, SHELL_SHARE), symbol="dT",
+            "temperature_rise",
+            "K",
+            heat.adiabatic_rise(start.friction_work, shell_mass, duty.steel_specific_heat, SHELL_SHARE),
+            symbol="dT",
             text="A shell after one engagement, which takes half of the friction work",
             source="heat balance",
-        )  # fmt: skip
+        )
         d.at_most(
-            "shell_temperature_rise", rise, wants.temperature_rise_limit, "K",
-            text="The shell is thick enough for the heat of one engagement", source="heat balance",
-        )  # fmt: skip
+            "shell_temperature_rise",
+            rise,
+            wants.temperature_rise_limit,
+            "K",
+            text="The shell is thick enough for the heat of one engagement",
+            source="heat balance",
+        )
         d.advise(
             "lining_temperature",
             rise > pair.part.optional("temp_max") - duty.ambient_temperature,
@@ -441,16 +533,18 @@ class ConeClutch(DesignProblem):
         normal = value["torque"] / cone.friction_torque(low, mean, ratio, angle)
         spring = cone.engaging_force(normal, angle, low)
         seated = cone.seated_force(spring, angle)
-        frame = pd.DataFrame({
-            "half angle [deg]": degrees,
-            "engaging: the spring [N]": spring,
-            "in service [N]": cone.service_force(normal, angle),
-            "releasing [N]": cone.release_force(cone.normal_force(spring, angle, high), angle, high),
-            "engaged [N*m]": np.full_like(angle, value["torque"]),
-            "seated by vibration [N*m]": cone.friction_torque(high * seated, mean, ratio, angle),
-            "engaged [N/mm2]": normal / step["face_area"] / 1e6,
-            "seated by vibration [N/mm2]": seated / step["face_area"] / 1e6,
-        })  # fmt: skip
+        frame = pd.DataFrame(
+            {
+                "half angle [deg]": degrees,
+                "engaging: the spring [N]": spring,
+                "in service [N]": cone.service_force(normal, angle),
+                "releasing [N]": cone.release_force(cone.normal_force(spring, angle, high), angle, high),
+                "engaged [N*m]": np.full_like(angle, value["torque"]),
+                "seated by vibration [N*m]": cone.friction_torque(high * seated, mean, ratio, angle),
+                "engaged [N/mm2]": normal / step["face_area"] / 1e6,
+                "seated by vibration [N/mm2]": seated / step["face_area"] / 1e6,
+            }
+        )
         by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
         locking, kept = (math.degrees(step[name]) for name in ("locking_angle", "kept_angle"))
         allowed = pair["p_allow"] / 1e6

@@ -81,11 +81,13 @@ def pressure_over_radius(problem: DesignProblem, design: Any) -> pd.DataFrame:
     mean, ratio = value["mean_diameter"], value["ring_ratio"]
     radius = np.linspace(value["ring_inner_diameter"], value["ring_outer_diameter"], 101) / 2
     worn = disc.worn_pressure(value["actuation_force"], mean, ratio, radius)
-    frame = pd.DataFrame({
-        "radius [mm]": radius * 1e3,
-        "new lining [N/mm2]": np.full_like(radius, value["surface_pressure"]) / 1e6,
-        "worn-in lining [N/mm2]": worn / 1e6,
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "radius [mm]": radius * 1e3,
+            "new lining [N/mm2]": np.full_like(radius, value["surface_pressure"]) / 1e6,
+            "worn-in lining [N/mm2]": worn / 1e6,
+        }
+    )
     frame.attrs = {
         "title": f"{problem.title}: pressure on the lining",
         "panels": [{"label": "pressure [N/mm2]", "columns": list(frame.columns[1:])}],
@@ -120,12 +122,14 @@ def torque_over_force(problem: DesignProblem, spec: Mapping[str, Any], design: A
 
     value = design.values
     share = np.linspace(0.0, 1.4, 141)
-    frame = pd.DataFrame({
-        "axial force [N]": share * value["actuation_force"],
-        "new lining [N*m]": share * value["torque"],
-        "worn-in lining [N*m]": share * value["worn_torque"],
-        "pressure, new lining [N/mm2]": share * value["surface_pressure"] / 1e6,
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "axial force [N]": share * value["actuation_force"],
+            "new lining [N*m]": share * value["torque"],
+            "worn-in lining [N*m]": share * value["worn_torque"],
+            "pressure, new lining [N/mm2]": share * value["surface_pressure"] / 1e6,
+        }
+    )
     lines: list[dict[str, Any]] = [
         {"panel": 0, "y": value["required_torque"], "label": "sizing torque"},
         {"panel": 0, "y": spec["load_torque"], "label": "load torque"},

@@ -40,9 +40,14 @@ class DiscClutch(DesignProblem):
         ring = friction.declare_ring(d, 0.11, 0.13)
         pack = disc_pack.declare_disc_pack(d, duty, ring)
         force = d.variable(
-            "actuation_force", "N", 50, 200000, symbol="F0",
-            text="Axial force of the springs on the pressure plate", source=f"{S1}, F",
-        )  # fmt: skip
+            "actuation_force",
+            "N",
+            50,
+            200000,
+            symbol="F0",
+            text="Axial force of the springs on the pressure plate",
+            source=f"{S1}, F",
+        )
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, self.name, duty, "dry")
 
@@ -57,11 +62,13 @@ class DiscClutch(DesignProblem):
         friction.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
         size = disc_pack.disc_size(duty, ring, pair, pack)
         friction.declare_size(
-            d, size, "Pressure plates, linings and cores, without flywheel, springs and cover",
+            d,
+            size,
+            "Pressure plates, linings and cores, without flywheel, springs and cover",
             "Outside of the cover",
             "2 (r2 + s_cover)",
             "Length of the released discs and pressure plates, without flywheel, springs and cover",
-        )  # fmt: skip
+        )
         disc_pack.declare_disc_inertia(d, duty, ring, pair, pack)
         disc_pack.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
         friction.declare_envelope(d, duty, force, size.diameter, size.length)

@@ -96,18 +96,31 @@ def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
     """
     wants = d.block(DiscRequirements)
     discs = d.count(
-        "discs", 1, 2, symbol="n_d",
+        "discs",
+        1,
+        2,
+        symbol="n_d",
         text="Lined discs, each with a pressure plate of its own; two friction surfaces per disc",
         source=f"{S1}, disc clutch: few large friction surfaces",
-    )  # fmt: skip
+    )
     plate_thickness = d.variable(
-        "pressure_plate_thickness", "mm", 3, 40, grid=0.5, symbol="t_p",
-        text="Thickness of a pressure plate, which stores the heat", source=f"{S1}, pressure plate",
-    )  # fmt: skip
+        "pressure_plate_thickness",
+        "mm",
+        3,
+        40,
+        grid=0.5,
+        symbol="t_p",
+        text="Thickness of a pressure plate, which stores the heat",
+        source=f"{S1}, pressure plate",
+    )
     d.at_least(
-        "hub_bore", ring.inner_radius, wants.disc_hub_radius, "mm",
-        text="The hub fits inside the friction ring", source="geometry",
-    )  # fmt: skip
+        "hub_bore",
+        ring.inner_radius,
+        wants.disc_hub_radius,
+        "mm",
+        text="The hub fits inside the friction ring",
+        source="geometry",
+    )
     if duty.outer_diameter_limit is not None:
         least_outer = 2 * wants.disc_hub_radius * (1 + ring.ratio_min) / (1 - ring.ratio_min)
         d.refuse(
@@ -145,18 +158,29 @@ def declare_worn_torque(d: Declaration, pair: Pair, torques: Torques, ring: Ring
         Axial force F0 [N].
     """
     worn = d.derive(
-        "worn_torque", "N*m", ring_formulas.worn_torque(pack.surfaces, pair.mu_low, force, ring.mean_diameter),
-        symbol="M_worn", text="Capacity with worn-in lining, pressure times radius constant (worst_case: with mu_min)",
+        "worn_torque",
+        "N*m",
+        ring_formulas.worn_torque(pack.surfaces, pair.mu_low, force, ring.mean_diameter),
+        symbol="M_worn",
+        text="Capacity with worn-in lining, pressure times radius constant (worst_case: with mu_min)",
         source="Shigley, Mechanical Engineering Design, uniform wear",
-    )  # fmt: skip
+    )
     d.step(
-        "worn_friction_radius", "mm", ring.mean_diameter / 2, symbol="r_worn",
-        text="Friction radius of the worn-in lining", source="Shigley, Mechanical Engineering Design, uniform wear",
-    )  # fmt: skip
+        "worn_friction_radius",
+        "mm",
+        ring.mean_diameter / 2,
+        symbol="r_worn",
+        text="Friction radius of the worn-in lining",
+        source="Shigley, Mechanical Engineering Design, uniform wear",
+    )
     d.at_least(
-        "worn_torque_capacity", worn, torques.required, "N*m",
-        text="The worn-in clutch carries the sizing torque", source="Shigley, Mechanical Engineering Design",
-    )  # fmt: skip
+        "worn_torque_capacity",
+        worn,
+        torques.required,
+        "N*m",
+        text="The worn-in clutch carries the sizing torque",
+        source="Shigley, Mechanical Engineering Design",
+    )
 
 
 def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
@@ -181,7 +205,8 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
 def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
     """Declare the inertia of the discs, which the gearbox has to synchronise."""
     d.derive(
-        "disc_inertia", "kg*m2",
+        "disc_inertia",
+        "kg*m2",
         disc.disc_inertia(
             pack.discs,
             disc.lining_inertia(pair.part.density, pair.part.lining_thickness, ring.mean_diameter, ring.ratio),
@@ -189,8 +214,10 @@ def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pac
                 duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
             ),
         ),
-        symbol="J_disc", text="Inertia of the discs, cores with linings", source="geometry",
-    )  # fmt: skip
+        symbol="J_disc",
+        text="Inertia of the discs, cores with linings",
+        source="geometry",
+    )
 
 
 def declare_disc_temperature(
@@ -219,26 +246,38 @@ def declare_disc_temperature(
     plate_mass = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
     specific_heat = wants.pressure_plate_specific_heat
     rise = d.derive(
-        "temperature_rise", "K",
+        "temperature_rise",
+        "K",
         heat.adiabatic_rise(start.friction_work, plate_mass, specific_heat, disc.HOTTEST_PLATE_SHARE),
-        symbol="dT", text="Hottest pressure plate after one engagement, which takes half of the friction work",
+        symbol="dT",
+        text="Hottest pressure plate after one engagement, which takes half of the friction work",
         source="heat balance; half of the work for the hottest plate of a single or twin disc",
-    )  # fmt: skip
+    )
     cooled_area = plates.cylinder_surface(size.diameter, size.length)
     mean_rise = d.derive(
-        "mean_temperature_rise", "K",
+        "mean_temperature_rise",
+        "K",
         heat.mean_temperature_rise(start.friction_work, duty.engagements_per_hour, duty.heat_transfer, cooled_area),
-        symbol="dT_m", text="Clutch over ambient, mean of repeated switching",
+        symbol="dT_m",
+        text="Clutch over ambient, mean of repeated switching",
         source=f"lumped heat balance; {S1}, repeated switching",
-    )  # fmt: skip
+    )
     d.at_most(
-        "plate_temperature_rise", rise, wants.temperature_rise_limit, "K",
-        text="The pressure plate is thick enough for the heat of one engagement", source="heat balance",
-    )  # fmt: skip
+        "plate_temperature_rise",
+        rise,
+        wants.temperature_rise_limit,
+        "K",
+        text="The pressure plate is thick enough for the heat of one engagement",
+        source="heat balance",
+    )
     d.at_most(
-        "mean_temperature", mean_rise, pair.part.temp_continuous - duty.ambient_temperature, "K",
-        text="The lining stands the mean temperature", source="Neale, Tribology Handbook, Table 7.4",
-    )  # fmt: skip
+        "mean_temperature",
+        mean_rise,
+        pair.part.temp_continuous - duty.ambient_temperature,
+        "K",
+        text="The lining stands the mean temperature",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )
     capacity = pack.discs * plate_mass * wants.pressure_plate_specific_heat
     declare_heated_body(d, capacity, cooled_area, "The pressure plates")
     advise_frequent_switching(d, duty, capacity, cooled_area)

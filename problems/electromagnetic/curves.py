@@ -107,15 +107,17 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
     flux_density = body.flux_density(turned)
     force = body.force(flux_density)
     share = turned / value["ampere_turns"]
-    frame = pd.DataFrame({
-        "current [A]": current,
-        "torque [N*m]": force / value["actuation_force"] * value["torque"],
-        "on the pack [N]": force,
-        "pull on the released armature [N]": share**2 * value["pull_in_force"],
-        "poles [T]": body.pole(flux_density),
-        "yoke [T]": body.yoke(flux_density),
-        "temperature rise [K]": warm.rise(current),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "current [A]": current,
+            "torque [N*m]": force / value["actuation_force"] * value["torque"],
+            "on the pack [N]": force,
+            "pull on the released armature [N]": share**2 * value["pull_in_force"],
+            "poles [T]": body.pole(flux_density),
+            "yoke [T]": body.yoke(flux_density),
+            "temperature rise [K]": warm.rise(current),
+        }
+    )
     needed = spec["pull_in_margin"] * design.steps["springs_and_drag"]
     lines = _torques(spec, design)
     if spec["overload_torque"] is not None:
@@ -197,11 +199,13 @@ def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
         opened = replace(body, shape=replace(body.shape, residual_gap=gap))
         pull.append(float(pot_magnet.magnet_force(opened.flux_density([turned])[0], body.shape)))
     springs = design.steps["springs_and_drag"]
-    frame = pd.DataFrame({
-        "gap at each pole [mm]": gaps * 1e3,
-        "pull [N]": pull,
-        "pull, iron neglected [N]": pot_magnet.pull_in_force(turned, gaps, body.shape.pole_area),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "gap at each pole [mm]": gaps * 1e3,
+            "pull [N]": pull,
+            "pull, iron neglected [N]": pot_magnet.pull_in_force(turned, gaps, body.shape.pole_area),
+        }
+    )
     frame.attrs = {
         "title": f"{problem.title}: pull over the gap at {value['current']:.3g} A",
         "panels": [{"label": "pull [N]", "columns": list(frame.columns[1:]), "log": True}],

@@ -94,9 +94,15 @@ def declare_magnet(d: Declaration) -> Magnet:
     wants = d.block(MagnetRequirements)
     iron = coil_blocks.declare_coil_requirements(d)
     pole_width = d.variable(
-        "inner_pole_width", "mm", 3, 60, grid=0.5, symbol="w_p",
-        text="Radial width of the inner pole; the outer pole has the same area", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "inner_pole_width",
+        "mm",
+        3,
+        60,
+        grid=0.5,
+        symbol="w_p",
+        text="Radial width of the inner pole; the outer pole has the same area",
+        source=f"{S4}, section 6.6",
+    )
     unknowns = d.block(coil_blocks.CoilUnknowns)
     shape = pot_magnet.PotMagnet(
         bore=wants.magnet_bore_radius,
@@ -107,18 +113,31 @@ def declare_magnet(d: Declaration) -> Magnet:
         residual_gap=wants.residual_gap,
     )
     pull = d.derive(
-        "magnet_force", "N", pot_magnet.magnet_force(unknowns.flux_density, shape), symbol="F_m",
-        text="Pull on the engaged armature", source="Maxwell; S4 (notes on centrifugal clutches), section 3.5",
-    )  # fmt: skip
+        "magnet_force",
+        "N",
+        pot_magnet.magnet_force(unknowns.flux_density, shape),
+        symbol="F_m",
+        text="Pull on the engaged armature",
+        source="Maxwell; S4 (notes on centrifugal clutches), section 3.5",
+    )
     d.at_least(
-        HOLDS, pull, wants.return_spring_force, "N", guard=True,
+        HOLDS,
+        pull,
+        wants.return_spring_force,
+        "N",
+        guard=True,
         text="The engaged magnet is stronger than the return springs; otherwise nothing presses the pack",
         source=f"{S4}, section 6.6",
-    )  # fmt: skip
+    )
     force = d.derive(
-        "actuation_force", "N", pull - wants.return_spring_force, symbol="F0", needs=HOLDS,
-        text="Axial force on the pack: magnet less return springs", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "actuation_force",
+        "N",
+        pull - wants.return_spring_force,
+        symbol="F0",
+        needs=HOLDS,
+        text="Axial force on the pack: magnet less return springs",
+        source=f"{S4}, section 6.6",
+    )
     return Magnet(wants, iron, unknowns, shape, force)
 
 
@@ -150,30 +169,49 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     densest = pole * np.maximum(ratio, 1.0)
     coil_blocks.declare_saturation(d, iron, densest)
     d.at_most(
-        "pole_flux_density", pole, iron.iron_flux_limit, "T",
-        text="The iron of the poles carries the flux", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "pole_flux_density",
+        pole,
+        iron.iron_flux_limit,
+        "T",
+        text="The iron of the poles carries the flux",
+        source=f"{S4}, section 6.6",
+    )
     d.at_most(
-        "yoke_flux_density", yoke, iron.iron_flux_limit, "T",
-        text="Yoke and armature carry the flux at the inner pole", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "yoke_flux_density",
+        yoke,
+        iron.iron_flux_limit,
+        "T",
+        text="Yoke and armature carry the flux at the inner pole",
+        source=f"{S4}, section 6.6",
+    )
     field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
     ampere_turns = pot_magnet.engaged_ampere_turns(unknowns.flux_density, shape, field)
     released, springs = _name_release(d, duty, wants, surfaces)
     pull_in = d.derive(
-        "pull_in_force", "N",
+        "pull_in_force",
+        "N",
         pot_magnet.pull_in_force(ampere_turns, released, shape.pole_area),
-        symbol="F_in", needs="iron_saturation",
-        text="Pull on the released armature, across all gaps of the pack", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        symbol="F_in",
+        needs="iron_saturation",
+        text="Pull on the released armature, across all gaps of the pack",
+        source=f"{S4}, section 6.6",
+    )
     d.at_least(
-        "pull_in", pull_in, wants.pull_in_margin * springs, "N",
-        text="The magnet draws the released armature in", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "pull_in",
+        pull_in,
+        wants.pull_in_margin * springs,
+        "N",
+        text="The magnet draws the released armature in",
+        source=f"{S4}, section 6.6",
+    )
     d.derive(
-        "magnet_diameter", "mm", 2 * shape.outer_radius, symbol="D_m",
-        text="Outside of the outer pole", source="geometry",
-    )  # fmt: skip
+        "magnet_diameter",
+        "mm",
+        2 * shape.outer_radius,
+        symbol="D_m",
+        text="Outside of the outer pole",
+        source="geometry",
+    )
     around = coil_blocks.Surroundings(
         ambient_temperature=duty.ambient_temperature,
         temperature_limit=unknowns.winding_wire.insulation_temperature,
@@ -190,13 +228,21 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
 def _name_release(d: Declaration, duty: Duty, wants: MagnetRequirements, surfaces: Any) -> tuple[Any, Any]:
     """Name what the magnet pulls against when it draws the armature in; return gap [m] and force [N]."""
     gap = d.step(
-        "released_gap", "mm", wants.residual_gap + surfaces * duty.plate_gap, symbol="g_rel",
-        text="Gap at each pole of the released magnet", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "released_gap",
+        "mm",
+        wants.residual_gap + surfaces * duty.plate_gap,
+        symbol="g_rel",
+        text="Gap at each pole of the released magnet",
+        source=f"{S4}, section 6.6",
+    )
     force = d.step(
-        "springs_and_drag", "N", wants.return_spring_force + wants.release_drag_force, symbol="F_hold",
-        text="What holds the released armature back", source=f"{S4}, section 6.6",
-    )  # fmt: skip
+        "springs_and_drag",
+        "N",
+        wants.return_spring_force + wants.release_drag_force,
+        symbol="F_hold",
+        text="What holds the released armature back",
+        source=f"{S4}, section 6.6",
+    )
     return gap, force
 
 

@@ -45,10 +45,13 @@ class ElectromagneticClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         pack = d.option(
-            "pack", ("multi_plate", "disc"), "multi_plate", symbol="pk",
+            "pack",
+            ("multi_plate", "disc"),
+            "multi_plate",
+            symbol="pk",
             text="Friction pack that the magnet presses: many plates in a drum, or one or two dry discs",
             source=f"{S4}, section 6.6",
-        )  # fmt: skip
+        )
         if pack == "disc":
             self._declare_disc(d)
         else:
@@ -159,7 +162,11 @@ class ElectromagneticClutch(DesignProblem):
             length=pack.length + magnet.shape.length,
         )
         friction.declare_size(
-            d, size, "Pack and magnet with armature and coil", "Outside of pack or magnet",
-            "the larger of both", "Released pack and engaged magnet",
-        )  # fmt: skip
+            d,
+            size,
+            "Pack and magnet with armature and coil",
+            "Outside of pack or magnet",
+            "the larger of both",
+            "Released pack and engaged magnet",
+        )
         friction.declare_envelope(d, duty, magnet.actuation_force, size.diameter, size.length)

@@ -273,9 +273,14 @@ def _lubrication_of(d: Declaration, cooling: str) -> str:
 def declare_ramp_time(d: Declaration) -> Any:
     """Declare the variable ramp_time."""
     return d.variable(
-        "ramp_time", "s", 0.01, 10, symbol="t_r",
-        text="Ramp of the force: time until the clutch torque is built up; never 0", source=f"{S1}, t_max",
-    )  # fmt: skip
+        "ramp_time",
+        "s",
+        0.01,
+        10,
+        symbol="t_r",
+        text="Ramp of the force: time until the clutch torque is built up; never 0",
+        source=f"{S1}, t_max",
+    )
 
 
 def sizing_torque(duty: Duty, surface_factor: Any = 1.0) -> Any:
@@ -296,14 +301,22 @@ def declare_envelope(d: Declaration, duty: Duty, force: Any, diameter: Any, leng
     asked = "requirement of the drive"
     if duty.actuation_force_limit is not None:
         d.at_most(
-            "actuation_force", force, duty.actuation_force_limit, "N",
-            text="The actuator can press so hard", source=asked,
-        )  # fmt: skip
+            "actuation_force",
+            force,
+            duty.actuation_force_limit,
+            "N",
+            text="The actuator can press so hard",
+            source=asked,
+        )
     if duty.outer_diameter_limit is not None:
         d.at_most(
-            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
-            text="The clutch fits the room across", source=asked,
-        )  # fmt: skip
+            "outer_diameter",
+            diameter,
+            duty.outer_diameter_limit,
+            "mm",
+            text="The clutch fits the room across",
+            source=asked,
+        )
     if duty.length_limit is not None:
         d.at_most("length", length, duty.length_limit, "mm", text="The clutch fits the room along", source=asked)
 
@@ -332,7 +345,11 @@ def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, across:
     d.derive("outer_diameter", "mm", size.diameter, symbol="D", text=outside, source=f"geometry, {across}")
     d.derive("length", "mm", size.length, symbol="L", text=along, source="geometry")
     d.derive(
-        "volume", "dm3", plates.cylinder_volume(size.diameter, size.length), symbol="V",
-        text="Enveloping cylinder", source="geometry, pi D**2 L/4",
-    )  # fmt: skip
+        "volume",
+        "dm3",
+        plates.cylinder_volume(size.diameter, size.length),
+        symbol="V",
+        text="Enveloping cylinder",
+        source="geometry, pi D**2 L/4",
+    )
     d.derive("mass", "kg", size.mass, symbol="m", text=mass_of, source="geometry")

@@ -132,13 +132,22 @@ def declare_torque(
         Sizing torque and the torques at the end of the ramp.
     """
     d.derive(
-        "required_torque", "N*m", required, symbol="M_req",
-        text="Sizing torque n M_load/(c_m c_v c_z)", source=f"{S1}, sizing",
-    )  # fmt: skip
+        "required_torque",
+        "N*m",
+        required,
+        symbol="M_req",
+        text="Sizing torque n M_load/(c_m c_v c_z)",
+        source=f"{S1}, sizing",
+    )
     d.derive(
-        "torque", "N*m", torque_low, symbol="M_k", needs=needs,
-        text="Built capacity with new lining (worst_case: with mu_min)", source=f"{S0}, eq. (5); {S1}, sizing",
-    )  # fmt: skip
+        "torque",
+        "N*m",
+        torque_low,
+        symbol="M_k",
+        needs=needs,
+        text="Built capacity with new lining (worst_case: with mu_min)",
+        source=f"{S0}, eq. (5); {S1}, sizing",
+    )
     given = duty.startup_torque
     torques = Torques(
         required=required,
@@ -146,24 +155,39 @@ def declare_torque(
         ramp_high=torque_high if given is None else given,
     )
     d.derive(
-        "ramp_torque", "N*m", torques.ramp_low, symbol="T_k",
+        "ramp_torque",
+        "N*m",
+        torques.ramp_low,
+        symbol="T_k",
         text="Torque at the end of the ramp in start-up: torque, or startup_torque when given",
         source=f"{S1}, start-up",
-    )  # fmt: skip
+    )
     d.at_least(
-        "torque_capacity", torque_low, required, "N*m",
-        text="The clutch carries the sizing torque", source=f"{S1}, sizing; {S0}, eq. (5)",
-    )  # fmt: skip
+        "torque_capacity",
+        torque_low,
+        required,
+        "N*m",
+        text="The clutch carries the sizing torque",
+        source=f"{S1}, sizing; {S0}, eq. (5)",
+    )
     if given is not None:
         d.at_least(
-            "startup_torque_available", torque_low, given, "N*m",
-            text="The clutch can deliver the start-up torque", source=f"{S1}, start-up and sizing linked",
-        )  # fmt: skip
+            "startup_torque_available",
+            torque_low,
+            given,
+            "N*m",
+            text="The clutch can deliver the start-up torque",
+            source=f"{S1}, start-up and sizing linked",
+        )
     d.at_least(
-        "never_starts", torques.ramp_low, duty.load_torque, "N*m", guard=True,
+        "never_starts",
+        torques.ramp_low,
+        duty.load_torque,
+        "N*m",
+        guard=True,
         text="The start-up torque is above the load torque; otherwise the clutch slips for ever",
         source=f"{S1}, start-up",
-    )  # fmt: skip
+    )
     d.advise(
         "static_hold",
         plates.static_hold(torque_low, pair.part.optional("mu_static"), pair.part.mu_dynamic, duty.load_torque) < 1.2,
@@ -172,9 +196,13 @@ def declare_torque(
     )
     if duty.overload_torque is not None:
         d.at_most(
-            "torque_limit", torque_high if overload is None else overload, duty.overload_torque, "N*m",
-            text="The clutch slips at the overload torque", source=f"{S1}, clutch as safety element",
-        )  # fmt: skip
+            "torque_limit",
+            torque_high if overload is None else overload,
+            duty.overload_torque,
+            "N*m",
+            text="The clutch slips at the overload torque",
+            source=f"{S1}, clutch as safety element",
+        )
         d.refuse(
             "capacity_window_empty",
             duty.overload_torque < required,
@@ -215,43 +243,75 @@ def declare_startup(d: Declaration, duty: Duty, torques: Torques, ramp_time: Any
     low = (torques.ramp_low, duty.load_torque, duty.driven_inertia, duty.driver_speed, ramp_time, duty.load_kind)
     high = (torques.ramp_high, *low[1:])
     work = d.derive(
-        "friction_work", "J", startup.friction_work(*low), symbol="W", needs="never_starts",
-        text="Friction work per engagement", source=f"{S1}, start-up; closed form",
-    )  # fmt: skip
+        "friction_work",
+        "J",
+        startup.friction_work(*low),
+        symbol="W",
+        needs="never_starts",
+        text="Friction work per engagement",
+        source=f"{S1}, start-up; closed form",
+    )
     slip_time = d.derive(
-        "slip_time", "s", startup.slip_time(*low), symbol="t_D", needs="never_starts",
-        text="Time until lock-up", source=f"{S1}, start-up, t_D; closed form",
-    )  # fmt: skip
+        "slip_time",
+        "s",
+        startup.slip_time(*low),
+        symbol="t_D",
+        needs="never_starts",
+        text="Time until lock-up",
+        source=f"{S1}, start-up, t_D; closed form",
+    )
     power = d.derive(
-        "peak_slip_power", "W", startup.peak_slip_power(*high), symbol="P_peak", needs="never_starts",
-        text="Greatest friction power (worst_case: with mu_max)", source=f"{S1}, start-up; closed form",
-    )  # fmt: skip
+        "peak_slip_power",
+        "W",
+        startup.peak_slip_power(*high),
+        symbol="P_peak",
+        needs="never_starts",
+        text="Greatest friction power (worst_case: with mu_max)",
+        source=f"{S1}, start-up; closed form",
+    )
     jerk = d.derive(
-        "jerk", "rad/s3",
+        "jerk",
+        "rad/s3",
         startup.torque_rate_per_inertia(torques.ramp_high, duty.driven_inertia, ramp_time),
-        text="Jerk of the driven side during the ramp (worst_case: with mu_max)", source=f"{S1}, equation of motion",
-    )  # fmt: skip
+        text="Jerk of the driven side during the ramp (worst_case: with mu_max)",
+        source=f"{S1}, equation of motion",
+    )
     acceleration = d.derive(
-        "acceleration", "rad/s2",
-        (startup.lock_torque(*high) - duty.load_torque) / duty.driven_inertia, symbol="acc", needs="never_starts",
+        "acceleration",
+        "rad/s2",
+        (startup.lock_torque(*high) - duty.load_torque) / duty.driven_inertia,
+        symbol="acc",
+        needs="never_starts",
         text="Greatest acceleration, at the end of the ramp or of slip (worst_case: with mu_max)",
         source=f"{S1}, alpha_2C",
-    )  # fmt: skip
+    )
     d.at_most(
-        "slip_time", slip_time, duty.slip_time_limit, "s",
-        text="Slip ends soon enough", source="requirement of the drive",
-    )  # fmt: skip
+        "slip_time",
+        slip_time,
+        duty.slip_time_limit,
+        "s",
+        text="Slip ends soon enough",
+        source="requirement of the drive",
+    )
     d.at_most(
-        "cycle_time", slip_time, heat.cycle_time(duty.engagements_per_hour), "s",
-        text="Slip ends before the next engagement", source=f"{S1}, repeated switching",
-    )  # fmt: skip
+        "cycle_time",
+        slip_time,
+        heat.cycle_time(duty.engagements_per_hour),
+        "s",
+        text="Slip ends before the next engagement",
+        source=f"{S1}, repeated switching",
+    )
     if duty.jerk_limit is not None:
         d.at_most("jerk", jerk, duty.jerk_limit, "rad/s3", text="Soft start", source="requirement of the drive")
     if duty.acceleration_limit is not None:
         d.at_most(
-            "acceleration", acceleration, duty.acceleration_limit, "rad/s2",
-            text="The driven machine stands the acceleration", source="requirement of the drive",
-        )  # fmt: skip
+            "acceleration",
+            acceleration,
+            duty.acceleration_limit,
+            "rad/s2",
+            text="The driven machine stands the acceleration",
+            source="requirement of the drive",
+        )
     if duty.jerk_limit is None:
         d.advise(
             "hard_start",
@@ -302,46 +362,85 @@ def declare_surface_loads(
     part = pair.part
     d.derive("friction_area", "cm2", area, symbol="A", text="All friction surfaces together", source=f"{S1}, A")
     hourly = d.derive(
-        "hourly_heat", "J/(mm2*h)",
-        heat.specific_hourly_heat(start.friction_work, duty.engagements_per_hour, rubbing_area), symbol="w",
-        text="Friction work per hour and area", source=f"{S1}, w",
-    )  # fmt: skip
+        "hourly_heat",
+        "J/(mm2*h)",
+        heat.specific_hourly_heat(start.friction_work, duty.engagements_per_hour, rubbing_area),
+        symbol="w",
+        text="Friction work per hour and area",
+        source=f"{S1}, w",
+    )
     single = d.derive(
-        "single_heat", "J/mm2", heat.single_heat(start.friction_work, rubbing_area), symbol="Q_A",
-        text="Friction work per engagement and area", source="makers' limit for a single engagement",
-    )  # fmt: skip
+        "single_heat",
+        "J/mm2",
+        heat.single_heat(start.friction_work, rubbing_area),
+        symbol="Q_A",
+        text="Friction work per engagement and area",
+        source="makers' limit for a single engagement",
+    )
     density = d.derive(
-        "power_density", "W/mm2", heat.power_density(start.peak_slip_power, rubbing_area), symbol="q_peak",
-        text="Greatest friction power per area", source="Neale, Tribology Handbook, Table 7.4",
-    )  # fmt: skip
+        "power_density",
+        "W/mm2",
+        heat.power_density(start.peak_slip_power, rubbing_area),
+        symbol="q_peak",
+        text="Greatest friction power per area",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )
     speed = d.derive(
-        "sliding_speed", "m/s", plates.sliding_speed(duty.driver_speed, rubbing_radius), symbol="v_s",
-        text="Sliding speed at the outer edge when slip begins", source="kinematics",
-    )  # fmt: skip
+        "sliding_speed",
+        "m/s",
+        plates.sliding_speed(duty.driver_speed, rubbing_radius),
+        symbol="v_s",
+        text="Sliding speed at the outer edge when slip begins",
+        source="kinematics",
+    )
     pressure = d.derive(
-        "surface_pressure", "N/mm2", pressure, symbol="p_s",
-        text="Largest pressure on a friction surface", source=f"{S1}, p; {S0}, eq. (3)",
-    )  # fmt: skip
+        "surface_pressure",
+        "N/mm2",
+        pressure,
+        symbol="p_s",
+        text="Largest pressure on a friction surface",
+        source=f"{S1}, p; {S0}, eq. (3)",
+    )
     d.at_most(
-        "surface_pressure", pressure, part.p_allow, "N/mm2",
-        text="The lining stands the pressure", source=f"{S1}, sizing",
-    )  # fmt: skip
+        "surface_pressure",
+        pressure,
+        part.p_allow,
+        "N/mm2",
+        text="The lining stands the pressure",
+        source=f"{S1}, sizing",
+    )
     d.at_most(
-        "specific_heat", hourly, pair.hourly_allow, "J/(mm2*h)",
-        text="The lining stands the hourly heat", source=f"{S1}, w <= w_allow",
-    )  # fmt: skip
+        "specific_heat",
+        hourly,
+        pair.hourly_allow,
+        "J/(mm2*h)",
+        text="The lining stands the hourly heat",
+        source=f"{S1}, w <= w_allow",
+    )
     d.at_most(
-        "engagement_heat", single, part.optional("q_single_allow"), "J/mm2",
-        text="The lining stands the heat of one engagement", source="makers' limit for a single engagement",
-    )  # fmt: skip
+        "engagement_heat",
+        single,
+        part.optional("q_single_allow"),
+        "J/mm2",
+        text="The lining stands the heat of one engagement",
+        source="makers' limit for a single engagement",
+    )
     d.at_most(
-        "specific_power", density, part.power_density_allow, "W/mm2",
-        text="The lining stands the peak power", source="Neale, Tribology Handbook, Table 7.4",
-    )  # fmt: skip
+        "specific_power",
+        density,
+        part.power_density_allow,
+        "W/mm2",
+        text="The lining stands the peak power",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )
     d.at_most(
-        "sliding_speed", speed, part.v_allow, "m/s",
-        text="The lining stands the sliding speed", source="makers' limit of the lining",
-    )  # fmt: skip
+        "sliding_speed",
+        speed,
+        part.v_allow,
+        "m/s",
+        text="The lining stands the sliding speed",
+        source="makers' limit of the lining",
+    )
 
 
 def declare_heated_body(d: Declaration, heat_capacity: Any, cooled_area: Any, body: str) -> None:
@@ -359,9 +458,13 @@ def declare_heated_body(d: Declaration, heat_capacity: Any, cooled_area: Any, bo
         What it is, for the reader.
     """
     d.step(
-        "heat_capacity", "J/K", heat_capacity, symbol="C_heat",
-        text=f"{body}, which store the heat of a start", source="heat balance",
-    )  # fmt: skip
+        "heat_capacity",
+        "J/K",
+        heat_capacity,
+        symbol="C_heat",
+        text=f"{body}, which store the heat of a start",
+        source="heat balance",
+    )
     d.step("cooled_area", "m2", cooled_area, symbol="A_cool", text="Outside that gives off the heat", source="geometry")
 
 

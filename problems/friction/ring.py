@@ -46,38 +46,74 @@ def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
         Symbols of the block.
     """
     least = d.requirement(
-        "ring_ratio_min", "-", ratio_min, lower=0.02, upper=0.9, symbol="c_min",
-        text="Least ring width over mean diameter", source=f"{S1}, empirical range of c",
-    )  # fmt: skip
+        "ring_ratio_min",
+        "-",
+        ratio_min,
+        lower=0.02,
+        upper=0.9,
+        symbol="c_min",
+        text="Least ring width over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
     most = d.requirement(
-        "ring_ratio_max", "-", ratio_max, lower=0.02, upper=0.9, symbol="c_max",
-        text="Largest ring width over mean diameter", source=f"{S1}, empirical range of c",
-    )  # fmt: skip
+        "ring_ratio_max",
+        "-",
+        ratio_max,
+        lower=0.02,
+        upper=0.9,
+        symbol="c_max",
+        text="Largest ring width over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
     d.refuse(
         "bad_ratio",
         least > most,
         "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both",
     )
     outer = d.variable(
-        "ring_outer_diameter", "mm", 40, RING_OUTER_DIAMETER_MAX, grid=1, symbol="d_out",
-        text="Outer diameter of the friction ring", source=f"{S1}, d1",
-    )  # fmt: skip
+        "ring_outer_diameter",
+        "mm",
+        40,
+        RING_OUTER_DIAMETER_MAX,
+        grid=1,
+        symbol="d_out",
+        text="Outer diameter of the friction ring",
+        source=f"{S1}, d1",
+    )
     inner = d.variable(
-        "ring_inner_diameter", "mm", 20, 700, grid=1, symbol="d_in",
-        text="Inner diameter of the friction ring", source=f"{S1}, d2",
-    )  # fmt: skip
+        "ring_inner_diameter",
+        "mm",
+        20,
+        700,
+        grid=1,
+        symbol="d_in",
+        text="Inner diameter of the friction ring",
+        source=f"{S1}, d2",
+    )
     mean = d.derive(
-        "mean_diameter", "mm", ring_formulas.mean_diameter(outer, inner), symbol="dm",
-        text="Mean diameter of the friction ring", source=f"{S1}, dm",
-    )  # fmt: skip
+        "mean_diameter",
+        "mm",
+        ring_formulas.mean_diameter(outer, inner),
+        symbol="dm",
+        text="Mean diameter of the friction ring",
+        source=f"{S1}, dm",
+    )
     ratio = d.derive(
-        "ring_ratio", "-", ring_formulas.ring_ratio(outer, inner), symbol="c",
-        text="Ring width over mean diameter", source=f"{S1}, c = b/dm",
-    )  # fmt: skip
+        "ring_ratio",
+        "-",
+        ring_formulas.ring_ratio(outer, inner),
+        symbol="c",
+        text="Ring width over mean diameter",
+        source=f"{S1}, c = b/dm",
+    )
     radius = d.derive(
-        "friction_radius", "mm", ring_formulas.friction_radius(mean, ratio), symbol="r",
-        text="Friction radius at uniform pressure", source=f"{S0}, friction radius",
-    )  # fmt: skip
+        "friction_radius",
+        "mm",
+        ring_formulas.friction_radius(mean, ratio),
+        symbol="r",
+        text="Friction radius at uniform pressure",
+        source=f"{S0}, friction radius",
+    )
     d.advise(
         "bad_ring",
         inner >= outer,
@@ -85,13 +121,21 @@ def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
         source=S0,
     )
     d.at_least(
-        "ring_ratio_min", ratio, least, "-",
-        text="The ring is not too narrow", source=f"{S1}, empirical range of c",
-    )  # fmt: skip
+        "ring_ratio_min",
+        ratio,
+        least,
+        "-",
+        text="The ring is not too narrow",
+        source=f"{S1}, empirical range of c",
+    )
     d.at_most(
-        "ring_ratio_max", ratio, most, "-",
-        text="The ring is not too wide", source=f"{S1}, empirical range of c",
-    )  # fmt: skip
+        "ring_ratio_max",
+        ratio,
+        most,
+        "-",
+        text="The ring is not too wide",
+        source=f"{S1}, empirical range of c",
+    )
     return Ring(
         ratio_min=least,
         ratio_max=most,

@@ -142,9 +142,14 @@ def declare_coil_requirements(d: Declaration) -> CoilRequirements:
 def declare_saturation(d: Declaration, wants: CoilRequirements, iron_flux_density: Any) -> None:
     """Declare the guard of the iron: its field exists only below saturation."""
     d.at_most(
-        "iron_saturation", iron_flux_density, wants.iron_saturation, "T", guard=True,
-        text="The iron is not saturated; no ampere-turns make a flux beyond", source=f"{S4} [P3], section 9",
-    )  # fmt: skip
+        "iron_saturation",
+        iron_flux_density,
+        wants.iron_saturation,
+        "T",
+        guard=True,
+        text="The iron is not saturated; no ampere-turns make a flux beyond",
+        source=f"{S4} [P3], section 9",
+    )
 
 
 def declare_winding(
@@ -183,22 +188,40 @@ def declare_winding(
     # Of one row of the table alone, so that it is known per wire.
     copper_share = wants.winding_factor * magnetics.copper_fill(wire.copper_area, wire.overall_diameter)
     turns = d.derive(
-        "turns", "-",
+        "turns",
+        "-",
         magnetics.turns(wants.winding_factor, window, wire.overall_diameter),
-        symbol="N_t", text="Turns of the coil, a real number", source=f"{S4} [P6]",
-    )  # fmt: skip
+        symbol="N_t",
+        text="Turns of the coil, a real number",
+        source=f"{S4} [P6]",
+    )
     ampere_turns = d.derive(
-        "ampere_turns", "A", ampere_turns, symbol="NI", needs=needs,
-        text="Ampere-turns of the circuit: gaps and iron", source=f"{S4} [P4]",
-    )  # fmt: skip
+        "ampere_turns",
+        "A",
+        ampere_turns,
+        symbol="NI",
+        needs=needs,
+        text="Ampere-turns of the circuit: gaps and iron",
+        source=f"{S4} [P4]",
+    )
     current = d.derive(
-        "current", "A", ampere_turns / turns, symbol="I_c", needs=needs,
-        text="Current of the coil", source=f"{S4} [P6]",
-    )  # fmt: skip
+        "current",
+        "A",
+        ampere_turns / turns,
+        symbol="I_c",
+        needs=needs,
+        text="Current of the coil",
+        source=f"{S4} [P6]",
+    )
     density = d.derive(
-        "current_density", "A/mm2", ampere_turns / (copper_share * window), symbol="J_c", needs=needs,
-        text="Current per copper area", source=f"{S4} [P6]",
-    )  # fmt: skip
+        "current_density",
+        "A/mm2",
+        ampere_turns / (copper_share * window),
+        symbol="J_c",
+        needs=needs,
+        text="Current per copper area",
+        source=f"{S4} [P6]",
+    )
     cold = magnetics.cold_copper_loss(
         ampere_turns, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
     )
@@ -208,55 +231,94 @@ def declare_winding(
     heat = around.other_heat + brushes
     _name_heat(d, wants, unknowns, turns, bore_radius, around)
     d.at_most(
-        "thermal_stability", cold / runaway, 0.9, "-", guard=True,
+        "thermal_stability",
+        cold / runaway,
+        0.9,
+        "-",
+        guard=True,
         text="A hotter coil has more resistance; at 1 it heats up without end under constant current",
         source=f"{S4} [P7]",
-    )  # fmt: skip
+    )
     resistance_rise = magnetics.resistance_rise(cold, runaway, ratio, heat)
     rise = d.derive(
-        "coil_temperature_rise", "K", resistance_rise / magnetics.COPPER_COEFFICIENT,
-        symbol="dT_c", needs=(needs, "thermal_stability"),
-        text="Coil and body over ambient, steady", source=f"{S4} [P7]",
-    )  # fmt: skip
-    d.step(
-        "coil_temperature", "degC", around.ambient_temperature + rise, symbol="T_c", text="Coil and body, steady",
+        "coil_temperature_rise",
+        "K",
+        resistance_rise / magnetics.COPPER_COEFFICIENT,
+        symbol="dT_c",
+        needs=(needs, "thermal_stability"),
+        text="Coil and body over ambient, steady",
         source=f"{S4} [P7]",
-    )  # fmt: skip
+    )
+    d.step(
+        "coil_temperature",
+        "degC",
+        around.ambient_temperature + rise,
+        symbol="T_c",
+        text="Coil and body, steady",
+        source=f"{S4} [P7]",
+    )
     # R20 I with the turns cancelled, so that bounds use the ampere-turns once.
     cold_voltage = (
         magnetics.coil_resistance(bore_radius + unknowns.coil_height / 2, 1.0, wire.copper_area) * ampere_turns
     )
     voltage = d.derive(
-        "coil_voltage", "V",
+        "coil_voltage",
+        "V",
         cold_voltage * (ratio + resistance_rise) + around.brush_drop,
-        symbol="U", needs=(needs, "thermal_stability"),
-        text="Voltage of the hot coil, with brushes where there are any", source=f"{S4} [P8]",
-    )  # fmt: skip
+        symbol="U",
+        needs=(needs, "thermal_stability"),
+        text="Voltage of the hot coil, with brushes where there are any",
+        source=f"{S4} [P8]",
+    )
     power = d.derive(
-        "coil_power", "W", magnetics.hot_copper_loss(cold, runaway, ratio, heat) + brushes,
-        symbol="P_coil", needs=(needs, "thermal_stability"),
-        text="Loss of the hot copper and of brushes where there are any", source=f"{S4} [P7], [P8]",
-    )  # fmt: skip
+        "coil_power",
+        "W",
+        magnetics.hot_copper_loss(cold, runaway, ratio, heat) + brushes,
+        symbol="P_coil",
+        needs=(needs, "thermal_stability"),
+        text="Loss of the hot copper and of brushes where there are any",
+        source=f"{S4} [P7], [P8]",
+    )
     d.at_most(
-        "coil_temperature", rise, around.temperature_limit - around.ambient_temperature, "K",
-        text="Nothing in the body gets too hot", source=f"{S4} [P7]",
-    )  # fmt: skip
+        "coil_temperature",
+        rise,
+        around.temperature_limit - around.ambient_temperature,
+        "K",
+        text="Nothing in the body gets too hot",
+        source=f"{S4} [P7]",
+    )
     d.at_most(
-        "coil_power", power, wants.coil_power_limit, "W",
-        text="The supply gives the power", source="requirement of the drive",
-    )  # fmt: skip
+        "coil_power",
+        power,
+        wants.coil_power_limit,
+        "W",
+        text="The supply gives the power",
+        source="requirement of the drive",
+    )
     d.at_most(
-        "coil_voltage", voltage, wants.coil_voltage_limit, "V",
-        text="The supply gives the voltage, also for the hot coil", source="requirement of the drive",
-    )  # fmt: skip
+        "coil_voltage",
+        voltage,
+        wants.coil_voltage_limit,
+        "V",
+        text="The supply gives the voltage, also for the hot coil",
+        source="requirement of the drive",
+    )
     d.at_most(
-        "current_density", density, wants.current_density_limit, "A/mm2",
-        text="The copper is not loaded too much", source=f"{S4}, section 6.1",
-    )  # fmt: skip
+        "current_density",
+        density,
+        wants.current_density_limit,
+        "A/mm2",
+        text="The copper is not loaded too much",
+        source=f"{S4}, section 6.1",
+    )
     d.at_least(
-        "turns", turns, 1.0, "-",
-        text="The window holds the wire at least once", source=f"{S4}, section 9",
-    )  # fmt: skip
+        "turns",
+        turns,
+        1.0,
+        "-",
+        text="The window holds the wire at least once",
+        source=f"{S4}, section 9",
+    )
     return copper_share * window
 
 
@@ -265,27 +327,51 @@ def _name_heat(
 ) -> None:
     """Name what heats and cools the body of the coil, for curves over current and temperature."""
     d.step(
-        "coil_conductance", "W/K", around.heat_transfer * around.surface, symbol="G_c",
-        text="Heat that the body gives off per kelvin over ambient", source=f"{S4} [P7]",
-    )  # fmt: skip
+        "coil_conductance",
+        "W/K",
+        around.heat_transfer * around.surface,
+        symbol="G_c",
+        text="Heat that the body gives off per kelvin over ambient",
+        source=f"{S4} [P7]",
+    )
     d.step(
-        "coil_temperature_limit", "degC", around.temperature_limit, symbol="T_c_allow",
-        text="The least of the temperatures that its parts stand", source=f"{S4} [P7]",
-    )  # fmt: skip
+        "coil_temperature_limit",
+        "degC",
+        around.temperature_limit,
+        symbol="T_c_allow",
+        text="The least of the temperatures that its parts stand",
+        source=f"{S4} [P7]",
+    )
     d.step(
-        "coil_other_heat", "W", around.other_heat, symbol="P_other",
-        text="What heats the body beside its copper and its brushes", source=f"{S4} [P7]",
-    )  # fmt: skip
+        "coil_other_heat",
+        "W",
+        around.other_heat,
+        symbol="P_other",
+        text="What heats the body beside its copper and its brushes",
+        source=f"{S4} [P7]",
+    )
     d.step(
-        "coil_brush_drop", "V", around.brush_drop, symbol="U_brushes",
-        text="Voltage of both brushes, 0 without slip rings", source=f"{S4} [P8]",
-    )  # fmt: skip
+        "coil_brush_drop",
+        "V",
+        around.brush_drop,
+        symbol="U_brushes",
+        text="Voltage of both brushes, 0 without slip rings",
+        source=f"{S4} [P8]",
+    )
     d.step(
-        "wire_current_limit", "A", wants.current_density_limit * unknowns.winding_wire.copper_area, symbol="I_max",
-        text="Current at current_density_limit", source=f"{S4}, section 6.1",
-    )  # fmt: skip
+        "wire_current_limit",
+        "A",
+        wants.current_density_limit * unknowns.winding_wire.copper_area,
+        symbol="I_max",
+        text="Current at current_density_limit",
+        source=f"{S4}, section 6.1",
+    )
     mean_radius = bore_radius + unknowns.coil_height / 2
     d.step(
-        "coil_resistance", "ohm", magnetics.coil_resistance(mean_radius, turns, unknowns.winding_wire.copper_area),
-        symbol="R_20", text="Resistance of the coil at 20 degC", source=f"{S4} [P6]",
-    )  # fmt: skip
+        "coil_resistance",
+        "ohm",
+        magnetics.coil_resistance(mean_radius, turns, unknowns.winding_wire.copper_area),
+        symbol="R_20",
+        text="Resistance of the coil at 20 degC",
+        source=f"{S4} [P6]",
+    )

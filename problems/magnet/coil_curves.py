@@ -139,12 +139,14 @@ def torque_over_temperature(
     value, temperature = design.values, heat.temperatures
     hot = heat.resistance * magnetics.resistance_ratio(temperature)
     current = (value["coil_voltage"] - heat.brush_drop) / hot
-    frame = pd.DataFrame({
-        "coil temperature [degC]": temperature - ZERO_CELSIUS,
-        "constant voltage [N*m]": torque_of(current * value["turns"]),
-        "constant current [N*m]": np.full_like(temperature, value["torque"]),
-        "constant voltage [A]": current,
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "coil temperature [degC]": temperature - ZERO_CELSIUS,
+            "constant voltage [N*m]": torque_of(current * value["turns"]),
+            "constant current [N*m]": np.full_like(temperature, value["torque"]),
+            "constant voltage [A]": current,
+        }
+    )
     frame.attrs = {
         "title": f"{problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
         "panels": [
@@ -183,11 +185,13 @@ def heat_balance(problem: DesignProblem, design: Any, heat: Warmth, source: str)
 
     value, temperature = design.values, heat.temperatures
     other = heat.other_heat + heat.brush_drop * value["current"]
-    frame = pd.DataFrame({
-        "temperature [degC]": temperature - ZERO_CELSIUS,
-        "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
-        "heat given off [W]": heat.conductance * (temperature - heat.ambient),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "temperature [degC]": temperature - ZERO_CELSIUS,
+            "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
+            "heat given off [W]": heat.conductance * (temperature - heat.ambient),
+        }
+    )
     frame.attrs = {
         "title": f"{problem.title}: steady heat at {value['current']:.3g} A",
         "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],

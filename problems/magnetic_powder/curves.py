@@ -139,14 +139,16 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
     body, heat, value = built(spec, design), coil_curves.warmth(spec, design, "insulation and powder"), design.values
     current = np.linspace(0.0, 1.5, POINTS) * value["current"]
     flux_density = body.flux_density(current * value["turns"])
-    frame = pd.DataFrame({
-        "current [A]": current,
-        "torque [N*m]": body.torque(flux_density),
-        "powder [T]": flux_density,
-        "yoke [T]": body.yoke(flux_density),
-        "rotor [T]": body.rotor(flux_density),
-        "temperature rise [K]": heat.rise(current),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "current [A]": current,
+            "torque [N*m]": body.torque(flux_density),
+            "powder [T]": flux_density,
+            "yoke [T]": body.yoke(flux_density),
+            "rotor [T]": body.rotor(flux_density),
+            "temperature rise [K]": heat.rise(current),
+        }
+    )
     frame.attrs = {
         "title": f"{problem.title}: torque over current",
         "panels": [

@@ -201,23 +201,43 @@ class MagneticPowderClutch(DesignProblem):
         wants = d.block(Wants)
         iron = coil_blocks.declare_coil_requirements(d)
         radius = d.variable(
-            "gap_radius", "mm", 20, 150, grid=1, symbol="r_g",
-            text="Outside of the rotor, where the powder acts", source=f"{S4} [P4]",
-        )  # fmt: skip
+            "gap_radius",
+            "mm",
+            20,
+            150,
+            grid=1,
+            symbol="r_g",
+            text="Outside of the rotor, where the powder acts",
+            source=f"{S4} [P4]",
+        )
         pole = d.variable(
-            "pole_length", "mm", 5, 60, grid=1, symbol="l_p",
-            text="Length of one pole face; there are two", source=f"{S4} [P4]",
-        )  # fmt: skip
+            "pole_length",
+            "mm",
+            5,
+            60,
+            grid=1,
+            symbol="l_p",
+            text="Length of one pole face; there are two",
+            source=f"{S4} [P4]",
+        )
         gap = d.variable(
-            "powder_gap", "mm", 1, 1.5, grid=0.05, symbol="g",
-            text="Gap between rotor and drum", source=f"{S4}, 1 to 1.5 mm",
-        )  # fmt: skip
+            "powder_gap",
+            "mm",
+            1,
+            1.5,
+            grid=0.05,
+            symbol="g",
+            text="Gap between rotor and drum",
+            source=f"{S4}, 1 to 1.5 mm",
+        )
         unknowns = d.block(coil_blocks.CoilUnknowns)
         coil = d.choice(
-            "coil", ("stationary", "rotating"), symbol="lay",
+            "coil",
+            ("stationary", "rotating"),
+            symbol="lay",
             text="stationary: a second air gap, no slip rings; rotating: slip rings, the coil turns with the driver",
             source=f"{S4}, figures 2-27 to 2-29",
-        )  # fmt: skip
+        )
         part = d.part("powder", "powders", symbol="pw", text="Magnetic powder", source="table powders")
         layout = powder.Layout(
             gap_radius=radius,
@@ -233,9 +253,13 @@ class MagneticPowderClutch(DesignProblem):
         _declare_torque(d, wants, part, unknowns.flux_density, layout)
         ampere_turns = _declare_circuit(d, wants, iron, part, unknowns.flux_density, layout, rim)
         slip_heat = d.derive(
-            "slip_heat", "W", wants.required_torque * wants.slip_speed, symbol="P_slip",
-            text="Heat of continuous slip under required_torque", source=f"{S4} [P9]",
-        )  # fmt: skip
+            "slip_heat",
+            "W",
+            wants.required_torque * wants.slip_speed,
+            symbol="P_slip",
+            text="Heat of continuous slip under required_torque",
+            source=f"{S4} [P9]",
+        )
         moving = magnetics.heat_transfer_in_motion(
             iron.still_heat_transfer, wants.rotating_heat_transfer, wants.driver_speed, layout.outer_radius
         )
@@ -282,18 +306,29 @@ class MagneticPowderClutch(DesignProblem):
 def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
     torque = d.derive(
-        "torque", "N*m", powder.torque(stress, layout.gap_radius, layout.pole_length), symbol="M",
+        "torque",
+        "N*m",
+        powder.torque(stress, layout.gap_radius, layout.pole_length),
+        symbol="M",
         text="Torque at full current, whatever the slip speed; rests on the unverified shear curve of the powder",
         source=f"{S4} [P1], [P5]",
-    )  # fmt: skip
+    )
     d.at_least(
-        "torque_capacity", torque, wants.torque_reserve * wants.required_torque, "N*m",
-        text="The clutch carries the torque with its reserve", source=f"{S4}, section 6.3",
-    )  # fmt: skip
+        "torque_capacity",
+        torque,
+        wants.torque_reserve * wants.required_torque,
+        "N*m",
+        text="The clutch carries the torque with its reserve",
+        source=f"{S4}, section 6.3",
+    )
     d.at_most(
-        "powder_flux_density", flux_density, wants.powder_flux_limit, "T",
-        text="The powder is not saturated", source=f"{S4}, section 6.3",
-    )  # fmt: skip
+        "powder_flux_density",
+        flux_density,
+        wants.powder_flux_limit,
+        "T",
+        text="The powder is not saturated",
+        source=f"{S4}, section 6.3",
+    )
 
 
 def _declare_circuit(
@@ -312,17 +347,29 @@ def _declare_circuit(
     densest = magnetics.larger(outside, inside)
     coil_blocks.declare_saturation(d, iron, densest)
     d.at_most(
-        "yoke_flux_density", outside, iron.iron_flux_limit, "T",
-        text="The yoke outside the coil carries the flux", source=f"{S4} [P4]",
-    )  # fmt: skip
+        "yoke_flux_density",
+        outside,
+        iron.iron_flux_limit,
+        "T",
+        text="The yoke outside the coil carries the flux",
+        source=f"{S4} [P4]",
+    )
     d.at_most(
-        "rotor_flux_density", inside, iron.iron_flux_limit, "T",
-        text="The rim of the rotor carries the flux", source=f"{S4} [P4]",
-    )  # fmt: skip
+        "rotor_flux_density",
+        inside,
+        iron.iron_flux_limit,
+        "T",
+        text="The rim of the rotor carries the flux",
+        source=f"{S4} [P4]",
+    )
     d.at_least(
-        "rotor_bore", layout.gap_radius, layout.thickness + wants.shaft_radius, "mm",
-        text="The shaft fits inside the rim of the rotor", source="geometry",
-    )  # fmt: skip
+        "rotor_bore",
+        layout.gap_radius,
+        layout.thickness + wants.shaft_radius,
+        "mm",
+        text="The shaft fits inside the rim of the rotor",
+        source="geometry",
+    )
     field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
     return powder.ampere_turns(flux_density, part.relative_permeability, layout, field)
 
@@ -331,14 +378,21 @@ def _declare_size(
     d: Declaration, wants: Wants, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
 ) -> None:
     filling = d.derive(
-        "powder_mass", "kg",
+        "powder_mass",
+        "kg",
         powder.powder_mass(part.bulk_density, wants.fill_factor, layout.gap_radius, layout.gap, layout.face_length),
-        symbol="m_pow", text="Powder in the gap", source=f"{S4} [P10]",
-    )  # fmt: skip
+        symbol="m_pow",
+        text="Powder in the gap",
+        source=f"{S4} [P10]",
+    )
     d.at_most(
-        "powder_mass", filling, wants.powder_mass_limit, "kg",
-        text="The powder is not more than asked for", source=f"{S4}, 250 to 400 g",
-    )  # fmt: skip
+        "powder_mass",
+        filling,
+        wants.powder_mass_limit,
+        "kg",
+        text="The powder is not more than asked for",
+        source=f"{S4}, 250 to 400 g",
+    )
     density = wants.steel_density
     inner = layout.gap_radius + layout.gap
     drum = powder.cylinder_mass(density, inner, layout.drum, layout.face_length)
@@ -348,30 +402,48 @@ def _declare_size(
     copper = magnetics.copper_mass(layout.coil_radius, copper_section)
     rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.rotor_web_thickness)
     d.derive(
-        "input_inertia", "kg*m2",
-        coil.select({
-            "stationary": powder.ring_inertia(drum, layout.drum_radius, inner),
-            "rotating": powder.ring_inertia(body, layout.outer_radius, layout.bore) + copper * layout.coil_radius**2,
-        }),
-        symbol="J_in", text="Driving side: the drum, or the body with its rotating coil", source=f"{S4} [P10]",
-    )  # fmt: skip
+        "input_inertia",
+        "kg*m2",
+        coil.select(
+            {
+                "stationary": powder.ring_inertia(drum, layout.drum_radius, inner),
+                "rotating": powder.ring_inertia(body, layout.outer_radius, layout.bore)
+                + copper * layout.coil_radius**2,
+            }
+        ),
+        symbol="J_in",
+        text="Driving side: the drum, or the body with its rotating coil",
+        source=f"{S4} [P10]",
+    )
     diameter = d.derive(
-        "outer_diameter", "mm", 2 * layout.outer_radius, symbol="D",
-        text="Outside of the yoke", source="geometry",
-    )  # fmt: skip
+        "outer_diameter",
+        "mm",
+        2 * layout.outer_radius,
+        symbol="D",
+        text="Outside of the yoke",
+        source="geometry",
+    )
     length = d.derive(
         "length", "mm", layout.length, symbol="L", text="Length of the body, 2 l_p + l_m + 2 t_y", source="geometry"
     )
     d.derive(
-        "mass", "kg", rotor + drum + body + copper + filling, symbol="m",
-        text="Rotor without shaft, drum of a stationary coil, body, copper and powder", source=f"{S4} [P10]",
-    )  # fmt: skip
+        "mass",
+        "kg",
+        rotor + drum + body + copper + filling,
+        symbol="m",
+        text="Rotor without shaft, drum of a stationary coil, body, copper and powder",
+        source=f"{S4} [P10]",
+    )
     asked = "requirement of the drive"
     if wants.outer_diameter_limit is not None:
         d.at_most(
-            "outer_diameter", diameter, wants.outer_diameter_limit, "mm",
-            text="The clutch fits the room across", source=asked,
-        )  # fmt: skip
+            "outer_diameter",
+            diameter,
+            wants.outer_diameter_limit,
+            "mm",
+            text="The clutch fits the room across",
+            source=asked,
+        )
     if wants.length_limit is not None:
         d.at_most("length", length, wants.length_limit, "mm", text="The clutch fits the room along", source=asked)
 

@@ -872,8 +872,9 @@ def _solve_guides(unknown: str, series: str, known: dict[str, float]) -> float:
         raise InputError("torque", known["torque"], "a torque below mu F0 r z, which needs no friction in the guides")
     guide = guide_number_of_effectiveness(effectiveness, known["surfaces"], series)
     if unknown == "mu_guide":
-        return float(guide / guide_number(1.0, known["mu"], radius, known["inner_spline_radius"],
-                                          known["outer_spline_radius"]))  # fmt: skip
+        return float(
+            guide / guide_number(1.0, known["mu"], radius, known["inner_spline_radius"], known["outer_spline_radius"])
+        )
     other_name = "outer_spline_radius" if unknown == "inner_spline_radius" else "inner_spline_radius"
     inverse = guide / (known["mu"] * known["mu_guide"] * radius) - 1 / known[other_name]
     if inverse <= 0:

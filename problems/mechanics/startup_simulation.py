@@ -194,14 +194,19 @@ class StartupRun:
         frame = pd.DataFrame(
             rows,
             columns=[
-                "time [s]", *(f"{name}_torque [N*m]" for name in names), "clutch_capacity [N*m]",
-                "driver_speed [1/min]", "driven_speed [1/min]", "slip_speed [1/min]",
-                "driver_acceleration [rad/s2]", "driven_acceleration [rad/s2]",
+                "time [s]",
+                *(f"{name}_torque [N*m]" for name in names),
+                "clutch_capacity [N*m]",
+                "driver_speed [1/min]",
+                "driven_speed [1/min]",
+                "slip_speed [1/min]",
+                "driver_acceleration [rad/s2]",
+                "driven_acceleration [rad/s2]",
                 *(f"{name}_power [W]" for name in ("driver", "load", "kinetic", "friction")),
                 *(f"{name}_work [J]" for name in ("driver", "load", "kinetic", "friction")),
                 "phase [-]",
             ],
-        )  # fmt: skip
+        )
         torques = ["clutch_torque [N*m]", "load_torque [N*m]", "clutch_capacity [N*m]"]
         accelerations = ["driven_acceleration [rad/s2]"]
         if finite:
@@ -261,11 +266,26 @@ class StartupRun:
             kinetic = inertia * faster * speed_1 + question.driven_inertia * second * speed_2
             stored = (inertia * (speed_1**2 - first**2) + question.driven_inertia * speed_2**2) / 2
             row = [
-                time, driver, clutch, load, question.capacity(time),
-                speed_1 * TO_RPM, speed_2 * TO_RPM, slip * TO_RPM, faster, second,
-                driver * speed_1, load * speed_2, kinetic, clutch * slip,
-                state[WORK_1], state[WORK_2], stored, state[FRICTION], float(phase),
-            ]  # fmt: skip
+                time,
+                driver,
+                clutch,
+                load,
+                question.capacity(time),
+                speed_1 * TO_RPM,
+                speed_2 * TO_RPM,
+                slip * TO_RPM,
+                faster,
+                second,
+                driver * speed_1,
+                load * speed_2,
+                kinetic,
+                clutch * slip,
+                state[WORK_1],
+                state[WORK_2],
+                stored,
+                state[FRICTION],
+                float(phase),
+            ]
             rows.append([float(value) for value in row])
         return rows
 
@@ -342,9 +362,17 @@ def simulate_startup(
     [('load starts', 1.11111), ('ramp ends', 2.0), ('lock-up', 3.21806)]
     """
     question = _question(
-        torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind, ramp, driver_inertia, driver_torque,
+        torque,
+        load_torque,
+        driven_inertia,
+        driver_speed,
+        ramp_time,
+        load_kind,
+        ramp,
+        driver_inertia,
+        driver_torque,
         static_ratio,
-    )  # fmt: skip
+    )
     limit = _default_limit(question) if time_limit is None else _positive("time_limit", time_limit, "s")
     hold = None if hold_time is None else _positive("hold_time", hold_time, "s", zero=True)
     return _Integration(question, limit, hold).run()
@@ -361,9 +389,17 @@ def _positive(name: str, value: float, unit: str, zero: bool = False) -> float:
 
 
 def _question(
-    torque: float, load_torque: float, driven_inertia: float, driver_speed: float, ramp_time: float, load_kind: str,
-    ramp: Ramp, driver_inertia: float, driver_torque: DriverTorque | None, static_ratio: float,
-) -> _Question:  # fmt: skip
+    torque: float,
+    load_torque: float,
+    driven_inertia: float,
+    driver_speed: float,
+    ramp_time: float,
+    load_kind: str,
+    ramp: Ramp,
+    driver_inertia: float,
+    driver_torque: DriverTorque | None,
+    static_ratio: float,
+) -> _Question:
     if load_kind not in LOADS:
         raise InputError("load_kind", load_kind, "reactive, active or inertia")
     load = _positive("load_torque", load_torque, "N m", zero=True)

@@ -64,9 +64,13 @@ class MultiPlateClutch(DesignProblem):
         size = plate_pack.pack_size(duty, wants, ring, pair, pack)
         plate_pack.declare_pack_temperature(d, duty, pair, start, size)
         friction.declare_size(
-            d, size, "Plates with linings", "Outside of the drum", "2 (b + s_drum)",
+            d,
+            size,
+            "Plates with linings",
+            "Outside of the drum",
+            "2 (b + s_drum)",
             "Length of the released pack, without actuator and end stops",
-        )  # fmt: skip
+        )
         plate_pack.declare_drag(d, duty, wants, ring, pack)
         friction.declare_envelope(d, duty, force, size.diameter, size.length)
         plate_pack.declare_pack_remarks(d, options, lubrication)
@@ -88,9 +92,14 @@ class MultiPlateClutch(DesignProblem):
 
     def _declare_force(self, d: Declaration) -> Any:
         return d.variable(
-            "actuation_force", "N", 50, 200000, symbol="F0",
-            text="Axial force of the actuator on the first plate", source=f"{S0}, F0",
-        )  # fmt: skip
+            "actuation_force",
+            "N",
+            50,
+            200000,
+            symbol="F0",
+            text="Axial force of the actuator on the first plate",
+            source=f"{S0}, F0",
+        )
 
     def _declare_objectives(self, d: Declaration) -> None:
         d.objective("mass")

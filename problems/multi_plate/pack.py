@@ -256,17 +256,28 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
         The plates.
     """
     surfaces = d.count(
-        "friction_surfaces", 2, 60, step=2, symbol="z",
-        text="Friction surface pairs; even, because both end plates are inner plates", source=f"{S0}, x; {S1}, z",
-    )  # fmt: skip
+        "friction_surfaces",
+        2,
+        60,
+        step=2,
+        symbol="z",
+        text="Friction surface pairs; even, because both end plates are inner plates",
+        source=f"{S0}, x; {S1}, z",
+    )
     inner_plate = d.part(
-        "inner_plate", "core_plates", symbol="ip",
-        text="Steel core of the inner plates", source="table core_plates",
-    )  # fmt: skip
+        "inner_plate",
+        "core_plates",
+        symbol="ip",
+        text="Steel core of the inner plates",
+        source="table core_plates",
+    )
     outer_plate = d.part(
-        "outer_plate", "core_plates", symbol="op",
-        text="Steel core of the outer plates, lined on both sides", source="table core_plates",
-    )  # fmt: skip
+        "outer_plate",
+        "core_plates",
+        symbol="op",
+        text="Steel core of the outer plates, lined on both sides",
+        source="table core_plates",
+    )
     if options.spline_choice == "catalogue":
         spline = d.part(
             "inner_spline", "splines", symbol="is", text="Spline of the inner plates", source="table splines"
@@ -276,9 +287,13 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
         inner_width = ring.outer_radius - inner_spline_radius
         lug_count, lug_height = spline.teeth, spline.flank_height_h
         d.at_least(
-            "spline_clearance", ring.inner_radius - inner_spline_radius, wants.lug_clearance, "mm",
-            text="The spline stays clear of the friction ring", source=f"{S0}, a < r1",
-        )  # fmt: skip
+            "spline_clearance",
+            ring.inner_radius - inner_spline_radius,
+            wants.lug_clearance,
+            "mm",
+            text="The spline stays clear of the friction ring",
+            source=f"{S0}, a < r1",
+        )
     else:
         inner_spline_radius = ring.inner_radius - wants.lug_clearance
         inner_mean_diameter = ring.mean_diameter - wants.lug_clearance
@@ -286,24 +301,40 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
         lug_count, lug_height = wants.lug_count, wants.lug_height
     aid_row = None if options.release_aid == "none" else d.row("release_aids", options.release_aid)
     d.derive(
-        "outer_plates", "-", ring_formulas.outer_plate_count(surfaces), symbol="z_k",
-        text="Outer plates", source=f"{S1}, z_k",
-    )  # fmt: skip
+        "outer_plates",
+        "-",
+        ring_formulas.outer_plate_count(surfaces),
+        symbol="z_k",
+        text="Outer plates",
+        source=f"{S1}, z_k",
+    )
     d.derive(
-        "inner_plates", "-", ring_formulas.inner_plate_count(surfaces), symbol="z_b",
-        text="Inner plates", source=f"{S1}, z_b = z_k + 1",
-    )  # fmt: skip
+        "inner_plates",
+        "-",
+        ring_formulas.inner_plate_count(surfaces),
+        symbol="z_b",
+        text="Inner plates",
+        source=f"{S1}, z_b = z_k + 1",
+    )
     pack = Pack(
         surfaces=surfaces,
         inner_thickness=inner_plate.thickness,
         outer_thickness=outer_plate.thickness,
         inner_spline_radius=d.derive(
-            "inner_spline_radius", "mm", inner_spline_radius, symbol="a",
-            text="Mean spline radius of the inner plates", source=f"{S0}, a",
+            "inner_spline_radius",
+            "mm",
+            inner_spline_radius,
+            symbol="a",
+            text="Mean spline radius of the inner plates",
+            source=f"{S0}, a",
         ),
         outer_spline_radius=d.derive(
-            "outer_spline_radius", "mm", ring.outer_radius + wants.lug_clearance, symbol="b",
-            text="Mean spline radius of the outer plates", source=f"{S0}, b",
+            "outer_spline_radius",
+            "mm",
+            ring.outer_radius + wants.lug_clearance,
+            symbol="b",
+            text="Mean spline radius of the outer plates",
+            source=f"{S0}, b",
         ),
         inner_mean_diameter=inner_mean_diameter,
         inner_width=inner_width,
@@ -312,12 +343,16 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
         aid=ReleaseAid()
         if aid_row is None
         else ReleaseAid(aid_row.force_fraction, aid_row.area_factor, aid_row.drag_factor),
-    )  # fmt: skip
+    )
     if wants.hub_bore_diameter is not None:
         d.at_least(
-            "hub_bore", 2 * pack.inner_spline_radius, wants.hub_bore_diameter, "mm",
-            text="The shaft fits inside the plates", source="requirement of the drive",
-        )  # fmt: skip
+            "hub_bore",
+            2 * pack.inner_spline_radius,
+            wants.hub_bore_diameter,
+            "mm",
+            text="The shaft fits inside the plates",
+            source="requirement of the drive",
+        )
     return pack
 
 
@@ -435,32 +470,54 @@ def declare_pack_torque(
     moment_low = pair.mu_low * net_force * radius
     moment_high = moment_low if pair.mu_high is pair.mu_low else pair.mu_high * net_force * radius
     d.at_least(
-        "guide_jams", a, pair.mu_high * wants.guide_friction * radius, "mm", guard=True,
+        "guide_jams",
+        a,
+        pair.mu_high * wants.guide_friction * radius,
+        "mm",
+        guard=True,
         text="The inner plates slide in their spline and do not jam; their mean spline radius is above 0",
         source=f"{S0}, first phase of engagement",
-    )  # fmt: skip
+    )
     inner, outer = ratios(pair.mu_low)
     _name_guides(d, wants, inner, outer, net_force, moment_low)
     guide_number = sum((inner, outer)) if series else 0.0
     d.derive(
-        "guide_number", "-", guide_number, symbol="S", needs="guide_jams",
-        text="Friction in the guides; 0 with guide_model cz", source=f"{S0}, eq. (2)",
-    )  # fmt: skip
+        "guide_number",
+        "-",
+        guide_number,
+        symbol="S",
+        needs="guide_jams",
+        text="Friction in the guides; 0 with guide_model cz",
+        source=f"{S0}, eq. (2)",
+    )
     factor = d.derive(
-        "torque_sum_factor", "-", sum_factor(pair.mu_low), symbol="E", needs="guide_jams",
-        text="Torque of the pack over mu F0 r", source=f"{S0}, eq. (5)",
-    )  # fmt: skip
+        "torque_sum_factor",
+        "-",
+        sum_factor(pair.mu_low),
+        symbol="E",
+        needs="guide_jams",
+        text="Torque of the pack over mu F0 r",
+        source=f"{S0}, eq. (5)",
+    )
     factor_high = factor if pair.mu_high is pair.mu_low else sum_factor(pair.mu_high)
     effectiveness = d.derive(
-        "plate_effectiveness", "-", factor_high / surfaces, symbol="eta_z", needs="guide_jams",
+        "plate_effectiveness",
+        "-",
+        factor_high / surfaces,
+        symbol="eta_z",
+        needs="guide_jams",
         text="Torque of the pack over that of as many surfaces without guide friction (worst_case: with mu_max)",
         source=f"{S0}, eq. (16)",
-    )  # fmt: skip
+    )
     if series:
         d.at_least(
-            "plate_count_worthwhile", effectiveness, wants.plate_effectiveness_min, "-",
-            text="Adding plates is still worth while", source=f"{S0}, eq. (16)",
-        )  # fmt: skip
+            "plate_count_worthwhile",
+            effectiveness,
+            wants.plate_effectiveness_min,
+            "-",
+            text="Adding plates is still worth while",
+            source=f"{S0}, eq. (16)",
+        )
         d.advise(
             "beyond_legacy_plate_limit",
             surfaces > guide_friction.legacy_plate_limit(guide_number),
@@ -489,14 +546,22 @@ def _name_guides(d: Declaration, wants: PackRequirements, inner: Any, outer: Any
     d.step("outer_guide_ratio", "-", outer, symbol="S_o", text="Friction of the outer plates in their guide", source=S0)
     d.step("net_force", "N", net_force, symbol="F_net", text="Actuation force that a release aid leaves", source=S0)
     d.step(
-        "surface_moment", "N*m", moment, symbol="M_0", text="Torque mu F0 r of one surface without guide friction",
+        "surface_moment",
+        "N*m",
+        moment,
+        symbol="M_0",
+        text="Torque mu F0 r of one surface without guide friction",
         source=f"{S0}, M0",
-    )  # fmt: skip
+    )
     total, least = inner + outer, wants.plate_effectiveness_min
     d.step(
-        "torque_bound", "N*m", moment / total, symbol="M_bound",
-        text="Torque mu F0 r/S, which no number of plates reaches", source=f"{S0}, eq. (5)",
-    )  # fmt: skip
+        "torque_bound",
+        "N*m",
+        moment / total,
+        symbol="M_bound",
+        text="Torque mu F0 r/S, which no number of plates reaches",
+        source=f"{S0}, eq. (5)",
+    )
     for name, symbol, limit, equation in (
         ("surfaces_exponential", "z_14", guide_friction.surface_limit_exponential(total, least), "(14)"),
         ("surfaces_legacy", "z_15", guide_friction.legacy_plate_limit(total), "(15)"),
@@ -513,32 +578,44 @@ def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: A
     # With two surfaces both inner plates are end plates, and the first is loaded by surface 1 alone.
     inner_torque = moment * np.where(pack.surfaces > 2, second + third, first)
     outer = d.derive(
-        "lug_pressure_outer", "N/mm2",
+        "lug_pressure_outer",
+        "N/mm2",
         plates.lug_pressure(
             outer_torque, pack.outer_spline_radius, wants.lug_count, wants.lug_height, pack.outer_thickness
         ),
-        symbol="p_lo", needs="guide_jams",
+        symbol="p_lo",
+        needs="guide_jams",
         text="Pressure of the lugs of the first outer plate (worst_case: with mu_max)",
         source=f"{S0}, plate thickness; derived",
-    )  # fmt: skip
+    )
     inner = d.derive(
-        "lug_pressure_inner", "N/mm2",
+        "lug_pressure_inner",
+        "N/mm2",
         plates.lug_pressure(
             inner_torque, pack.inner_spline_radius, pack.inner_lug_count, pack.inner_lug_height, pack.inner_thickness
         ),
-        symbol="p_li", needs="guide_jams",
+        symbol="p_li",
+        needs="guide_jams",
         text="Pressure of the lugs of the first inner plate between two surfaces (worst_case: with mu_max)",
         source=f"{S0}, plate thickness; derived",
-    )  # fmt: skip
+    )
     rule = f"{S0}: the lugs must not bite into the spline groove"
     d.at_most(
-        "lug_pressure_outer", outer, wants.lug_pressure_limit, "N/mm2",
-        text="The lugs of the outer plates do not bite into the drum", source=rule,
-    )  # fmt: skip
+        "lug_pressure_outer",
+        outer,
+        wants.lug_pressure_limit,
+        "N/mm2",
+        text="The lugs of the outer plates do not bite into the drum",
+        source=rule,
+    )
     d.at_most(
-        "lug_pressure_inner", inner, wants.lug_pressure_limit, "N/mm2",
-        text="The lugs of the inner plates do not bite into the hub", source=rule,
-    )  # fmt: skip
+        "lug_pressure_inner",
+        inner,
+        wants.lug_pressure_limit,
+        "N/mm2",
+        text="The lugs of the inner plates do not bite into the hub",
+        source=rule,
+    )
     d.advise(
         "thin_plates",
         np.logical_or(outer > 25e6, inner > 25e6),
@@ -550,7 +627,8 @@ def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: A
 def declare_drag(d: Declaration, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> None:
     """Declare the drag of the released pack and its limit."""
     drag = d.derive(
-        "drag_torque", "N*m",
+        "drag_torque",
+        "N*m",
         pack.aid.drag_factor
         * plates.drag_torque(
             pack.surfaces, wants.oil_viscosity, duty.driver_speed, ring.mean_diameter, ring.ratio, duty.plate_gap
@@ -558,12 +636,16 @@ def declare_drag(d: Declaration, duty: Duty, wants: PackRequirements, ring: Ring
         symbol="T_drag",
         text="Drag of the released clutch with full oil films; 0 when dry",
         source=f"laminar shear; {S0}, after-running",
-    )  # fmt: skip
+    )
     if wants.drag_torque_limit is not None:
         d.at_most(
-            "drag_torque", drag, wants.drag_torque_limit, "N*m",
-            text="The released clutch does not run after", source=f"{S0}, after-running",
-        )  # fmt: skip
+            "drag_torque",
+            drag,
+            wants.drag_torque_limit,
+            "N*m",
+            text="The released clutch does not run after",
+            source=f"{S0}, after-running",
+        )
 
 
 def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack) -> PackSize:
@@ -597,18 +679,23 @@ def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Star
     """Declare the peak temperature of a pack and its limit."""
     declare_heated_body(d, size.heat_capacity, size.cooled_area, "The steel plates")
     rise = d.derive(
-        "peak_temperature_rise", "K",
+        "peak_temperature_rise",
+        "K",
         heat.peak_temperature_rise(
             start.friction_work, duty.engagements_per_hour, size.heat_capacity, duty.heat_transfer, size.cooled_area
         ),
         symbol="dT_pk",
         text="Steel plates over ambient just after an engagement, in steady repetition",
         source=f"lumped heat balance; {S1}, repeated switching",
-    )  # fmt: skip
+    )
     d.at_most(
-        "peak_temperature", rise, pair.part.temp_max - duty.ambient_temperature, "K",
-        text="The lining stands the temperature", source="Neale, Tribology Handbook, Table 7.4",
-    )  # fmt: skip
+        "peak_temperature",
+        rise,
+        pair.part.temp_max - duty.ambient_temperature,
+        "K",
+        text="The lining stands the temperature",
+        source="Neale, Tribology Handbook, Table 7.4",
+    )
     advise_frequent_switching(d, duty, size.heat_capacity, size.cooled_area)
     mean_rise = heat.mean_temperature_rise(
         start.friction_work, duty.engagements_per_hour, duty.heat_transfer, size.cooled_area

@@ -325,21 +325,30 @@ class RollerCoupling(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         guide = d.option(
-            "guide", tuple(GUIDES), "roller", symbol="gd",
-text="How the arms are joined to the float: by rollers, or as in the predecessors that the source describes "
-            "(advice only, they are not sized)",
+            "guide",
+            tuple(GUIDES),
+            "roller",
+            symbol="gd",
+            text="How the arms are joined to the float: by rollers, or as in the predecessors that the source "
+            "describes (advice only, they are not sized)",
             source=f"{S3}, chapters X and XI",
-        )  # fmt: skip
+        )
         removable = d.option(
-            "sideways_removable", ("no", "yes"), "no", symbol="sw",
+            "sideways_removable",
+            ("no", "yes"),
+            "no",
+            symbol="sw",
             text="yes: an arm can be pulled out sideways through the other guide, shafts staying in place",
             source=f"{S3}, eq. (21)",
-        )  # fmt: skip
+        )
         contact = d.option(
-            "roller_contact", ("line", "crowned"), "line", symbol="rc",
+            "roller_contact",
+            ("line", "crowned"),
+            "line",
+            symbol="rc",
             text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact",
             source=f"{S3}, XIV.3",
-        )  # fmt: skip
+        )
         wants = d.block(Wants)
         unknowns = self._declare_unknowns(d, contact)
         self._refuse_impossible(d, wants, unknowns, guide, removable, contact)
@@ -357,27 +366,58 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         crowned = contact == "crowned"
         return Unknowns(
             arm_radius=d.variable(
-                "arm_radius", "mm", ARM_RADIUS_MIN, ARM_RADIUS_MAX, grid=0.5, symbol="r",
-                text="Radius of the pins", source=f"{S3}, r",
+                "arm_radius",
+                "mm",
+                ARM_RADIUS_MIN,
+                ARM_RADIUS_MAX,
+                grid=0.5,
+                symbol="r",
+                text="Radius of the pins",
+                source=f"{S3}, r",
             ),
             guide_half_length=d.variable(
-                "guide_half_length", "mm", 15, 400, grid=0.5, symbol="K",
-                text="From the centre of the float to the end of a guide", source=f"{S3}, K",
+                "guide_half_length",
+                "mm",
+                15,
+                400,
+                grid=0.5,
+                symbol="K",
+                text="From the centre of the float to the end of a guide",
+                source=f"{S3}, K",
             ),
             contact_length=d.variable(
-                "contact_length", "mm", CONTACT_LENGTH_MIN, 30, grid=0.5, symbol="l",
-                text="Length on which a roller bears on the guide", source=f"{S3}, l",
+                "contact_length",
+                "mm",
+                CONTACT_LENGTH_MIN,
+                30,
+                grid=0.5,
+                symbol="l",
+                text="Length on which a roller bears on the guide",
+                source=f"{S3}, l",
             ),
             rim=d.variable(
-                "rim", "mm", 3, 60, grid=0.5, symbol="t",
-                text="Rim of the float around the corners of the guide ends", source=EXTENDS_S3,
+                "rim",
+                "mm",
+                3,
+                60,
+                grid=0.5,
+                symbol="t",
+                text="Rim of the float around the corners of the guide ends",
+                source=EXTENDS_S3,
             ),
             offset_capacity=d.variable(
-                "offset_capacity", "mm", 0.1, 80, symbol="e_cap",
-                text="Offset up to which all clearances are kept", source=f"{S3}, e_max in eq. (18b)",
+                "offset_capacity",
+                "mm",
+                0.1,
+                80,
+                symbol="e_cap",
+                text="Offset up to which all clearances are kept",
+                source=f"{S3}, e_max in eq. (18b)",
             ),
             balance=d.choice(
-                "balance", ("no", "yes"), symbol="bal",
+                "balance",
+                ("no", "yes"),
+                symbol="bal",
                 text="yes: a second float of equal mass runs opposite (self-balancing chain)",
                 source=f"{S3}, XIV.1",
                 refused={
@@ -386,16 +426,21 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
                 },
             ),
             roller=d.part(
-                "roller", "guide_rolling_bearings",
+                "roller",
+                "guide_rolling_bearings",
                 where="crowned == 1" if crowned else ("crowned == 0", "kind != 'spherical_roller_bearing'"),
-                symbol="rol", text="Rolling bearing on each pin whose outer ring rolls in the guide",
+                symbol="rol",
+                text="Rolling bearing on each pin whose outer ring rolls in the guide",
                 source="table guide_rolling_bearings",
             ),
             material=d.part(
-                "float_material", "float_materials", symbol="mat",
-                text="Material of the float", source="table float_materials",
+                "float_material",
+                "float_materials",
+                symbol="mat",
+                text="Material of the float",
+                source="table float_materials",
             ),
-        )  # fmt: skip
+        )
 
     def _refuse_impossible(
         self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str, removable: str, contact: str
@@ -473,79 +518,132 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         roller, offset = unknowns.roller, wants.effective_offset
         diameter, radius = roller.outer_diameter, unknowns.arm_radius
         d.derive(
-            "effective_offset", "mm", offset, symbol="e_eff",
-            text="Offset seen in the plane of the float", source=f"{EXTENDS_S3}, sqrt(e**2 + h**2 tan(alpha)**2)",
-        )  # fmt: skip
+            "effective_offset",
+            "mm",
+            offset,
+            symbol="e_eff",
+            text="Offset seen in the plane of the float",
+            source=f"{EXTENDS_S3}, sqrt(e**2 + h**2 tan(alpha)**2)",
+        )
         slide = d.derive(
-            "axial_slide", "mm",
+            "axial_slide",
+            "mm",
             formulas.axial_slide(wants.offset, wants.float_distance, wants.shaft_angle, wants.guide_angle),
-            symbol="z_ax", text="Slide of the rollers along shaft 2 per turn, peak to peak",
+            symbol="z_ax",
+            text="Slide of the rollers along shaft 2 per turn, peak to peak",
             source=f"{EXTENDS_S3}; generalises {S3}, eq. (25)",
-        )  # fmt: skip
+        )
         width = d.derive(
-            "float_width", "mm", formulas.float_width(unknowns.contact_length, slide, wants.axial_play), symbol="b_f",
-            text="Width of the float: contact, slide and play", source=f"{S3}, chapter XII",
-        )  # fmt: skip
+            "float_width",
+            "mm",
+            formulas.float_width(unknowns.contact_length, slide, wants.axial_play),
+            symbol="b_f",
+            text="Width of the float: contact, slide and play",
+            source=f"{S3}, chapter XII",
+        )
         section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
         float_mass = d.derive(
-            "float_mass", "kg", formulas.float_mass(unknowns.material.density, width, section), symbol="m_fl",
-            text="Mass of the float", source="geometry",
-        )  # fmt: skip
+            "float_mass",
+            "kg",
+            formulas.float_mass(unknowns.material.density, width, section),
+            symbol="m_fl",
+            text="Mass of the float",
+            source="geometry",
+        )
         tangential = d.derive(
-            "tangential_force", "N", formulas.tangential_force(wants.required_torque, radius, radius), symbol="F",
-            text="Force of each pin from the torque", source=f"{S3}, F = M/(2 r)",
-        )  # fmt: skip
+            "tangential_force",
+            "N",
+            formulas.tangential_force(wants.required_torque, radius, radius),
+            symbol="F",
+            text="Force of each pin from the torque",
+            source=f"{S3}, F = M/(2 r)",
+        )
         centrifugal = d.derive(
-            "centrifugal_force", "N",
-            formulas.pin_centrifugal_force(float_mass, offset, wants.driver_speed, wants.guide_angle), symbol="Q",
-            text="Greatest share of one pin in the centrifugal force of the float", source=f"{S3}, eq. (14), C/2",
-        )  # fmt: skip
+            "centrifugal_force",
+            "N",
+            formulas.pin_centrifugal_force(float_mass, offset, wants.driver_speed, wants.guide_angle),
+            symbol="Q",
+            text="Greatest share of one pin in the centrifugal force of the float",
+            source=f"{S3}, eq. (14), C/2",
+        )
         roller_mass = d.step(
-            "roller_mass", "kg",
+            "roller_mass",
+            "kg",
             formulas.roller_mass(roller.mass, wants.steel_density, roller.bore, roller.width, wants.pin_gap),
-            symbol="m_rol", text="Mass of a roller with its pin", source="geometry",
-        )  # fmt: skip
+            symbol="m_rol",
+            text="Mass of a roller with its pin",
+            source="geometry",
+        )
         d.step(
-            "least_force_radius", "mm",
+            "least_force_radius",
+            "mm",
             formulas.optimum_arm_radius_with_float(wants.required_torque, roller_mass, wants.driver_speed, centrifugal),
-            symbol="r_best", text="Arm radius of the least pin force with this float", source=f"{S3}, eq. (15); {EXTENDS_S3}",
-        )  # fmt: skip
+            symbol="r_best",
+            text="Arm radius of the least pin force with this float",
+            source=f"{S3}, eq. (15); {EXTENDS_S3}",
+        )
         normal = tangential + centrifugal
         pin = d.derive(
-            "pin_force", "N",
+            "pin_force",
+            "N",
             formulas.resultant_pin_force(
                 normal, formulas.roller_centrifugal_force(roller_mass, radius, wants.driver_speed)
             ),
-            symbol="F_pin", text="Greatest force on a pin, with the centrifugal force of its roller",
+            symbol="F_pin",
+            text="Greatest force on a pin, with the centrifugal force of its roller",
             source=f"{S3}, E",
-        )  # fmt: skip
+        )
         counter = unknowns.balance.select({"no": 0.0, "yes": 1.0})
         d.derive(
-            "steady_force", "N", centrifugal * (1 + counter), symbol="F_st",
-            text="Steady push on each shaft, away from the other; balance doubles it", source=f"{EXTENDS_S3} to {S3}, XIV.1",
-        )  # fmt: skip
+            "steady_force",
+            "N",
+            centrifugal * (1 + counter),
+            symbol="F_st",
+            text="Steady push on each shaft, away from the other; balance doubles it",
+            source=f"{EXTENDS_S3} to {S3}, XIV.1",
+        )
         vibration = d.derive(
-            "vibration_force", "N", centrifugal * (1 - counter), symbol="F_vib",
-            text="Amplitude of the force on each shaft, twice per turn", source=f"{S3}, XIV.1",
-        )  # fmt: skip
+            "vibration_force",
+            "N",
+            centrifugal * (1 - counter),
+            symbol="F_vib",
+            text="Amplitude of the force on each shaft, twice per turn",
+            source=f"{S3}, XIV.1",
+        )
         d.derive(
-            "speed_fluctuation", "-", formulas.speed_fluctuation(wants.shaft_angle), symbol="eps",
-            text="Greatest excess of the driven speed, 1/cos(alpha) - 1", source=f"{S3}, eq. (24a)",
-        )  # fmt: skip
+            "speed_fluctuation",
+            "-",
+            formulas.speed_fluctuation(wants.shaft_angle),
+            symbol="eps",
+            text="Greatest excess of the driven speed, 1/cos(alpha) - 1",
+            source=f"{S3}, eq. (24a)",
+        )
         d.derive(
-            "efficiency", "-", formulas.rolling_efficiency(wants.rolling_friction, offset, radius), symbol="eta",
-            text="Efficiency with rolling friction in the guides", source=f"{EXTENDS_S3}, guides at right angles",
-        )  # fmt: skip
+            "efficiency",
+            "-",
+            formulas.rolling_efficiency(wants.rolling_friction, offset, radius),
+            symbol="eta",
+            text="Efficiency with rolling friction in the guides",
+            source=f"{EXTENDS_S3}, guides at right angles",
+        )
         float_radius = formulas.float_radius(unknowns.guide_half_length, diameter, unknowns.rim)
         outer = d.derive(
-            "outer_diameter", "mm", 2 * (float_radius + offset / np.sin(wants.guide_angle)), symbol="D_o",
-            text="Diameter that the float sweeps about a shaft", source="geometry, 2 (R_f + e_eff/sin(chi))",
-        )  # fmt: skip
+            "outer_diameter",
+            "mm",
+            2 * (float_radius + offset / np.sin(wants.guide_angle)),
+            symbol="D_o",
+            text="Diameter that the float sweeps about a shaft",
+            source="geometry, 2 (R_f + e_eff/sin(chi))",
+        )
         arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
         mass = d.derive(
-            "mass", "kg", float_mass * (1 + counter) + 4 * roller_mass + arms, symbol="m",
-            text="Float, counter float, rollers with pins, and arms; without hubs", source="geometry",
-        )  # fmt: skip
+            "mass",
+            "kg",
+            float_mass * (1 + counter) + 4 * roller_mass + arms,
+            symbol="m",
+            text="Float, counter float, rollers with pins, and arms; without hubs",
+            source="geometry",
+        )
         if wants.outer_diameter_limit is not None:
             d.at_most(
                 "outer_diameter",
@@ -572,26 +670,46 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
         radius, capacity = unknowns.arm_radius, unknowns.offset_capacity
         diameter, angle = unknowns.roller.outer_diameter, wants.guide_angle
         d.at_least(
-            "offset", capacity, wants.effective_offset, "mm",
-            text="The coupling takes the offset of the shafts", source=DRIVE,
-        )  # fmt: skip
+            "offset",
+            capacity,
+            wants.effective_offset,
+            "mm",
+            text="The coupling takes the offset of the shafts",
+            source=DRIVE,
+        )
         d.at_least(
-            "roller_gap", formulas.least_roller_distance(radius, capacity, angle) - diameter, wants.roller_gap_min,
-            "mm", text="Neighbouring rollers do not touch", source=f"{S3}, eq. (18a)",
-        )  # fmt: skip
+            "roller_gap",
+            formulas.least_roller_distance(radius, capacity, angle) - diameter,
+            wants.roller_gap_min,
+            "mm",
+            text="Neighbouring rollers do not touch",
+            source=f"{S3}, eq. (18a)",
+        )
         d.at_least(
-            "run_in", formulas.run_in(radius, capacity, diameter, angle), wants.run_in_min, "mm",
-            text="Rollers stay clear of the crossing guide", source=f"{S3}, chapter XI, s1",
-        )  # fmt: skip
+            "run_in",
+            formulas.run_in(radius, capacity, diameter, angle),
+            wants.run_in_min,
+            "mm",
+            text="Rollers stay clear of the crossing guide",
+            source=f"{S3}, chapter XI, s1",
+        )
         d.at_least(
-            "run_out", formulas.run_out(unknowns.guide_half_length, radius, capacity, angle), wants.run_out_min, "mm",
-            text="Rollers stay inside their guide", source=f"{S3}, eq. (19a)",
-        )  # fmt: skip
+            "run_out",
+            formulas.run_out(unknowns.guide_half_length, radius, capacity, angle),
+            wants.run_out_min,
+            "mm",
+            text="Rollers stay inside their guide",
+            source=f"{S3}, eq. (19a)",
+        )
         if removable == "yes":
             d.at_least(
-                "sideways", formulas.removal_clearance(radius, diameter), wants.removal_min, "mm",
-                text="An arm passes the other guide sideways", source=f"{S3}, eq. (21)",
-            )  # fmt: skip
+                "sideways",
+                formulas.removal_clearance(radius, diameter),
+                wants.removal_min,
+                "mm",
+                text="An arm passes the other guide sideways",
+                source=f"{S3}, eq. (21)",
+            )
 
     def _declare_strength(self, d: Declaration, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str) -> None:
         roller, material = unknowns.roller, unknowns.material
@@ -604,55 +722,92 @@ text="How the arms are joined to the float: by rollers, or as in the predecessor
             pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
             source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
         pressure = d.derive(
-            "hertz_pressure", "N/mm2", pressure, symbol="p_H", ceiling=formulas.STATIC_CONTACT_LIMIT / 1e6,
-            text="Greatest Hertz pressure between roller and guide", source=source,
-        )  # fmt: skip
+            "hertz_pressure",
+            "N/mm2",
+            pressure,
+            symbol="p_H",
+            ceiling=formulas.STATIC_CONTACT_LIMIT / 1e6,
+            text="Greatest Hertz pressure between roller and guide",
+            source=source,
+        )
         d.at_most(
-            "contact_length", length, roller.contact_width, "mm",
-            text="The roller is wide enough", source="geometry",
-        )  # fmt: skip
+            "contact_length",
+            length,
+            roller.contact_width,
+            "mm",
+            text="The roller is wide enough",
+            source="geometry",
+        )
         d.at_most(
-            "hertz", pressure, np.minimum(material.hertz_allow, formulas.STATIC_CONTACT_LIMIT), "N/mm2",
-            text="The guide is not dented", source=source,
-        )  # fmt: skip
+            "hertz",
+            pressure,
+            np.minimum(material.hertz_allow, formulas.STATIC_CONTACT_LIMIT),
+            "N/mm2",
+            text="The guide is not dented",
+            source=source,
+        )
         if contact == "crowned":
             d.at_most(
                 "contact_ellipse",
-                2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius), length,
-                "mm", text="The contact ellipse lies on the tread", source=source,
-            )  # fmt: skip
+                2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius),
+                length,
+                "mm",
+                text="The contact ellipse lies on the tread",
+                source=source,
+            )
         d.at_most(
-            "outer_ring_bending", loads.normal, roller.optional("outer_ring_load_limit"), "N",
-            text="The unsupported outer ring does not bend too much", source="makers' F0r of track rollers",
-        )  # fmt: skip
+            "outer_ring_bending",
+            loads.normal,
+            roller.optional("outer_ring_load_limit"),
+            "N",
+            text="The unsupported outer ring does not bend too much",
+            source="makers' F0r of track rollers",
+        )
         d.at_most(
-            "pin_shear", formulas.pin_shear_measure(wants.required_torque, unknowns.arm_radius, roller.bore),
-            wants.pin_shear_limit, "N/mm2", text="The pins stand the shear", source=f"{S3}, eq. (16)",
-        )  # fmt: skip
+            "pin_shear",
+            formulas.pin_shear_measure(wants.required_torque, unknowns.arm_radius, roller.bore),
+            wants.pin_shear_limit,
+            "N/mm2",
+            text="The pins stand the shear",
+            source=f"{S3}, eq. (16)",
+        )
         stress = d.derive(
-            "pin_stress", "N/mm2",
-            formulas.pin_equivalent_stress(loads.pin, roller.width, wants.pin_gap, roller.bore), symbol="sigma_v",
-            text="Equivalent stress at the root of a pin", source=EXTENDS_S3,
-        )  # fmt: skip
+            "pin_stress",
+            "N/mm2",
+            formulas.pin_equivalent_stress(loads.pin, roller.width, wants.pin_gap, roller.bore),
+            symbol="sigma_v",
+            text="Equivalent stress at the root of a pin",
+            source=EXTENDS_S3,
+        )
         d.at_most(
             "pin_stress", stress, wants.pin_stress_limit, "N/mm2", text="The pins stand the bending", source=EXTENDS_S3
         )
         d.at_most(
-            "bearing_static", loads.pin,
-            formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety), "N",
-            text="The rolling bearing stands the force at rest or oscillating", source=f"{S3}, chapter XI",
-        )  # fmt: skip
+            "bearing_static",
+            loads.pin,
+            formulas.allowed_pin_force(roller.C0_static_min, wants.oscillation_factor, wants.static_safety),
+            "N",
+            text="The rolling bearing stands the force at rest or oscillating",
+            source=f"{S3}, chapter XI",
+        )
         width = d.derived["float_width"].sx
         d.at_most(
             "ligament",
             formulas.ligament_stress(wants.ligament_factor, loads.normal, unknowns.rim, width),
-            material.strength_allow, "N/mm2", text="The bridges at the guide ends hold", source=EXTENDS_S3,
-        )  # fmt: skip
+            material.strength_allow,
+            "N/mm2",
+            text="The bridges at the guide ends hold",
+            source=EXTENDS_S3,
+        )
         d.at_least("rim", unknowns.rim, wants.rim_min, "mm", text="The rim is not too thin", source=TYPICAL)
         d.at_least(
-            "contact_retention", loads.tangential, wants.retention_margin * loads.centrifugal, "N",
-            text="The lighter loaded rollers keep contact, the float does not hammer", source=EXTENDS_S3,
-        )  # fmt: skip
+            "contact_retention",
+            loads.tangential,
+            wants.retention_margin * loads.centrifugal,
+            "N",
+            text="The lighter loaded rollers keep contact, the float does not hammer",
+            source=EXTENDS_S3,
+        )
 
     def _declare_remarks(self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str) -> None:
         offset, material = wants.effective_offset, unknowns.material

@@ -91,13 +91,23 @@ class ActuatedWrapSpringClutch(DesignProblem):
         duty = blocks.declare_duty(d, ClearanceDuty)
         wants = d.block(Wants)
         clearance = d.variable(
-            "clearance", "mm", 0.005, 5, symbol="c",
-            text="By how much the mean radius of the free coils is larger than that of the closed ones", source=NOT_IN_S2,
-        )  # fmt: skip
+            "clearance",
+            "mm",
+            0.005,
+            5,
+            symbol="c",
+            text="By how much the mean radius of the free coils is larger than that of the closed ones",
+            source=NOT_IN_S2,
+        )
         actuator = d.variable(
-            "actuator_torque", "N*m", 1e-4, 1e4, symbol="T0",
-            text="Energising torque at the free end of the spring", source=NOT_IN_S2,
-        )  # fmt: skip
+            "actuator_torque",
+            "N*m",
+            1e-4,
+            1e4,
+            symbol="T0",
+            text="Energising torque at the free end of the spring",
+            source=NOT_IN_S2,
+        )
         wire = blocks.declare_wire(d, options)
         coils = blocks.declare_coils(d, options, duty, wire)
         friction = blocks.declare_friction(d, self.name, duty, coils)
@@ -112,27 +122,44 @@ class ActuatedWrapSpringClutch(DesignProblem):
         loose, tight = moment(widest), moment(narrowest)
         effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
         d.at_least(
-            "grip", actuator, -effective, "N*m", guard=True,
-            text="The energising torque closes the widest clearance; otherwise nothing grips", source=NOT_IN_S2,
-        )  # fmt: skip
+            "grip",
+            actuator,
+            -effective,
+            "N*m",
+            guard=True,
+            text="The energising torque closes the widest clearance; otherwise nothing grips",
+            source=NOT_IN_S2,
+        )
         blocks.declare_closing(
             d, duty, formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
         )
         d.at_least(
-            "clearance_kept", narrowest, wants.clearance_min, "mm",
-            text="Released, the coils stand clear of the hub", source=NOT_IN_S2,
-        )  # fmt: skip
+            "clearance_kept",
+            narrowest,
+            wants.clearance_min,
+            "mm",
+            text="Released, the coils stand clear of the hub",
+            source=NOT_IN_S2,
+        )
         load = d.derive(
-            "wire_torque", "N*m", duty.peak_torque, symbol="T_load",
-            text="Torque that the wire sees at overload: peak_torque", source=NOT_IN_S2,
-        )  # fmt: skip
+            "wire_torque",
+            "N*m",
+            duty.peak_torque,
+            symbol="T_load",
+            text="Torque that the wire sees at overload: peak_torque",
+            source=NOT_IN_S2,
+        )
         bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
         stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight, load)
         self._declare_actuation(d, duty, wants, coils, widest, actuator)
         d.at_least(
-            "hub_bore", coils.hub_diameter, duty.bore_diameter + 2 * wants.hub_wall_min, "mm",
-            text="The hub has a wall around its bore", source="geometry",
-        )  # fmt: skip
+            "hub_bore",
+            coils.hub_diameter,
+            duty.bore_diameter + 2 * wants.hub_wall_min,
+            "mm",
+            text="The hub has a wall around its bore",
+            source="geometry",
+        )
         blocks.declare_size(d, duty, wire, coils, wants.fixed_coils)
         tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
         d.advise(
@@ -158,20 +185,36 @@ class ActuatedWrapSpringClutch(DesignProblem):
     ) -> None:
         closing = coils.per_hub + duty.gap_coils
         angle = d.derive(
-            "wrap_angle", "rad", formulas.wrap_angle(closing, widest, coils.mean_radius), symbol="phi",
-            text="Angle until the coils are closed, at the widest clearance", source=NOT_IN_S2,
-        )  # fmt: skip
+            "wrap_angle",
+            "rad",
+            formulas.wrap_angle(closing, widest, coils.mean_radius),
+            symbol="phi",
+            text="Angle until the coils are closed, at the widest clearance",
+            source=NOT_IN_S2,
+        )
         d.derive(
-            "engagement_time", "s", angle / wants.relative_speed, symbol="t_e",
-            text="Time until the coils are closed when the free end is held", source=NOT_IN_S2,
-        )  # fmt: skip
+            "engagement_time",
+            "s",
+            angle / wants.relative_speed,
+            symbol="t_e",
+            text="Time until the coils are closed when the free end is held",
+            source=NOT_IN_S2,
+        )
         if wants.wrap_angle_limit is not None:
             d.at_most(
-                "wrap_angle", angle, wants.wrap_angle_limit, "rad",
-                text="The clutch closes soon enough", source=DRIVE,
-            )  # fmt: skip
+                "wrap_angle",
+                angle,
+                wants.wrap_angle_limit,
+                "rad",
+                text="The clutch closes soon enough",
+                source=DRIVE,
+            )
         if wants.actuator_torque_limit is not None:
             d.at_most(
-                "actuator_torque", actuator, wants.actuator_torque_limit, "N*m",
-                text="The actuator can apply the energising torque", source=DRIVE,
-            )  # fmt: skip
+                "actuator_torque",
+                actuator,
+                wants.actuator_torque_limit,
+                "N*m",
+                text="The actuator can apply the energising torque",
+                source=DRIVE,
+            )

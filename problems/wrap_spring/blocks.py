@@ -235,9 +235,15 @@ def declare_wire(d: Declaration, options: Options) -> Wire:
 
     def material(name: str, unit: str, lower: float, upper: float, symbol: str, text: str) -> Any:
         return d.requirement(
-            name, unit, lower=lower, upper=upper, optional=catalogue, symbol=symbol,
-            text=f"{text}; for wire_choice custom, where it must be given", source="data sheet of the wire",
-        )  # fmt: skip
+            name,
+            unit,
+            lower=lower,
+            upper=upper,
+            optional=catalogue,
+            symbol=symbol,
+            text=f"{text}; for wire_choice custom, where it must be given",
+            source="data sheet of the wire",
+        )
 
     given = {
         "modulus": material("wire_modulus", "N/mm2", 1e3, 1e6, "E_u", "Young's modulus of the wire"),
@@ -334,21 +340,38 @@ def declare_coils(d: Declaration, options: Options, duty: Duty, wire: Wire) -> C
         Symbols of the block.
     """
     diameter = d.variable(
-        "hub_diameter", "mm", *HUB_DIAMETER_RANGE, grid=hub_grid(d, options.hub_ladder), symbol="d_h",
-        text="Outer diameter of both hubs", source=f"{S2}, 2 r",
-    )  # fmt: skip
+        "hub_diameter",
+        "mm",
+        *HUB_DIAMETER_RANGE,
+        grid=hub_grid(d, options.hub_ladder),
+        symbol="d_h",
+        text="Outer diameter of both hubs",
+        source=f"{S2}, 2 r",
+    )
     per_hub = d.count(
-        "coils_per_hub", *COILS_RANGE, step=0.5, symbol="n",
-        text="Coils on one hub", source=f"{S2}, n",
-    )  # fmt: skip
+        "coils_per_hub",
+        *COILS_RANGE,
+        step=0.5,
+        symbol="n",
+        text="Coils on one hub",
+        source=f"{S2}, n",
+    )
     mean = d.derive(
-        "mean_coil_radius", "mm", formulas.mean_radius(diameter, wire.thickness, options.model), symbol="r_m",
-        text="Mean radius of the fitted coils; model seed: the hub radius", source=f"{S2}, r",
-    )  # fmt: skip
+        "mean_coil_radius",
+        "mm",
+        formulas.mean_radius(diameter, wire.thickness, options.model),
+        symbol="r_m",
+        text="Mean radius of the fitted coils; model seed: the hub radius",
+        source=f"{S2}, r",
+    )
     d.at_least(
-        "spring_index", 2 * mean / wire.thickness, duty.spring_index_min, "-",
-        text="The wire can be coiled", source="coiling practice",
-    )  # fmt: skip
+        "spring_index",
+        2 * mean / wire.thickness,
+        duty.spring_index_min,
+        "-",
+        text="The wire can be coiled",
+        source="coiling practice",
+    )
     d.advise(
         "unwound_shape",
         np.logical_or(wire.thickness > 4 * wire.width, wire.width > 6 * wire.thickness),
@@ -416,14 +439,22 @@ def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> F
     )
     low = formulas.belt_exponent(part.mu_min, coils.per_hub, coils.radius_ratio)
     high = d.derive(
-        "belt_exponent", "-", formulas.belt_exponent(part.mu_max, coils.per_hub, coils.radius_ratio), symbol="beta_hi",
-        text="Belt exponent of one hub at the highest friction", source=f"{S2}, mu alpha in eq. (18)",
-    )  # fmt: skip
+        "belt_exponent",
+        "-",
+        formulas.belt_exponent(part.mu_max, coils.per_hub, coils.radius_ratio),
+        symbol="beta_hi",
+        text="Belt exponent of one hub at the highest friction",
+        source=f"{S2}, mu alpha in eq. (18)",
+    )
     if duty.belt_exponent_limit is not None:
         d.at_most(
-            "belt_exponent", high, duty.belt_exponent_limit, "-",
-            text="The clutch still slips before everything else breaks", source=NOT_IN_S2,
-        )  # fmt: skip
+            "belt_exponent",
+            high,
+            duty.belt_exponent_limit,
+            "-",
+            text="The clutch still slips before everything else breaks",
+            source=NOT_IN_S2,
+        )
     d.advise(
         "locks_at_any_peak",
         high > 6,
@@ -459,14 +490,22 @@ def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -
 def declare_closing(d: Declaration, duty: Duty, torque: Any, needs: str | tuple[str, ...] = ()) -> None:
     """Declare the least closing torque and its limit."""
     torque = d.derive(
-        "closing_torque", "N*m", torque, symbol="T_c", needs=needs,
+        "closing_torque",
+        "N*m",
+        torque,
+        symbol="T_c",
+        needs=needs,
         text="Least torque at which the closing clutch slips: least friction, loosest fit, at spring_speed",
         source=f"{S2}, eq. (18)-(20)",
-    )  # fmt: skip
+    )
     d.at_least(
-        "closing_torque", torque, duty.slip_safety * duty.required_torque, "N*m",
-        text="The clutch holds the required torque", source=f"{S2}, eq. (20)",
-    )  # fmt: skip
+        "closing_torque",
+        torque,
+        duty.slip_safety * duty.required_torque,
+        "N*m",
+        text="The clutch holds the required torque",
+        source=f"{S2}, eq. (20)",
+    )
 
 
 def declare_load(
@@ -506,31 +545,48 @@ def declare_load(
         Stress of the wire and peak pressure [Pa].
     """
     d.derive(
-        "bending_moment", "N*m", moment, symbol="M_b", needs=needs,
-        text="Bending moment of the fitted wire, at the tightest fit; below 0 for a clearance", source=f"{S2}, eq. (4)",
-    )  # fmt: skip
+        "bending_moment",
+        "N*m",
+        moment,
+        symbol="M_b",
+        needs=needs,
+        text="Bending moment of the fitted wire, at the tightest fit; below 0 for a clearance",
+        source=f"{S2}, eq. (4)",
+    )
     stress = d.derive(
-        "wire_stress", "N/mm2",
+        "wire_stress",
+        "N/mm2",
         formulas.wire_stress(
             bending_stress, formulas.wire_tension(moment + load, coils.mean_radius), wire.width, wire.thickness
         ),
         symbol="sigma",
-        text="Largest stress of the loaded wire", source=f"{S2}, eq. (8), with the tension of the loaded coil",
-    )  # fmt: skip
+        text="Largest stress of the loaded wire",
+        source=f"{S2}, eq. (8), with the tension of the loaded coil",
+    )
     pressure = d.derive(
-        "contact_pressure", "N/mm2",
+        "contact_pressure",
+        "N/mm2",
         formulas.contact_pressure(moment + load, wire.width, coils.hub_radius, coils.mean_radius),
         symbol="p_max",
-        text="Largest pressure of the wire on the hub, at the gap", source=f"{S2}, eq. (22), corrected",
-    )  # fmt: skip
+        text="Largest pressure of the wire on the hub, at the gap",
+        source=f"{S2}, eq. (22), corrected",
+    )
     d.at_most(
-        "wire_stress", stress, wire.bending_allow, "N/mm2",
-        text="The wire does not yield", source=f"{S2}, eq. (8) and (18)",
-    )  # fmt: skip
+        "wire_stress",
+        stress,
+        wire.bending_allow,
+        "N/mm2",
+        text="The wire does not yield",
+        source=f"{S2}, eq. (8) and (18)",
+    )
     d.at_most(
-        "contact_pressure", pressure, friction.part.p_allow, "N/mm2",
-        text="Wire and hub stand the pressure", source=f"{S2}, eq. (22), corrected",
-    )  # fmt: skip
+        "contact_pressure",
+        pressure,
+        friction.part.p_allow,
+        "N/mm2",
+        text="Wire and hub stand the pressure",
+        source=f"{S2}, eq. (22), corrected",
+    )
     return stress, pressure
 
 
@@ -567,25 +623,41 @@ def declare_size(d: Declaration, duty: Duty, wire: Wire, coils: Coils, fixed_coi
         Symbols of the block.
     """
     total = d.derive(
-        "total_coils", "-", formulas.total_coils(coils.per_hub, duty.gap_coils, fixed_coils), symbol="n_tot",
-        text="Coils of the whole spring", source="geometry",
-    )  # fmt: skip
+        "total_coils",
+        "-",
+        formulas.total_coils(coils.per_hub, duty.gap_coils, fixed_coils),
+        symbol="n_tot",
+        text="Coils of the whole spring",
+        source="geometry",
+    )
     length = d.derive(
-        "length", "mm", formulas.spring_length(total, wire.width, duty.coil_gap), symbol="L",
-        text="Length of the spring", source="geometry",
-    )  # fmt: skip
+        "length",
+        "mm",
+        formulas.spring_length(total, wire.width, duty.coil_gap),
+        symbol="L",
+        text="Length of the spring",
+        source="geometry",
+    )
     diameter = d.derive(
-        "outer_diameter", "mm", coils.hub_diameter + 2 * wire.thickness, symbol="D_o",
-        text="Outside of the coils", source="geometry, 2 (r_h + a)",
-    )  # fmt: skip
+        "outer_diameter",
+        "mm",
+        coils.hub_diameter + 2 * wire.thickness,
+        symbol="D_o",
+        text="Outside of the coils",
+        source="geometry, 2 (r_h + a)",
+    )
     spring = formulas.spring_mass(wire.density, wire.width, wire.thickness, coils.mean_radius, total)
     hubs = formulas.hub_mass(duty.hub_density, coils.hub_diameter, duty.bore_diameter, length)
     d.derive("mass", "kg", spring + hubs, symbol="m", text="Spring and both hubs under it", source="geometry")
     if duty.outer_diameter_limit is not None:
         d.at_most(
-            "outer_diameter", diameter, duty.outer_diameter_limit, "mm",
-            text="The clutch fits the room across", source=DRIVE,
-        )  # fmt: skip
+            "outer_diameter",
+            diameter,
+            duty.outer_diameter_limit,
+            "mm",
+            text="The clutch fits the room across",
+            source=DRIVE,
+        )
     if duty.length_limit is not None:
         d.at_most("length", length, duty.length_limit, "mm", text="The clutch fits the room along", source=DRIVE)
     return Size(length, diameter)

@@ -131,10 +131,14 @@ class WrapSpringClutch(DesignProblem):
         duty = blocks.declare_duty(d, InterferenceDuty)
         wants = d.block(Wants)
         interference = d.variable(
-            "interference", "mm", 0.005, 10, symbol="dr",
+            "interference",
+            "mm",
+            0.005,
+            10,
+            symbol="dr",
             text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
             source=f"{S2}, Delta r",
-        )  # fmt: skip
+        )
         wire = blocks.declare_wire(d, options)
         coils = blocks.declare_coils(d, options, duty, wire)
         friction = blocks.declare_friction(d, self.name, duty, coils)
@@ -200,15 +204,23 @@ class WrapSpringClutch(DesignProblem):
         self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
     ) -> None:
         d.at_least(
-            "interference_positive", interference, duty.interference_tolerance, "mm", guard=True,
-            text="The preload survives the tolerance", source=NOT_IN_S2,
-        )  # fmt: skip
+            "interference_positive",
+            interference,
+            duty.interference_tolerance,
+            "mm",
+            guard=True,
+            text="The preload survives the tolerance",
+            source=NOT_IN_S2,
+        )
         most = interference + duty.interference_tolerance
         d.at_most(
-            "interference_range", most / coils.mean_radius, wants.interference_ratio_max, "-",
+            "interference_range",
+            most / coils.mean_radius,
+            wants.interference_ratio_max,
+            "-",
             text="The strains stay small; interference with its tolerance over mean coil radius",
             source=f"{S2}, small Delta r",
-        )  # fmt: skip
+        )
         d.advise(
             "no_free_radius",
             most >= coils.mean_radius,
@@ -234,35 +246,49 @@ class WrapSpringClutch(DesignProblem):
         if options.model == "seed":
             return ("interference_positive",)
         d.at_least(
-            "grip", low, blocks.centrifugal_moment(options, duty, wire, coils), "N*m", guard=True,
-            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips", source=NOT_IN_S2,
-        )  # fmt: skip
+            "grip",
+            low,
+            blocks.centrifugal_moment(options, duty, wire, coils),
+            "N*m",
+            guard=True,
+            text="At spring_speed the loosest spring is below its lift-off; otherwise nothing grips",
+            source=NOT_IN_S2,
+        )
         return ("grip",)  # without interference there is no preload either
 
     def _declare_liftoff(
         self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
     ) -> None:
         speed = d.derive(
-            "liftoff_speed", "1/min",
+            "liftoff_speed",
+            "1/min",
             formulas.liftoff_speed(low, wire.density, wire.width, wire.thickness, coils.mean_radius),
-            symbol="omega_lift", needs="interference_positive",
-            text="Speed at which the loosest spring lifts off its hub", source=NOT_IN_S2,
-        )  # fmt: skip
+            symbol="omega_lift",
+            needs="interference_positive",
+            text="Speed at which the loosest spring lifts off its hub",
+            source=NOT_IN_S2,
+        )
         d.at_most(
-            "liftoff", duty.spring_speed, wants.liftoff_margin * speed, "1/min",
+            "liftoff",
+            duty.spring_speed,
+            wants.liftoff_margin * speed,
+            "1/min",
             text="The spring stays on its hub at spring_speed, also with model seed, which counts torques at rest",
             source=NOT_IN_S2,
-        )  # fmt: skip
+        )
 
     def _declare_overload(
         self, d: Declaration, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
     ) -> Any:
         """Declare the largest slip torque and return the torque that the wire sees."""
         slip = d.derive(
-            "slip_torque", "N*m", formulas.closing_torque(high, friction.exponent_high), symbol="T_cap",
+            "slip_torque",
+            "N*m",
+            formulas.closing_torque(high, friction.exponent_high),
+            symbol="T_cap",
             text="Largest torque at which the closing clutch slips: highest friction, tightest fit, at rest",
             source=f"{S2}, eq. (18)-(20)",
-        )  # fmt: skip
+        )
         limited = overload == "slip_limited"
         if limited:
             d.advise(
@@ -272,10 +298,13 @@ class WrapSpringClutch(DesignProblem):
                 source=NOT_IN_S2,
             )
         return d.derive(
-            "wire_torque", "N*m", np.minimum(duty.peak_torque, slip) if limited else duty.peak_torque,
+            "wire_torque",
+            "N*m",
+            np.minimum(duty.peak_torque, slip) if limited else duty.peak_torque,
             symbol="T_load",
-            text="Torque that the wire sees at overload", source=NOT_IN_S2,
-        )  # fmt: skip
+            text="Torque that the wire sees at overload",
+            source=NOT_IN_S2,
+        )
 
     def _declare_fatigue(
         self,
@@ -292,7 +321,8 @@ class WrapSpringClutch(DesignProblem):
             return formulas.wire_stress(bending, tension, wire.width, wire.thickness)
 
         used = d.derive(
-            "fatigue_utilisation", "-",
+            "fatigue_utilisation",
+            "-",
             formulas.goodman_utilisation(
                 wants.fatigue_safety,
                 stress(0.0),
@@ -303,26 +333,43 @@ class WrapSpringClutch(DesignProblem):
             symbol="u_F",
             text="Fatigue of the wire between no torque and service_factor required_torque",
             source=f"Goodman; {NOT_IN_S2}",
-        )  # fmt: skip
+        )
         d.at_most(
-            "fatigue", used, 1.0, "-",
-            text="The wire does not tire", source=f"Goodman; {NOT_IN_S2}",
-        )  # fmt: skip
+            "fatigue",
+            used,
+            1.0,
+            "-",
+            text="The wire does not tire",
+            source=f"Goodman; {NOT_IN_S2}",
+        )
 
     def _declare_hub(self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
         d.at_least(
-            "hub_bore", coils.hub_diameter, duty.bore_diameter, "mm", guard=True,
-            text="The hub is thicker than its bore", source="geometry",
-        )  # fmt: skip
+            "hub_bore",
+            coils.hub_diameter,
+            duty.bore_diameter,
+            "mm",
+            guard=True,
+            text="The hub is thicker than its bore",
+            source="geometry",
+        )
         shear = d.derive(
-            "hub_shear", "N/mm2",
-            formulas.hub_shear_stress(load, coils.hub_diameter, duty.bore_diameter), symbol="tau", needs="hub_bore",
-            text="Shear stress of the hub under wire_torque", source="torsion of a tube",
-        )  # fmt: skip
+            "hub_shear",
+            "N/mm2",
+            formulas.hub_shear_stress(load, coils.hub_diameter, duty.bore_diameter),
+            symbol="tau",
+            needs="hub_bore",
+            text="Shear stress of the hub under wire_torque",
+            source="torsion of a tube",
+        )
         d.at_most(
-            "hub_shear", shear, wants.hub_shear_limit, "N/mm2",
-            text="The hub does not twist off", source="torsion of a tube",
-        )  # fmt: skip
+            "hub_shear",
+            shear,
+            wants.hub_shear_limit,
+            "N/mm2",
+            text="The hub does not twist off",
+            source="torsion of a tube",
+        )
 
     def _declare_overrun(
         self,
@@ -335,35 +382,57 @@ class WrapSpringClutch(DesignProblem):
         high: Any,
     ) -> None:
         drag = d.derive(
-            "drag_torque", "N*m", formulas.opening_torque(high, friction.exponent_high), symbol="T_open",
-            text="Drag when overrunning: highest friction, tightest fit", source=f"{S2}, eq. (15), (21)",
-        )  # fmt: skip
+            "drag_torque",
+            "N*m",
+            formulas.opening_torque(high, friction.exponent_high),
+            symbol="T_open",
+            text="Drag when overrunning: highest friction, tightest fit",
+            source=f"{S2}, eq. (15), (21)",
+        )
         if wants.drag_torque_limit is not None:
             d.at_most(
-                "drag_torque", drag, wants.drag_torque_limit, "N*m",
-                text="The clutch overruns freely", source=f"{S2}, eq. (21)",
-            )  # fmt: skip
+                "drag_torque",
+                drag,
+                wants.drag_torque_limit,
+                "N*m",
+                text="The clutch overruns freely",
+                source=f"{S2}, eq. (21)",
+            )
         preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
         rubbing = d.derive(
-            "overrun_pv", "W/mm2", formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius), symbol="pv",
-            text="Pressure of the preload times sliding speed when overrunning", source=NOT_IN_S2,
-        )  # fmt: skip
+            "overrun_pv",
+            "W/mm2",
+            formulas.overrun_pv(preload, wants.overrun_speed, coils.hub_radius),
+            symbol="pv",
+            text="Pressure of the preload times sliding speed when overrunning",
+            source=NOT_IN_S2,
+        )
         d.at_most(
-            "overrun_pv", rubbing, friction.part.pv_allow, "W/mm2",
-            text="Wire and hub stand the rubbing", source=NOT_IN_S2,
-        )  # fmt: skip
+            "overrun_pv",
+            rubbing,
+            friction.part.pv_allow,
+            "W/mm2",
+            text="Wire and hub stand the rubbing",
+            source=NOT_IN_S2,
+        )
         rise = d.derive(
-            "temperature_rise", "K",
+            "temperature_rise",
+            "K",
             formulas.overrun_temperature_rise(
                 drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, size.diameter, size.length
             ),
             symbol="dT",
-            text="Steady rise over ambient when overrunning", source=f"lumped heat balance; {NOT_IN_S2}",
-        )  # fmt: skip
+            text="Steady rise over ambient when overrunning",
+            source=f"lumped heat balance; {NOT_IN_S2}",
+        )
         d.at_most(
-            "overrun_temperature", rise, wants.temperature_rise_limit, "K",
-            text="The clutch stays cool when overrunning", source=f"lumped heat balance; {NOT_IN_S2}",
-        )  # fmt: skip
+            "overrun_temperature",
+            rise,
+            wants.temperature_rise_limit,
+            "K",
+            text="The clutch stays cool when overrunning",
+            source=f"lumped heat balance; {NOT_IN_S2}",
+        )
 
     def _declare_windup(
         self,
@@ -383,22 +452,34 @@ class WrapSpringClutch(DesignProblem):
             duty.gap_coils,
         )
         d.derive(
-            "windup_angle", "deg", angle, symbol="theta", needs="interference_positive",
+            "windup_angle",
+            "deg",
+            angle,
+            symbol="theta",
+            needs="interference_positive",
             text="Angle between the hubs until required_torque is carried: least friction, loosest fit, at rest",
             source=NOT_IN_S2,
-        )  # fmt: skip
+        )
 
     def _declare_utilisation(
         self, d: Declaration, wire: blocks.Wire, friction: blocks.Friction, stress: Any, pressure: Any
     ) -> None:
         d.derive(
-            "stress_utilisation", "-", stress / wire.bending_allow, symbol="u_s",
-            text="wire_stress over its limit", source=f"{S2}, eq. (8) and (18)",
-        )  # fmt: skip
+            "stress_utilisation",
+            "-",
+            stress / wire.bending_allow,
+            symbol="u_s",
+            text="wire_stress over its limit",
+            source=f"{S2}, eq. (8) and (18)",
+        )
         d.derive(
-            "pressure_utilisation", "-", pressure / friction.part.p_allow, symbol="u_p",
-            text="contact_pressure over its limit", source=f"{S2}, eq. (22), corrected",
-        )  # fmt: skip
+            "pressure_utilisation",
+            "-",
+            pressure / friction.part.p_allow,
+            symbol="u_p",
+            text="contact_pressure over its limit",
+            source=f"{S2}, eq. (22), corrected",
+        )
 
     def _declare_remarks(
         self,
