@@ -33,7 +33,7 @@ class CentrifugalBallRamp(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         duty = blocks.declare_duty(d)
-        wants = ball_blocks.declare_force_limits(d, duty)
+        wants = ball_blocks.declare_force_limits(d, duty=duty)
         rest = blocks.declare_rest_radius(d)
         gap = d.variable(
             "plate_gap",
@@ -54,21 +54,23 @@ class CentrifugalBallRamp(DesignProblem):
             text="Deflection of the return springs at rest",
             source=f"{S4}, F_R0/s",
         )
-        balls = ball_blocks.declare_balls(d, duty, rest)
-        springs = blocks.declare_springs(d, "return_spring", "sp", "N_s", "they push the pressure plate back")
-        lining = blocks.declare_lining(d, self.name, duty)
+        balls = ball_blocks.declare_balls(d, duty=duty, rest_radius=rest)
+        springs = blocks.declare_springs(
+            d, slot="return_spring", symbol="sp", count_symbol="N_s", text="they push the pressure plate back"
+        )
+        lining = blocks.declare_lining(d, family=self.name, duty=duty)
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)
         speed = centrifugal.speed_for_force(at_contact, balls.mass, end, balls.push)
         # The same force at the same radius: written with the contact speed, the two speeds bound each other.
         release = speed * balls.release_ratio
-        blocks.declare_contact(d, duty, speed, release, needs="ramp_returns")
+        blocks.declare_contact(d, duty=duty, contact=speed, release=release, needs="ramp_returns")
         needed = lining.force(duty.torque_to_carry)
         blocks.declare_band(
             d,
-            ball_ramp.clamp_speed_ratio(at_contact, needed),
-            "Speed at which required_torque with its reserve is reached, over the contact speed",
+            band=ball_ramp.clamp_speed_ratio(at_contact, needed),
+            text="Speed at which required_torque with its reserve is reached, over the contact speed",
         )
         # The two clamp forces share their terms, so that a bound of one bounds the other.
         gain = centrifugal.axial_gain(balls.mass, end, balls.push)
@@ -91,14 +93,20 @@ class CentrifugalBallRamp(DesignProblem):
             source=f"{S4}, analysis 1, eq. (12), corrected",
         )
         blocks.declare_clamp(
-            d, lining, clamp, "Clamp force at top_speed, the largest", f"{S4}, analysis 1, eq. (12), corrected"
+            d,
+            lining=lining,
+            force=clamp,
+            text="Clamp force at top_speed, the largest",
+            source=f"{S4}, analysis 1, eq. (12), corrected",
         )
-        ball_blocks.limit_contact_and_clamp(d, wants, speed, clamp, " at top_speed")
+        ball_blocks.limit_contact_and_clamp(
+            d, wants=wants, contact_speed=speed, clamp_force=clamp, speed_text=" at top_speed"
+        )
         blocks.declare_stop_force(
             d,
-            clamp,
-            "Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
-            f"{S4}, analysis 1",
+            force=clamp,
+            text="Force on the stop at top_speed: the friction disc stops the plate, there is no other stop",
+            source=f"{S4}, analysis 1",
         )
         d.at_most(
             "no_snap",
@@ -109,15 +117,28 @@ class CentrifugalBallRamp(DesignProblem):
             source=NOT_IN_S4,
         )
         blocks.limit_spring_force(
-            d, "spring_force", springs, deflection + gap, "The return springs stand their deflection at contact"
+            d,
+            name="spring_force",
+            springs=springs,
+            deflection=deflection + gap,
+            text="The return springs stand their deflection at contact",
         )
-        ball_blocks.declare_ball_pressure(d, duty, balls, end)
-        ball_blocks.limit_circle_room(d, wants, rest, balls, [springs])
-        blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(balls.mass, end, balls.radius), [springs])
+        ball_blocks.declare_ball_pressure(d, duty=duty, balls=balls, end_radius=end)
+        ball_blocks.limit_circle_room(d, wants=wants, rest_radius=rest, balls=balls, springs=[springs])
+        blocks.declare_size(
+            d,
+            duty=duty,
+            lining=lining,
+            rest_radius=rest,
+            flyweights=blocks.Flyweights(balls.mass, end, balls.radius),
+            springs=[springs],
+        )
         start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
-        blocks.advise_gravity(d, rest, start)
-        blocks.advise_release_gap(d, gap, lining)
-        blocks.advise_springs(d, duty, springs, rest, deflection, gap, "the return springs")
+        blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
+        blocks.advise_release_gap(d, gap=gap, lining=lining)
+        blocks.advise_springs(
+            d, duty=duty, springs=springs, radius=rest, preload=deflection, travel=gap, what="the return springs"
+        )
         blocks.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:

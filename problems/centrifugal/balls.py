@@ -69,7 +69,7 @@ class ForceLimits(Block):
     )
 
 
-def declare_force_limits(d: Declaration, duty: Duty) -> ForceLimits:
+def declare_force_limits(d: Declaration, *, duty: Duty) -> ForceLimits:
     """Declare earliest contact, largest clamp force and the gap between pockets.
 
     Parameters
@@ -93,7 +93,7 @@ def declare_force_limits(d: Declaration, duty: Duty) -> ForceLimits:
     return wants
 
 
-def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
+def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
     """Declare balls and ramp, with the limits that they come back and clear the hub.
 
     Parameters
@@ -201,7 +201,7 @@ def declare_balls(d: Declaration, duty: Duty, rest_radius: Any) -> Balls:
     )
 
 
-def declare_ball_pressure(d: Declaration, duty: Duty, balls: Balls, end_radius: Any) -> None:
+def declare_ball_pressure(d: Declaration, *, duty: Duty, balls: Balls, end_radius: Any) -> None:
     """Declare the pressure of the balls at top speed and its limit.
 
     Parameters
@@ -241,7 +241,7 @@ def declare_ball_pressure(d: Declaration, duty: Duty, balls: Balls, end_radius: 
 
 
 def limit_contact_and_clamp(
-    d: Declaration, wants: ForceLimits, contact_speed: Any, clamp_force: Any, speed_text: str = ""
+    d: Declaration, *, wants: ForceLimits, contact_speed: Any, clamp_force: Any, speed_text: str = ""
 ) -> None:
     """Declare the limits of earliest contact and largest clamp force.
 
@@ -277,7 +277,7 @@ def limit_contact_and_clamp(
 
 
 def limit_circle_room(
-    d: Declaration, wants: ForceLimits, rest_radius: Any, balls: Balls | None, springs: Sequence[SpringSet]
+    d: Declaration, *, wants: ForceLimits, rest_radius: Any, balls: Balls | None, springs: Sequence[SpringSet]
 ) -> None:
     """Declare the limit that balls and springs stand beside each other on one circle.
 

@@ -166,11 +166,11 @@ def declare_duty(d: Declaration) -> Duty:
         Symbols of the block.
     """
     duty = d.block(Duty)
-    _refuse_contradictions(d, duty)
+    _refuse_contradictions(d, duty=duty)
     return duty
 
 
-def _refuse_contradictions(d: Declaration, duty: Duty) -> None:
+def _refuse_contradictions(d: Declaration, *, duty: Duty) -> None:
     d.refuse(
         "empty_idle_window",
         duty.idle_margin_min * duty.idle_speed > duty.contact_speed_max,

@@ -23,7 +23,7 @@ class Contact:
 
 
 def declare_contact(
-    d: Declaration, duty: Duty, contact: Any, release: Any = None, needs: str | tuple[str, ...] = ()
+    d: Declaration, *, duty: Duty, contact: Any, release: Any = None, needs: str | tuple[str, ...] = ()
 ) -> Contact:
     """Declare contact and release speed with their limits.
 
@@ -87,13 +87,14 @@ def declare_contact(
     return Contact(contact, release)
 
 
-def declare_band(d: Declaration, band: Any, text: str, needs: str | tuple[str, ...] = ()) -> None:
+def declare_band(d: Declaration, *, band: Any, text: str, needs: str | tuple[str, ...] = ()) -> None:
     """Declare the engagement band [-], a speed over the contact speed; ``needs`` are guards without which it is not."""
     d.derive("engagement_band", "-", band, symbol="band", text=text, source="definition", needs=needs)
 
 
 def declare_full_clamp(
     d: Declaration,
+    *,
     duty: Duty,
     lining: Lining,
     worn_force: Any,
@@ -155,7 +156,7 @@ def declare_full_clamp(
     )
 
 
-def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source: str) -> None:
+def declare_clamp(d: Declaration, *, lining: Lining, force: Any, text: str, source: str) -> None:
     """Declare the largest clamp force and the pressure of the lining, with its limit.
 
     Parameters
@@ -188,12 +189,12 @@ def declare_clamp(d: Declaration, lining: Lining, force: Any, text: str, source:
     )
 
 
-def declare_stop_force(d: Declaration, force: Any, text: str, source: str) -> Any:
+def declare_stop_force(d: Declaration, *, force: Any, text: str, source: str) -> Any:
     """Declare the force on the stop at top speed and return it [N]."""
     return d.derive("stop_force", "N", force, symbol="F_stop", text=text, source=source)
 
 
-def advise_stop_load(d: Declaration, stop_force: Any, clamp_force: Any) -> None:
+def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any) -> None:
     """Remark where the stop bears more than the lining at top speed.
 
     Parameters

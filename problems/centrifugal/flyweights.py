@@ -50,7 +50,7 @@ class Weights:
     angle_limit: Any
 
 
-def declare_weights(d: Declaration, duty: Duty) -> Weights:
+def declare_weights(d: Declaration, *, duty: Duty) -> Weights:
     """Declare the flyweights of the lever types: their mass, number, arm and room.
 
     Parameters
@@ -123,7 +123,7 @@ def declare_weights(d: Declaration, duty: Duty) -> Weights:
     return Weights(mass, count, arm, thickness, angle)
 
 
-def limit_weight_room(d: Declaration, duty: Duty, weights: Weights, rest_radius: Any, pivot_arm: Any = 0.0) -> None:
+def limit_weight_room(d: Declaration, *, duty: Duty, weights: Weights, rest_radius: Any, pivot_arm: Any = 0.0) -> None:
     """Declare the limit that weights (and the legs of their levers) clear the hub.
 
     Parameters
@@ -149,7 +149,7 @@ def limit_weight_room(d: Declaration, duty: Duty, weights: Weights, rest_radius:
     )
 
 
-def advise_gravity(d: Declaration, rest_radius: Any, start_speed: Any) -> None:
+def advise_gravity(d: Declaration, *, rest_radius: Any, start_speed: Any) -> None:
     """Remark where the flyweights start at so low a speed that gravity moves them.
 
     Parameters

@@ -65,32 +65,56 @@ class CentrifugalLever(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         duty = blocks.declare_duty(d)
-        lever = lever_blocks.declare_lever(d, duty, "beyond contact, so that the clamp force is capped")
+        lever = lever_blocks.declare_lever(d, duty=duty, stop_text="beyond contact, so that the clamp force is capped")
         rods = self._declare_rods(d)
-        springs = blocks.declare_springs(d, "clamp_spring", "sp", "N_s", "between lever and pressure plate")
-        lining = blocks.declare_lining(d, self.name, duty)
-        lever_blocks.limit_contact(d, lever, rods.rod_arm, ROD_ARM[1], "rod_arm")
+        springs = blocks.declare_springs(
+            d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
+        )
+        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lever_blocks.limit_contact(d, lever=lever, plate_arm=rods.rod_arm, longest=ROD_ARM[1], name="rod_arm")
         shortest = lever.worn_travel / (rods.ratio_max * lever.weights.angle_limit)
-        lever_blocks.refuse_room(d, duty, shortest, "spring_arm")
+        lever_blocks.refuse_room(d, duty=duty, least_leg=shortest, name="spring_arm")
 
         squeeze = rods.spring_arm * lever.stop_angle
         travel = squeeze - lever.contact_travel
         full = springs.force(lever.deflection + travel)
-        self._declare_guards(d, lever, rods, squeeze)
-        self._declare_speeds(d, duty, lining, lever, rods, springs, full)
-        blocks.declare_clamp(d, lining, full, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED)
-        self._declare_retraction(d, lever, rods, springs)
-        blocks.limit_spring_force(
-            d, "spring_force", springs, lever.deflection + travel, "The clamp springs stand the stop"
+        self._declare_guards(d, lever=lever, rods=rods, squeeze=squeeze)
+        self._declare_speeds(d, duty=duty, lining=lining, lever=lever, rods=rods, springs=springs, full=full)
+        blocks.declare_clamp(
+            d,
+            lining=lining,
+            force=full,
+            text="Clamp force from full_clamp_speed on, with new linings",
+            source=RECONSTRUCTED,
         )
-        blocks.limit_weight_room(d, duty, lever.weights, lever.rest_radius, rods.spring_arm)
-        lever_blocks.declare_size(d, duty, lining, lever, [springs])
+        self._declare_retraction(d, lever=lever, rods=rods, springs=springs)
+        blocks.limit_spring_force(
+            d,
+            name="spring_force",
+            springs=springs,
+            deflection=lever.deflection + travel,
+            text="The clamp springs stand the stop",
+        )
+        blocks.limit_weight_room(
+            d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=rods.spring_arm
+        )
+        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs])
         at_stop = formulas.clamp_flyweight_force(full, rods.spring_arm, lever.weights.arm)
         at_start = formulas.travel_flyweight_force(
             springs.force(lever.deflection), rods.spring_arm, rods.rod_arm, lever.weights.arm
         )
-        lever_blocks.advise_lever(d, duty, lining, lever, at_start, at_stop, full)
-        blocks.advise_springs(d, duty, springs, lever.rest_radius, lever.deflection, travel, "the clamp springs")
+        lever_blocks.advise_lever(
+            d, duty=duty, lining=lining, lever=lever, start_pull=at_start, stop_pull=at_stop, clamp=full
+        )
+        blocks.advise_springs(
+            d,
+            duty=duty,
+            springs=springs,
+            radius=lever.rest_radius,
+            preload=lever.deflection,
+            travel=travel,
+            what="the clamp springs",
+        )
         blocks.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
@@ -170,7 +194,7 @@ class CentrifugalLever(DesignProblem):
             ),
         )
 
-    def _declare_guards(self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
+    def _declare_guards(self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(
             GUARDS[0],
             rods.spring_arm,
@@ -194,6 +218,7 @@ class CentrifugalLever(DesignProblem):
     def _declare_speeds(
         self,
         d: Declaration,
+        *,
         duty: blocks.Duty,
         lining: blocks.Lining,
         lever: lever_blocks.Lever,
@@ -211,9 +236,13 @@ class CentrifugalLever(DesignProblem):
         )
         contact, stop, band = lever.speeds(formulas.clamp_flyweight_force(full, rods.spring_arm, arm), band_squared)
         worn = full - springs.rate * lever.wear
-        blocks.declare_contact(d, duty, contact, needs=GUARDS)
-        blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, GUARDS[1])
-        blocks.declare_band(d, band, "Full-clamp speed over contact speed; a small one is sharp", GUARDS)
+        blocks.declare_contact(d, duty=duty, contact=contact, needs=GUARDS)
+        blocks.declare_full_clamp(
+            d, duty=duty, lining=lining, worn_force=worn, full_clamp_speed=stop, source=RECONSTRUCTED, needs=GUARDS[1]
+        )
+        blocks.declare_band(
+            d, band=band, text="Full-clamp speed over contact speed; a small one is sharp", needs=GUARDS
+        )
         d.at_most(
             "no_snap_travel",
             formulas.gradual_radius(lever.deflection, arm, rods.lead),
@@ -234,7 +263,7 @@ class CentrifugalLever(DesignProblem):
         )
 
     def _declare_retraction(
-        self, d: Declaration, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet
+        self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet
     ) -> None:
         d.at_most(
             "retraction_arm",

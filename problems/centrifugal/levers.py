@@ -62,7 +62,7 @@ class Lever:
         return np.sqrt(square / band_squared), np.sqrt(square), np.sqrt(band_squared)
 
 
-def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
+def declare_lever(d: Declaration, *, duty: blocks.Duty, stop_text: str) -> Lever:
     """Declare gap, wear, flyweights, preload and stop angle, with the limits of angle and contact.
 
     Parameters
@@ -90,7 +90,7 @@ def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
         source=f"{S4}, x0; {TYPICAL}",
     )
     wear = blocks.declare_wear(d)
-    weights = blocks.declare_weights(d, duty)
+    weights = blocks.declare_weights(d, duty=duty)
     lever = Lever(
         rest_radius=blocks.declare_rest_radius(d),
         weights=weights,
@@ -132,7 +132,7 @@ def declare_lever(d: Declaration, duty: blocks.Duty, stop_text: str) -> Lever:
     return lever
 
 
-def limit_contact(d: Declaration, lever: Lever, plate_arm: Any, longest: float, name: str) -> None:
+def limit_contact(d: Declaration, *, lever: Lever, plate_arm: Any, longest: float, name: str) -> None:
     """Declare that the lever meets its stop after contact, and refuse gaps that no lever closes.
 
     Parameters
@@ -164,7 +164,7 @@ def limit_contact(d: Declaration, lever: Lever, plate_arm: Any, longest: float, 
     )
 
 
-def refuse_room(d: Declaration, duty: blocks.Duty, least_leg: Any, name: str) -> None:
+def refuse_room(d: Declaration, *, duty: blocks.Duty, least_leg: Any, name: str) -> None:
     """Refuse hubs and outside diameters that leave no room for the shortest lever.
 
     Parameters
@@ -193,7 +193,7 @@ def refuse_room(d: Declaration, duty: blocks.Duty, least_leg: Any, name: str) ->
 
 
 def declare_size(
-    d: Declaration, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet]
+    d: Declaration, *, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet]
 ) -> None:
     """Declare outside diameter, mass and inertia with the weights of the lever.
 
@@ -212,11 +212,14 @@ def declare_size(
     """
     weights = lever.weights
     flyweights = blocks.Flyweights(weights.mass, lever.end_radius, weights.thickness / 2)
-    blocks.declare_size(d, duty, lining, lever.rest_radius, flyweights, springs)
+    blocks.declare_size(
+        d, duty=duty, lining=lining, rest_radius=lever.rest_radius, flyweights=flyweights, springs=springs
+    )
 
 
 def advise_lever(
     d: Declaration,
+    *,
     duty: blocks.Duty,
     lining: blocks.Lining,
     lever: Lever,
@@ -244,9 +247,9 @@ def advise_lever(
     pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
     stop_force = blocks.declare_stop_force(
         d,
-        pull - stop_pull,
-        "Force of all levers on their stops at top_speed, at flyweight_arm",
-        RECONSTRUCTED,
+        force=pull - stop_pull,
+        text="Force of all levers on their stops at top_speed, at flyweight_arm",
+        source=RECONSTRUCTED,
     )
     d.advise(
         "assumed_values",
@@ -257,6 +260,6 @@ def advise_lever(
         "their defaults are typical values, not those of your drive",
         source=RECONSTRUCTED,
     )
-    blocks.advise_release_gap(d, lever.contact_travel, lining)
-    blocks.advise_gravity(d, lever.rest_radius, lever.speed(start_pull, 0.0))
-    blocks.advise_stop_load(d, stop_force, clamp)
+    blocks.advise_release_gap(d, gap=lever.contact_travel, lining=lining)
+    blocks.advise_gravity(d, rest_radius=lever.rest_radius, start_speed=lever.speed(start_pull, 0.0))
+    blocks.advise_stop_load(d, stop_force=stop_force, clamp_force=clamp)

@@ -38,7 +38,7 @@ class Lining:
         return centrifugal.force_for_torque(torque, self.pair.mu_dynamic, self.surfaces, self.friction_radius)
 
 
-def declare_lining(d: Declaration, family: str, duty: Duty) -> Lining:
+def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
     """Declare lining and slot friction_pair, with the limits of its shape and of the heat of an engagement.
 
     Parameters
@@ -141,7 +141,7 @@ def declare_wear(d: Declaration) -> Any:
     )
 
 
-def advise_release_gap(d: Declaration, gap: Any, lining: Lining) -> None:
+def advise_release_gap(d: Declaration, *, gap: Any, lining: Lining) -> None:
     """Remark where the gap of the plate leaves each friction surface too little air.
 
     Parameters

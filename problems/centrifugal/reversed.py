@@ -58,12 +58,18 @@ class CentrifugalReversed(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         duty = blocks.declare_duty(d)
-        lever = lever_blocks.declare_lever(d, duty, "the window of disc 1, so that the clamp force is capped")
-        springs = blocks.declare_springs(d, "clamp_spring", "sp", "N_s", "between disc 1 and the housing")
+        lever = lever_blocks.declare_lever(
+            d, duty=duty, stop_text="the window of disc 1, so that the clamp force is capped"
+        )
+        springs = blocks.declare_springs(
+            d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between disc 1 and the housing"
+        )
         leg = self._declare_leg(d)
-        lining = blocks.declare_lining(d, self.name, duty)
-        lever_blocks.limit_contact(d, lever, leg.arm, PLATE_ARM[1], "plate_arm")
-        lever_blocks.refuse_room(d, duty, lever.worn_travel / lever.weights.angle_limit, "plate_arm")
+        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
+        lever_blocks.refuse_room(
+            d, duty=duty, least_leg=lever.worn_travel / lever.weights.angle_limit, name="plate_arm"
+        )
 
         squeeze = leg.arm * lever.stop_angle
         d.at_least(
@@ -78,18 +84,40 @@ class CentrifugalReversed(DesignProblem):
         lift = squeeze - lever.contact_travel
         push = springs.force(lever.deflection + lift)
         clamp = push - leg.force(lever.contact_travel)
-        self._declare_speeds(d, duty, lining, lever, leg, springs, push)
-        blocks.declare_clamp(d, lining, clamp, "Clamp force from full_clamp_speed on, with new linings", RECONSTRUCTED)
-        self._declare_springs(d, lever, leg, springs, lift)
-        blocks.limit_weight_room(d, duty, lever.weights, lever.rest_radius, leg.arm)
-        lever_blocks.declare_size(d, duty, lining, lever, [springs, leg.springs])
+        self._declare_speeds(d, duty=duty, lining=lining, lever=lever, leg=leg, springs=springs, push=push)
+        blocks.declare_clamp(
+            d,
+            lining=lining,
+            force=clamp,
+            text="Clamp force from full_clamp_speed on, with new linings",
+            source=RECONSTRUCTED,
+        )
+        self._declare_springs(d, lever=lever, leg=leg, springs=springs, lift=lift)
+        blocks.limit_weight_room(d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=leg.arm)
+        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs, leg.springs])
         at_stop, at_start = (
             formulas.clamp_flyweight_force(force, leg.arm, lever.weights.arm) for force in (push, leg.force(0.0))
         )
-        lever_blocks.advise_lever(d, duty, lining, lever, at_start, at_stop, clamp)
-        blocks.advise_springs(d, duty, springs, lever.rest_radius, lever.deflection, lift, "the clamp springs")
+        lever_blocks.advise_lever(
+            d, duty=duty, lining=lining, lever=lever, start_pull=at_start, stop_pull=at_stop, clamp=clamp
+        )
         blocks.advise_springs(
-            d, duty, leg.springs, lever.rest_radius, leg.deflection, lever.contact_travel, "the return springs"
+            d,
+            duty=duty,
+            springs=springs,
+            radius=lever.rest_radius,
+            preload=lever.deflection,
+            travel=lift,
+            what="the clamp springs",
+        )
+        blocks.advise_springs(
+            d,
+            duty=duty,
+            springs=leg.springs,
+            radius=lever.rest_radius,
+            preload=leg.deflection,
+            travel=lever.contact_travel,
+            what="the return springs",
         )
         blocks.declare_objectives(d)
 
@@ -139,7 +167,9 @@ class CentrifugalReversed(DesignProblem):
                 text="Short leg of the lever, which pushes the plate",
                 source=RECONSTRUCTED,
             ),
-            springs=blocks.declare_springs(d, "return_spring", "spr", "N_r", "draw the plate off the friction disc"),
+            springs=blocks.declare_springs(
+                d, slot="return_spring", symbol="spr", count_symbol="N_r", text="draw the plate off the friction disc"
+            ),
             deflection=d.variable(
                 "return_preload_deflection",
                 "mm",
@@ -155,6 +185,7 @@ class CentrifugalReversed(DesignProblem):
     def _declare_speeds(
         self,
         d: Declaration,
+        *,
         duty: blocks.Duty,
         lining: blocks.Lining,
         lever: lever_blocks.Lever,
@@ -171,10 +202,15 @@ class CentrifugalReversed(DesignProblem):
         contact = lever.speed(formulas.clamp_flyweight_force(back, leg.arm, arm), contact_angle)
         stop = lever.speed(formulas.clamp_flyweight_force(push, leg.arm, arm), lever.stop_angle)
         worn = push - back - (springs.rate + leg.springs.rate) * lever.wear
-        blocks.declare_contact(d, duty, contact)
-        blocks.declare_full_clamp(d, duty, lining, worn, stop, RECONSTRUCTED, LOADED)
+        blocks.declare_contact(d, duty=duty, contact=contact)
+        blocks.declare_full_clamp(
+            d, duty=duty, lining=lining, worn_force=worn, full_clamp_speed=stop, source=RECONSTRUCTED, needs=LOADED
+        )
         blocks.declare_band(
-            d, np.sqrt(band_squared), "Full-clamp speed over contact speed; a small one is sharp", LOADED
+            d,
+            band=np.sqrt(band_squared),
+            text="Full-clamp speed over contact speed; a small one is sharp",
+            needs=LOADED,
         )
         d.at_most(
             "no_snap_travel",
@@ -196,7 +232,7 @@ class CentrifugalReversed(DesignProblem):
         )
 
     def _declare_springs(
-        self, d: Declaration, lever: lever_blocks.Lever, leg: Leg, springs: blocks.SpringSet, lift: Any
+        self, d: Declaration, *, lever: lever_blocks.Lever, leg: Leg, springs: blocks.SpringSet, lift: Any
     ) -> None:
         d.at_most(
             "preload_order",
@@ -207,12 +243,16 @@ class CentrifugalReversed(DesignProblem):
             source=NOT_IN_S4,
         )
         blocks.limit_spring_force(
-            d, "spring_force", springs, lever.deflection + lift, "The clamp springs stand the stop"
+            d,
+            name="spring_force",
+            springs=springs,
+            deflection=lever.deflection + lift,
+            text="The clamp springs stand the stop",
         )
         blocks.limit_spring_force(
             d,
-            "return_spring_force",
-            leg.springs,
-            leg.deflection + lever.contact_travel,
-            "The return springs stand the travel to contact",
+            name="return_spring_force",
+            springs=leg.springs,
+            deflection=leg.deflection + lever.contact_travel,
+            text="The return springs stand the travel to contact",
         )

@@ -21,7 +21,13 @@ RIM_STRESS_MAX = 100e6  # hoop stress from which on the bursting of a rim is wor
 
 
 def declare_size(
-    d: Declaration, duty: Duty, lining: Lining, rest_radius: Any, flyweights: Flyweights, springs: Sequence[SpringSet]
+    d: Declaration,
+    *,
+    duty: Duty,
+    lining: Lining,
+    rest_radius: Any,
+    flyweights: Flyweights,
+    springs: Sequence[SpringSet],
 ) -> None:
     """Declare outside diameter, mass and inertia, the limit of the room there is, and the default objectives.
 

@@ -43,7 +43,7 @@ class SpringSet:
         return self.count * (self.part.mean_diameter_D + self.part.wire_diameter_d + gap)
 
 
-def declare_springs(d: Declaration, slot: str, symbol: str, count_symbol: str, text: str) -> SpringSet:
+def declare_springs(d: Declaration, *, slot: str, symbol: str, count_symbol: str, text: str) -> SpringSet:
     """Declare a slot of compression springs and the number of springs in it.
 
     Parameters
@@ -80,7 +80,7 @@ def declare_springs(d: Declaration, slot: str, symbol: str, count_symbol: str, t
     return SpringSet(part, count)
 
 
-def limit_spring_force(d: Declaration, name: str, springs: SpringSet, deflection: Any, text: str) -> None:
+def limit_spring_force(d: Declaration, *, name: str, springs: SpringSet, deflection: Any, text: str) -> None:
     """Declare the limit of the force on one spring at its largest deflection.
 
     Parameters
@@ -100,7 +100,7 @@ def limit_spring_force(d: Declaration, name: str, springs: SpringSet, deflection
     d.at_most(name, force, springs.part.max_force_Fn, "N", text=text, source="EN 13906-1")
 
 
-def limit_share_of_force(d: Declaration, name: str, springs: SpringSet, force: Any, text: str) -> None:
+def limit_share_of_force(d: Declaration, *, name: str, springs: SpringSet, force: Any, text: str) -> None:
     """Declare the limit of the force on one spring, from the largest force of the set.
 
     Parameters
@@ -120,7 +120,7 @@ def limit_share_of_force(d: Declaration, name: str, springs: SpringSet, force: A
 
 
 def advise_springs(
-    d: Declaration, duty: Duty, springs: SpringSet, radius: Any, preload: Any, travel: Any, what: str
+    d: Declaration, *, duty: Duty, springs: SpringSet, radius: Any, preload: Any, travel: Any, what: str
 ) -> None:
     """Remark springs that bow outwards at top speed, or that tire from engaging again and again.
 

@@ -89,14 +89,16 @@ class CentrifugalTwoSpring(DesignProblem):
             source=f"{S4}, analysis 2; practice 2",
         )
         duty = blocks.declare_duty(d)
-        wants = ball_blocks.declare_force_limits(d, duty)
+        wants = ball_blocks.declare_force_limits(d, duty=duty)
         wear = blocks.declare_wear(d)
         rest = blocks.declare_rest_radius(d)
         way = self._declare_way(d)
         drive = (
-            self._declare_balls(d, duty, rest) if mechanism == "ball_ramp" else self._declare_levers(d, duty, rest, way)
+            self._declare_balls(d, duty=duty, rest=rest)
+            if mechanism == "ball_ramp"
+            else self._declare_levers(d, duty=duty, rest=rest, way=way)
         )
-        lining = blocks.declare_lining(d, self.name, duty)
+        lining = blocks.declare_lining(d, family=self.name, duty=duty)
 
         def radius(travel: Any) -> Any:
             return centrifugal.orbit_radius(rest, drive.ratio, travel)
@@ -104,43 +106,56 @@ class CentrifugalTwoSpring(DesignProblem):
         end, at_contact = radius(way.stop_travel), radius(way.contact_travel)
         contact = centrifugal.speed_for_force(way.contact_force, drive.mass, at_contact, drive.push)
         stop = centrifugal.speed_for_force(way.stop_force, drive.mass, end, drive.push)
-        blocks.declare_contact(d, duty, contact, contact * drive.release_ratio, needs=drive.needs)
+        blocks.declare_contact(d, duty=duty, contact=contact, release=contact * drive.release_ratio, needs=drive.needs)
         band = centrifugal.speed_ratio(way.stop_force, end, way.contact_force, at_contact)
-        blocks.declare_band(d, band, "Speed at which the clamp force is complete, over the contact speed")
+        blocks.declare_band(d, band=band, text="Speed at which the clamp force is complete, over the contact speed")
         clamp = two_spring.clamp_force(way.stop_force, way.contact_force)
         worn = two_spring.worn_clamp_force(clamp, way.return_rate, way.clamp_rate, wear)
-        blocks.declare_full_clamp(d, duty, lining, worn, stop, ANALYSIS)
-        blocks.declare_clamp(d, lining, clamp, "Clamp force at the stop, the largest, new lining", ANALYSIS)
-        ball_blocks.limit_contact_and_clamp(d, wants, contact, clamp)
-        self._limit_order(d, way, wear, rest, at_contact, radius(way.start_travel), band)
-        blocks.limit_share_of_force(
-            d,
-            "spring1_force",
-            way.returning,
-            way.contact_force,
-            "The return springs stand their deflection at contact",
+        blocks.declare_full_clamp(d, duty=duty, lining=lining, worn_force=worn, full_clamp_speed=stop, source=ANALYSIS)
+        blocks.declare_clamp(
+            d, lining=lining, force=clamp, text="Clamp force at the stop, the largest, new lining", source=ANALYSIS
+        )
+        ball_blocks.limit_contact_and_clamp(d, wants=wants, contact_speed=contact, clamp_force=clamp)
+        self._limit_order(
+            d, way=way, wear=wear, rest=rest, at_contact=at_contact, at_start=radius(way.start_travel), band=band
         )
         blocks.limit_share_of_force(
             d,
-            "spring2_force",
-            way.clamping,
-            way.stop_force,
-            "The clamp springs stand their deflection at the stop",
+            name="spring1_force",
+            springs=way.returning,
+            force=way.contact_force,
+            text="The return springs stand their deflection at contact",
+        )
+        blocks.limit_share_of_force(
+            d,
+            name="spring2_force",
+            springs=way.clamping,
+            force=way.stop_force,
+            text="The clamp springs stand their deflection at the stop",
         )
         if drive.balls is not None:
-            ball_blocks.declare_ball_pressure(d, duty, drive.balls, end)
-        ball_blocks.limit_circle_room(d, wants, rest, drive.balls, [way.returning, way.clamping])
+            ball_blocks.declare_ball_pressure(d, duty=duty, balls=drive.balls, end_radius=end)
+        ball_blocks.limit_circle_room(
+            d, wants=wants, rest_radius=rest, balls=drive.balls, springs=[way.returning, way.clamping]
+        )
         push = centrifugal.axial_gain(drive.mass, end, drive.push) * duty.top_speed**2
         load = blocks.declare_stop_force(
             d,
-            two_spring.stop_load(push, way.stop_force),
-            "Force on the stop of the tension disc at top_speed",
-            ANALYSIS,
+            force=two_spring.stop_load(push, way.stop_force),
+            text="Force on the stop of the tension disc at top_speed",
+            source=ANALYSIS,
         )
         springs = [way.returning, way.clamping]
-        blocks.declare_size(d, duty, lining, rest, blocks.Flyweights(drive.mass, end, drive.half_height), springs)
-        self._declare_remarks(d, duty, drive, way, lining, rest)
-        blocks.advise_stop_load(d, load, clamp)
+        blocks.declare_size(
+            d,
+            duty=duty,
+            lining=lining,
+            rest_radius=rest,
+            flyweights=blocks.Flyweights(drive.mass, end, drive.half_height),
+            springs=springs,
+        )
+        self._declare_remarks(d, duty=duty, drive=drive, way=way, lining=lining, rest=rest)
+        blocks.advise_stop_load(d, stop_force=load, clamp_force=clamp)
         blocks.declare_objectives(d)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
@@ -222,10 +237,18 @@ class CentrifugalTwoSpring(DesignProblem):
             source=f"{S4}, F_R20/s2",
         )
         returning = blocks.declare_springs(
-            d, "return_spring", "sp1", "N_1", "they push the pressure plate off the lining (R1)"
+            d,
+            slot="return_spring",
+            symbol="sp1",
+            count_symbol="N_1",
+            text="they push the pressure plate off the lining (R1)",
         )
         clamping = blocks.declare_springs(
-            d, "clamp_spring", "sp2", "N_2", "the tension disc presses them on the pressure plate (R2)"
+            d,
+            slot="clamp_spring",
+            symbol="sp2",
+            count_symbol="N_2",
+            text="the tension disc presses them on the pressure plate (R2)",
         )
         return_preload = returning.force(return_deflection)
         clamp_preload = clamping.force(clamp_deflection)
@@ -246,8 +269,8 @@ class CentrifugalTwoSpring(DesignProblem):
             clamp_deflection=clamp_deflection,
         )
 
-    def _declare_balls(self, d: Declaration, duty: blocks.Duty, rest: Any) -> Drive:
-        balls = ball_blocks.declare_balls(d, duty, rest)
+    def _declare_balls(self, d: Declaration, *, duty: blocks.Duty, rest: Any) -> Drive:
+        balls = ball_blocks.declare_balls(d, duty=duty, rest_radius=rest)
         return Drive(
             mass=balls.mass,
             half_height=balls.radius,
@@ -258,7 +281,7 @@ class CentrifugalTwoSpring(DesignProblem):
             balls=balls,
         )
 
-    def _declare_levers(self, d: Declaration, duty: blocks.Duty, rest: Any, way: Way) -> Drive:
+    def _declare_levers(self, d: Declaration, *, duty: blocks.Duty, rest: Any, way: Way) -> Drive:
         efficiency = d.requirement(
             "mechanism_efficiency",
             "-",
@@ -269,7 +292,7 @@ class CentrifugalTwoSpring(DesignProblem):
             text=f"Efficiency of the levers, going out as coming in ({TYPICAL})",
             source=TYPICAL,
         )
-        weights = blocks.declare_weights(d, duty)
+        weights = blocks.declare_weights(d, duty=duty)
         arm = d.variable(
             "axial_arm",
             "mm",
@@ -296,7 +319,7 @@ class CentrifugalTwoSpring(DesignProblem):
             text="The levers turn so little that the model holds",
             source=NOT_IN_S4,
         )
-        blocks.limit_weight_room(d, duty, weights, rest)
+        blocks.limit_weight_room(d, duty=duty, weights=weights, rest_radius=rest)
         d.advise(
             "levers_reconstructed",
             True,
@@ -315,7 +338,7 @@ class CentrifugalTwoSpring(DesignProblem):
         )
 
     def _limit_order(
-        self, d: Declaration, way: Way, wear: Any, rest: Any, at_contact: Any, at_start: Any, band: Any
+        self, d: Declaration, *, way: Way, wear: Any, rest: Any, at_contact: Any, at_start: Any, band: Any
     ) -> None:
         d.at_most(
             "preload_order",
@@ -362,14 +385,26 @@ class CentrifugalTwoSpring(DesignProblem):
         )
 
     def _declare_remarks(
-        self, d: Declaration, duty: blocks.Duty, drive: Drive, way: Way, lining: blocks.Lining, rest: Any
+        self, d: Declaration, *, duty: blocks.Duty, drive: Drive, way: Way, lining: blocks.Lining, rest: Any
     ) -> None:
         start = centrifugal.speed_for_force(way.clamp_preload, drive.mass, rest, drive.push)
-        blocks.advise_gravity(d, rest, start)
-        blocks.advise_release_gap(d, way.plate_travel, lining)
+        blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
+        blocks.advise_release_gap(d, gap=way.plate_travel, lining=lining)
         blocks.advise_springs(
-            d, duty, way.returning, rest, way.return_deflection, way.plate_travel, "the return springs"
+            d,
+            duty=duty,
+            springs=way.returning,
+            radius=rest,
+            preload=way.return_deflection,
+            travel=way.plate_travel,
+            what="the return springs",
         )
         blocks.advise_springs(
-            d, duty, way.clamping, rest, way.clamp_deflection, way.stop_travel - way.plate_travel, "the clamp springs"
+            d,
+            duty=duty,
+            springs=way.clamping,
+            radius=rest,
+            preload=way.clamp_deflection,
+            travel=way.stop_travel - way.plate_travel,
+            what="the clamp springs",
         )

@@ -122,7 +122,7 @@ class ConeClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = friction.declare_duty(d, COOLING, None)
+        duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None)
         if duty.cooling != COOLING:
             d.advise(
                 "cooling_not_counted",
@@ -132,9 +132,9 @@ class ConeClutch(DesignProblem):
                 source="premise of the cone model",
             )
         wants = self._declare_requirements(d)
-        shape = self._declare_cone(d, wants)
+        shape = self._declare_cone(d, wants=wants)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, self.name, duty, None)
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=None)
         layout = d.part(
             "cone_layout",
             "cone_layouts",
@@ -153,15 +153,37 @@ class ConeClutch(DesignProblem):
         seated_force = cone.seated_force(shape.force, shape.angle)
         seated_torque = torque(high * seated_force)
         torques = friction.declare_torque(
-            d, duty, pair, friction.sizing_torque(duty), torque(grip_low), torque(grip_high), overload=seated_torque
+            d,
+            duty=duty,
+            pair=pair,
+            required=friction.sizing_torque(duty),
+            torque_low=torque(grip_low),
+            torque_high=torque(grip_high),
+            overload=seated_torque,
         )
-        start = friction.declare_startup(d, duty, torques, ramp_time)
+        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         friction.declare_surface_loads(
-            d, duty, pair, start, shape.area, shape.area, grip_low / low / shape.area, shape.largest_diameter / 2
+            d,
+            duty=duty,
+            pair=pair,
+            start=start,
+            area=shape.area,
+            rubbing_area=shape.area,
+            pressure=grip_low / low / shape.area,
+            rubbing_radius=shape.largest_diameter / 2,
         )
-        self._declare_seating(d, duty, wants, pair, shape, seated_torque, seated_force / shape.area)
-        self._declare_release(d, duty, wants, pair, shape, cone.release_force(grip_high / high, shape.angle, high))
-        self._declare_bearing(d, wants, shape, layout)
+        self._declare_seating(
+            d, duty=duty, wants=wants, pair=pair, shape=shape, torque=seated_torque, pressure=seated_force / shape.area
+        )
+        self._declare_release(
+            d,
+            duty=duty,
+            wants=wants,
+            pair=pair,
+            shape=shape,
+            force=cone.release_force(grip_high / high, shape.angle, high),
+        )
+        self._declare_bearing(d, wants=wants, shape=shape, layout=layout)
         shell_mass = cone.shell_mass(duty.steel_density, shape.area, shape.shell_thickness)
         lining = pair.part.lining_thickness
         size = friction.Size(
@@ -173,14 +195,14 @@ class ConeClutch(DesignProblem):
         )
         friction.declare_size(
             d,
-            size,
-            "Both shells and the lining, times the mass_factor of the layout",
-            "Outside of the outer cone",
-            "dm + l_g sin(alpha) + 2 (t_s + t_lining)",
-            "Length of the cone and what the layout adds to it",
+            size=size,
+            mass_of="Both shells and the lining, times the mass_factor of the layout",
+            outside="Outside of the outer cone",
+            across="dm + l_g sin(alpha) + 2 (t_s + t_lining)",
+            along="Length of the cone and what the layout adds to it",
         )
-        self._declare_temperature(d, duty, wants, pair, start, size, shell_mass)
-        friction.declare_envelope(d, duty, shape.force, size.diameter, size.length)
+        self._declare_temperature(d, duty=duty, wants=wants, pair=pair, start=start, size=size, shell_mass=shell_mass)
+        friction.declare_envelope(d, duty=duty, force=shape.force, diameter=size.diameter, length=size.length)
         d.objective("mass")
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work"):
@@ -202,7 +224,7 @@ class ConeClutch(DesignProblem):
         )
         return wants
 
-    def _declare_cone(self, d: Declaration, wants: Wants) -> Cone:
+    def _declare_cone(self, d: Declaration, *, wants: Wants) -> Cone:
         force = d.variable(
             "actuation_force",
             "N",
@@ -312,6 +334,7 @@ class ConeClutch(DesignProblem):
     def _declare_seating(
         self,
         d: Declaration,
+        *,
         duty: friction.Duty,
         wants: Wants,
         pair: friction.Pair,
@@ -354,7 +377,7 @@ class ConeClutch(DesignProblem):
             )
 
     def _declare_release(
-        self, d: Declaration, duty: friction.Duty, wants: Wants, pair: friction.Pair, shape: Cone, force: Any
+        self, d: Declaration, *, duty: friction.Duty, wants: Wants, pair: friction.Pair, shape: Cone, force: Any
     ) -> None:
         """Declare the release force and the limit against self-locking."""
         release = d.derive(
@@ -399,7 +422,7 @@ class ConeClutch(DesignProblem):
             source=f"{S1}, release by an outer force",
         )
 
-    def _declare_bearing(self, d: Declaration, wants: Wants, shape: Cone, layout: Part) -> None:
+    def _declare_bearing(self, d: Declaration, *, wants: Wants, shape: Cone, layout: Part) -> None:
         force = d.derive(
             "bearing_force",
             "N",
@@ -429,6 +452,7 @@ class ConeClutch(DesignProblem):
     def _declare_temperature(
         self,
         d: Declaration,
+        *,
         duty: friction.Duty,
         wants: Wants,
         pair: friction.Pair,
@@ -437,7 +461,10 @@ class ConeClutch(DesignProblem):
         shell_mass: Any,
     ) -> None:
         friction.declare_heated_body(
-            d, shell_mass * duty.steel_specific_heat, plates.cylinder_surface(size.diameter, size.length), "A shell"
+            d,
+            heat_capacity=shell_mass * duty.steel_specific_heat,
+            cooled_area=plates.cylinder_surface(size.diameter, size.length),
+            body="A shell",
         )
         rise = d.derive(
             "temperature_rise",

@@ -36,9 +36,9 @@ class DiscClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = friction.declare_duty(d, "still_air", "dry")
-        ring = friction.declare_ring(d, 0.11, 0.13)
-        pack = disc_pack.declare_disc_pack(d, duty, ring)
+        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry")
+        ring = friction.declare_ring(d, ratio_min=0.11, ratio_max=0.13)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring)
         force = d.variable(
             "actuation_force",
             "N",
@@ -49,29 +49,40 @@ class DiscClutch(DesignProblem):
             source=f"{S1}, F",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, self.name, duty, "dry")
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry")
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
 
         required = friction.sizing_torque(duty)
-        torques = friction.declare_torque(d, duty, pair, required, torque(pair.mu_low), torque(pair.mu_high))
-        disc_pack.declare_worn_torque(d, pair, torques, ring, pack, force)
-        start = friction.declare_startup(d, duty, torques, ramp_time)
+        torques = friction.declare_torque(
+            d, duty=duty, pair=pair, required=required, torque_low=torque(pair.mu_low), torque_high=torque(pair.mu_high)
+        )
+        disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
+        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
-        friction.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
+        friction.declare_surface_loads(
+            d,
+            duty=duty,
+            pair=pair,
+            start=start,
+            area=area,
+            rubbing_area=area,
+            pressure=force / ring.area,
+            rubbing_radius=ring.outer_radius,
+        )
         size = disc_pack.disc_size(duty, ring, pair, pack)
         friction.declare_size(
             d,
-            size,
-            "Pressure plates, linings and cores, without flywheel, springs and cover",
-            "Outside of the cover",
-            "2 (r2 + s_cover)",
-            "Length of the released discs and pressure plates, without flywheel, springs and cover",
+            size=size,
+            mass_of="Pressure plates, linings and cores, without flywheel, springs and cover",
+            outside="Outside of the cover",
+            across="2 (r2 + s_cover)",
+            along="Length of the released discs and pressure plates, without flywheel, springs and cover",
         )
-        disc_pack.declare_disc_inertia(d, duty, ring, pair, pack)
-        disc_pack.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
-        friction.declare_envelope(d, duty, force, size.diameter, size.length)
+        disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
+        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=size)
+        friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         d.objective("mass")
         d.objective("actuation_force")
         for name in ("outer_diameter", "volume", "friction_work", "disc_inertia"):

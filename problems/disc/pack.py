@@ -77,7 +77,7 @@ class DiscPack:
     plate_thickness: Any
 
 
-def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
+def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring) -> DiscPack:
     """Declare requirements and unknowns of a disc pack, and the limit of its bore.
 
     Parameters
@@ -139,7 +139,9 @@ def declare_disc_pack(d: Declaration, duty: Duty, ring: Ring) -> DiscPack:
     return DiscPack(wants, discs, disc.surface_count(discs), plate_thickness)
 
 
-def declare_worn_torque(d: Declaration, pair: Pair, torques: Torques, ring: Ring, pack: DiscPack, force: Any) -> None:
+def declare_worn_torque(
+    d: Declaration, *, pair: Pair, torques: Torques, ring: Ring, pack: DiscPack, force: Any
+) -> None:
     """Declare the capacity with worn-in lining and its limit.
 
     Parameters
@@ -202,7 +204,7 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
     )
 
 
-def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
+def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
     """Declare the inertia of the discs, which the gearbox has to synchronise."""
     d.derive(
         "disc_inertia",
@@ -221,7 +223,7 @@ def declare_disc_inertia(d: Declaration, duty: Duty, ring: Ring, pair: Pair, pac
 
 
 def declare_disc_temperature(
-    d: Declaration, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: Size
+    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: Size
 ) -> None:
     """Declare the temperatures of a disc pack and their limits.
 
@@ -279,8 +281,8 @@ def declare_disc_temperature(
         source="Neale, Tribology Handbook, Table 7.4",
     )
     capacity = pack.discs * plate_mass * wants.pressure_plate_specific_heat
-    declare_heated_body(d, capacity, cooled_area, "The pressure plates")
-    advise_frequent_switching(d, duty, capacity, cooled_area)
+    declare_heated_body(d, heat_capacity=capacity, cooled_area=cooled_area, body="The pressure plates")
+    advise_frequent_switching(d, duty=duty, heat_capacity=capacity, cooled_area=cooled_area)
     d.advise(
         "lining_temperature",
         mean_rise + rise > pair.part.optional("temp_max") - duty.ambient_temperature,

@@ -141,7 +141,7 @@ def declare_magnet(d: Declaration) -> Magnet:
     return Magnet(wants, iron, unknowns, shape, force)
 
 
-def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: Any, friction_work: Any) -> Any:
+def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces: Any, friction_work: Any) -> Any:
     """Declare the circuit, the pull on the released armature and the coil with their limits.
 
     Parameters
@@ -167,7 +167,7 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     ratio = pot_magnet.yoke_flux_ratio(shape)
     yoke = pole * ratio
     densest = pole * np.maximum(ratio, 1.0)
-    coil_blocks.declare_saturation(d, iron, densest)
+    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=densest)
     d.at_most(
         "pole_flux_density",
         pole,
@@ -186,7 +186,7 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
     )
     field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
     ampere_turns = pot_magnet.engaged_ampere_turns(unknowns.flux_density, shape, field)
-    released, springs = _name_release(d, duty, wants, surfaces)
+    released, springs = _name_release(d, duty=duty, wants=wants, surfaces=surfaces)
     pull_in = d.derive(
         "pull_in_force",
         "N",
@@ -219,13 +219,15 @@ def declare_magnet_coil(d: Declaration, duty: Duty, magnet: Magnet, surfaces: An
         surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
         other_heat=heat.hourly_heat(friction_work, duty.engagements_per_hour),
     )
-    copper_section = coil_blocks.declare_winding(d, iron, unknowns, ampere_turns, shape.inner_pole_radius, around)
-    _declare_remarks(d, wants)
+    copper_section = coil_blocks.declare_winding(
+        d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=shape.inner_pole_radius, around=around
+    )
+    _declare_remarks(d, wants=wants)
     copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, copper_section)
     return pot_magnet.magnet_mass(duty.steel_density, shape, copper)
 
 
-def _name_release(d: Declaration, duty: Duty, wants: MagnetRequirements, surfaces: Any) -> tuple[Any, Any]:
+def _name_release(d: Declaration, *, duty: Duty, wants: MagnetRequirements, surfaces: Any) -> tuple[Any, Any]:
     """Name what the magnet pulls against when it draws the armature in; return gap [m] and force [N]."""
     gap = d.step(
         "released_gap",
@@ -246,7 +248,7 @@ def _name_release(d: Declaration, duty: Duty, wants: MagnetRequirements, surface
     return gap, force
 
 
-def _declare_remarks(d: Declaration, wants: MagnetRequirements) -> None:
+def _declare_remarks(d: Declaration, *, wants: MagnetRequirements) -> None:
     d.advise(
         "armature_sticks",
         wants.residual_gap < 0.3e-3,

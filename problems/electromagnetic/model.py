@@ -99,63 +99,94 @@ class ElectromagneticClutch(DesignProblem):
 
     def _declare_multi_plate(self, d: Declaration) -> None:
         lubrication = plate_pack.declare_lubrication(d)
-        duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
+        duty = friction.declare_duty(
+            d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
+        )
         options = d.block(plate_pack.PackOptions)
-        wants = plate_pack.declare_pack_requirements(d, options, lubrication)
-        ring = friction.declare_ring(d, 0.10, 0.25)
+        wants = plate_pack.declare_pack_requirements(d, options=options, lubrication=lubrication)
+        ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
         magnet = magnet_blocks.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, self.name, duty, lubrication)
-        pack = plate_pack.declare_pack(d, options, wants, ring)
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
+        pack = plate_pack.declare_pack(d, options=options, wants=wants, ring=ring)
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        plate_pack.refuse_impossible_pack(d, duty, options, wants, ring, pack, required)
-        torque = plate_pack.declare_pack_torque(d, options, wants, ring, pair, pack, magnet.actuation_force)
+        plate_pack.refuse_impossible_pack(
+            d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
+        )
+        torque = plate_pack.declare_pack_torque(
+            d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=magnet.actuation_force
+        )
         needs = ("guide_jams", magnet_blocks.HOLDS)
-        torques = friction.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=needs)
-        start = friction.declare_startup(d, duty, torques, ramp_time)
+        torques = friction.declare_torque(
+            d, duty=duty, pair=pair, required=required, torque_low=torque.low, torque_high=torque.high, needs=needs
+        )
+        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
         rubbing = pack.aid.area_factor * area
-        friction.declare_surface_loads(d, duty, pair, start, area, rubbing, torque.pressure, ring.outer_radius)
+        friction.declare_surface_loads(
+            d,
+            duty=duty,
+            pair=pair,
+            start=start,
+            area=area,
+            rubbing_area=rubbing,
+            pressure=torque.pressure,
+            rubbing_radius=ring.outer_radius,
+        )
         size = plate_pack.pack_size(duty, wants, ring, pair, pack)
-        plate_pack.declare_pack_temperature(d, duty, pair, start, size)
-        plate_pack.declare_drag(d, duty, wants, ring, pack)
-        self._declare_magnet_and_size(d, duty, magnet, pack.surfaces, start, size)
-        plate_pack.declare_pack_remarks(d, options, lubrication)
+        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size)
+        plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
+        self._declare_magnet_and_size(d, duty=duty, magnet=magnet, surfaces=pack.surfaces, start=start, pack=size)
+        plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
 
     def _declare_disc(self, d: Declaration) -> None:
-        duty = friction.declare_duty(d, "still_air", "dry")
-        ring = friction.declare_ring(d, 0.11, 0.13)
-        pack = disc_pack.declare_disc_pack(d, duty, ring)
+        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry")
+        ring = friction.declare_ring(d, ratio_min=0.11, ratio_max=0.13)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring)
         magnet = magnet_blocks.declare_magnet(d)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, self.name, duty, "dry")
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry")
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
 
         required = friction.sizing_torque(duty)
         low, high = torque(pair.mu_low), torque(pair.mu_high)
-        torques = friction.declare_torque(d, duty, pair, required, low, high, needs=(magnet_blocks.HOLDS,))
-        disc_pack.declare_worn_torque(d, pair, torques, ring, pack, force)
-        start = friction.declare_startup(d, duty, torques, ramp_time)
+        torques = friction.declare_torque(
+            d, duty=duty, pair=pair, required=required, torque_low=low, torque_high=high, needs=(magnet_blocks.HOLDS,)
+        )
+        disc_pack.declare_worn_torque(d, pair=pair, torques=torques, ring=ring, pack=pack, force=force)
+        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
-        friction.declare_surface_loads(d, duty, pair, start, area, area, force / ring.area, ring.outer_radius)
+        friction.declare_surface_loads(
+            d,
+            duty=duty,
+            pair=pair,
+            start=start,
+            area=area,
+            rubbing_area=area,
+            pressure=force / ring.area,
+            rubbing_radius=ring.outer_radius,
+        )
         size = disc_pack.disc_size(duty, ring, pair, pack)
-        disc_pack.declare_disc_inertia(d, duty, ring, pair, pack)
-        disc_pack.declare_disc_temperature(d, duty, pair, start, ring, pack, size)
-        self._declare_magnet_and_size(d, duty, magnet, pack.surfaces, start, size)
+        disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
+        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=size)
+        self._declare_magnet_and_size(d, duty=duty, magnet=magnet, surfaces=pack.surfaces, start=start, pack=size)
 
     def _declare_magnet_and_size(
         self,
         d: Declaration,
+        *,
         duty: friction.Duty,
         magnet: magnet_blocks.Magnet,
         surfaces: Any,
         start: friction.Startup,
         pack: friction.Size,
     ) -> None:
-        mass = magnet_blocks.declare_magnet_coil(d, duty, magnet, surfaces, start.friction_work)
+        mass = magnet_blocks.declare_magnet_coil(
+            d, duty=duty, magnet=magnet, surfaces=surfaces, friction_work=start.friction_work
+        )
         size = friction.Size(
             mass=pack.mass + mass,
             diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),
@@ -163,10 +194,12 @@ class ElectromagneticClutch(DesignProblem):
         )
         friction.declare_size(
             d,
-            size,
-            "Pack and magnet with armature and coil",
-            "Outside of pack or magnet",
-            "the larger of both",
-            "Released pack and engaged magnet",
+            size=size,
+            mass_of="Pack and magnet with armature and coil",
+            outside="Outside of pack or magnet",
+            across="the larger of both",
+            along="Released pack and engaged magnet",
         )
-        friction.declare_envelope(d, duty, magnet.actuation_force, size.diameter, size.length)
+        friction.declare_envelope(
+            d, duty=duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length
+        )

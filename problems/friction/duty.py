@@ -207,7 +207,7 @@ class Duty(Block):
     )
 
 
-def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) -> Duty:
+def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None) -> Duty:
     """Declare the block duty and the refusals that concern it alone.
 
     Parameters
@@ -234,8 +234,8 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
         cooling=cooling_default,
         heat_transfer=lambda duty: d.row("cooling_options", duty.cooling).heat_transfer,
     )
-    if lubrication is not None and _lubrication_of(d, duty.cooling) not in ("", lubrication):
-        fitting = [c for c in d.designations("cooling_options") if _lubrication_of(d, c) == lubrication]
+    if lubrication is not None and _lubrication_of(d, cooling=duty.cooling) not in ("", lubrication):
+        fitting = [c for c in d.designations("cooling_options") if _lubrication_of(d, cooling=c) == lubrication]
         raise InputError(
             "lubrication_mismatch",
             f"cooling {duty.cooling}",
@@ -265,7 +265,7 @@ def declare_duty(d: Declaration, cooling_default: str, lubrication: str | None) 
     return duty
 
 
-def _lubrication_of(d: Declaration, cooling: str) -> str:
+def _lubrication_of(d: Declaration, *, cooling: str) -> str:
     """Lubrication that a cooling belongs to; empty where it goes with any."""
     return d.cell("cooling_options", cooling, "lubrication")
 
@@ -296,7 +296,7 @@ def sizing_torque_of(spec: Mapping[str, Any]) -> float:
     return float(ring_formulas.required_torque(spec["load_torque"], *factors))
 
 
-def declare_envelope(d: Declaration, duty: Duty, force: Any, diameter: Any, length: Any) -> None:
+def declare_envelope(d: Declaration, *, duty: Duty, force: Any, diameter: Any, length: Any) -> None:
     """Declare the limits of force, diameter and length that were asked for."""
     asked = "requirement of the drive"
     if duty.actuation_force_limit is not None:
@@ -330,7 +330,7 @@ class Size:
     length: Any
 
 
-def declare_size(d: Declaration, size: Size, mass_of: str, outside: str, across: str, along: str) -> None:
+def declare_size(d: Declaration, *, size: Size, mass_of: str, outside: str, across: str, along: str) -> None:
     """Declare mass, outer diameter, length and volume.
 
     Parameters

@@ -26,7 +26,7 @@ class Pair:
     hourly_allow: Any
 
 
-def declare_friction_pair(d: Declaration, family: str, duty: Duty, lubrication: str | None) -> Pair:
+def declare_friction_pair(d: Declaration, *, family: str, duty: Duty, lubrication: str | None) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
     Parameters
@@ -99,6 +99,7 @@ class Torques:
 
 def declare_torque(
     d: Declaration,
+    *,
     duty: Duty,
     pair: Pair,
     required: Any,
@@ -221,7 +222,7 @@ class Startup:
     peak_slip_power: Any
 
 
-def declare_startup(d: Declaration, duty: Duty, torques: Torques, ramp_time: Any) -> Startup:
+def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: Any) -> Startup:
     """Declare friction work, slip time, power, jerk and acceleration of the start-up with their limits.
 
     Parameters
@@ -332,6 +333,7 @@ def declare_startup(d: Declaration, duty: Duty, torques: Torques, ramp_time: Any
 
 def declare_surface_loads(
     d: Declaration,
+    *,
     duty: Duty,
     pair: Pair,
     start: Startup,
@@ -443,7 +445,7 @@ def declare_surface_loads(
     )
 
 
-def declare_heated_body(d: Declaration, heat_capacity: Any, cooled_area: Any, body: str) -> None:
+def declare_heated_body(d: Declaration, *, heat_capacity: Any, cooled_area: Any, body: str) -> None:
     """Name what stores the heat of a start and gives it off, for the temperature over repeated engagements.
 
     Parameters
@@ -468,7 +470,7 @@ def declare_heated_body(d: Declaration, heat_capacity: Any, cooled_area: Any, bo
     d.step("cooled_area", "m2", cooled_area, symbol="A_cool", text="Outside that gives off the heat", source="geometry")
 
 
-def advise_frequent_switching(d: Declaration, duty: Duty, heat_capacity: Any, cooled_area: Any) -> None:
+def advise_frequent_switching(d: Declaration, *, duty: Duty, heat_capacity: Any, cooled_area: Any) -> None:
     """Remark where the next engagement comes before the clutch has cooled down.
 
     Parameters

@@ -30,7 +30,7 @@ class Ring:
     area: Any
 
 
-def declare_ring(d: Declaration, ratio_min: float, ratio_max: float) -> Ring:
+def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float) -> Ring:
     """Declare the block ring with the empirical range of its ratio.
 
     Parameters

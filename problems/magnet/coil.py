@@ -139,7 +139,7 @@ def declare_coil_requirements(d: Declaration) -> CoilRequirements:
     return wants
 
 
-def declare_saturation(d: Declaration, wants: CoilRequirements, iron_flux_density: Any) -> None:
+def declare_saturation(d: Declaration, *, wants: CoilRequirements, iron_flux_density: Any) -> None:
     """Declare the guard of the iron: its field exists only below saturation."""
     d.at_most(
         "iron_saturation",
@@ -154,6 +154,7 @@ def declare_saturation(d: Declaration, wants: CoilRequirements, iron_flux_densit
 
 def declare_winding(
     d: Declaration,
+    *,
     wants: CoilRequirements,
     unknowns: CoilUnknowns,
     ampere_turns: Any,
@@ -229,7 +230,7 @@ def declare_winding(
     ratio = magnetics.resistance_ratio(around.ambient_temperature)
     brushes = around.brush_drop * current
     heat = around.other_heat + brushes
-    _name_heat(d, wants, unknowns, turns, bore_radius, around)
+    _name_heat(d, wants=wants, unknowns=unknowns, turns=turns, bore_radius=bore_radius, around=around)
     d.at_most(
         "thermal_stability",
         cold / runaway,
@@ -323,7 +324,13 @@ def declare_winding(
 
 
 def _name_heat(
-    d: Declaration, wants: CoilRequirements, unknowns: CoilUnknowns, turns: Any, bore_radius: Any, around: Surroundings
+    d: Declaration,
+    *,
+    wants: CoilRequirements,
+    unknowns: CoilUnknowns,
+    turns: Any,
+    bore_radius: Any,
+    around: Surroundings,
 ) -> None:
     """Name what heats and cools the body of the coil, for curves over current and temperature."""
     d.step(

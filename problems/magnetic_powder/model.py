@@ -250,8 +250,10 @@ class MagneticPowderClutch(DesignProblem):
             air_gap=coil.select({"stationary": wants.air_gap, "rotating": 0.0}),
         )
         rim = powder.rim_section_width(radius, unknowns.yoke_thickness)
-        _declare_torque(d, wants, part, unknowns.flux_density, layout)
-        ampere_turns = _declare_circuit(d, wants, iron, part, unknowns.flux_density, layout, rim)
+        _declare_torque(d, wants=wants, part=part, flux_density=unknowns.flux_density, layout=layout)
+        ampere_turns = _declare_circuit(
+            d, wants=wants, iron=iron, part=part, flux_density=unknowns.flux_density, layout=layout, rim=rim
+        )
         slip_heat = d.derive(
             "slip_heat",
             "W",
@@ -271,9 +273,11 @@ class MagneticPowderClutch(DesignProblem):
             other_heat=slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
         )
-        copper = coil_blocks.declare_winding(d, iron, unknowns, ampere_turns, layout.bore, around)
-        _declare_size(d, wants, part, coil, layout, rim, copper)
-        _declare_remarks(d, wants, coil, part, layout)
+        copper = coil_blocks.declare_winding(
+            d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=layout.bore, around=around
+        )
+        _declare_size(d, wants=wants, part=part, coil=coil, layout=layout, rim=rim, copper_section=copper)
+        _declare_remarks(d, wants=wants, coil=coil, part=part, layout=layout)
         d.objective("coil_power")
         d.objective("input_inertia")
         for name in ("mass", "outer_diameter"):
@@ -303,7 +307,7 @@ class MagneticPowderClutch(DesignProblem):
         return frames
 
 
-def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
+def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
     torque = d.derive(
         "torque",
@@ -333,6 +337,7 @@ def _declare_torque(d: Declaration, wants: Wants, part: Part, flux_density: Any,
 
 def _declare_circuit(
     d: Declaration,
+    *,
     wants: Wants,
     iron: coil_blocks.CoilRequirements,
     part: Part,
@@ -345,7 +350,7 @@ def _declare_circuit(
     outside = powder.yoke_flux_density(iron.leakage_factor, line_flux, layout.yoke_ratio, layout.thickness)
     inside = powder.rotor_flux_density(line_flux, rim)
     densest = magnetics.larger(outside, inside)
-    coil_blocks.declare_saturation(d, iron, densest)
+    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=densest)
     d.at_most(
         "yoke_flux_density",
         outside,
@@ -375,7 +380,7 @@ def _declare_circuit(
 
 
 def _declare_size(
-    d: Declaration, wants: Wants, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
+    d: Declaration, *, wants: Wants, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
 ) -> None:
     filling = d.derive(
         "powder_mass",
@@ -448,7 +453,7 @@ def _declare_size(
         d.at_most("length", length, wants.length_limit, "mm", text="The clutch fits the room along", source=asked)
 
 
-def _declare_remarks(d: Declaration, wants: Wants, coil: Choice, part: Part, layout: powder.Layout) -> None:
+def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, layout: powder.Layout) -> None:
     rise = d.derived["coil_temperature_rise"].sx
     d.advise(
         "powder_calibration",

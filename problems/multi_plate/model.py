@@ -43,37 +43,58 @@ class MultiPlateClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         lubrication = plate_pack.declare_lubrication(d)
-        duty = friction.declare_duty(d, "oil_bath" if lubrication == "oil" else "still_air", lubrication)
+        duty = friction.declare_duty(
+            d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
+        )
         options = d.block(plate_pack.PackOptions)
-        wants = plate_pack.declare_pack_requirements(d, options, lubrication)
-        ring = friction.declare_ring(d, 0.10, 0.25)
+        wants = plate_pack.declare_pack_requirements(d, options=options, lubrication=lubrication)
+        ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
         force = self._declare_force(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, self.name, duty, lubrication)
-        pack = plate_pack.declare_pack(d, options, wants, ring)
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
+        pack = plate_pack.declare_pack(d, options=options, wants=wants, ring=ring)
 
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        plate_pack.refuse_impossible_pack(d, duty, options, wants, ring, pack, required)
-        torque = plate_pack.declare_pack_torque(d, options, wants, ring, pair, pack, force)
-        torques = friction.declare_torque(d, duty, pair, required, torque.low, torque.high, needs=("guide_jams",))
-        start = friction.declare_startup(d, duty, torques, ramp_time)
+        plate_pack.refuse_impossible_pack(
+            d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
+        )
+        torque = plate_pack.declare_pack_torque(
+            d, options=options, wants=wants, ring=ring, pair=pair, pack=pack, force=force
+        )
+        torques = friction.declare_torque(
+            d,
+            duty=duty,
+            pair=pair,
+            required=required,
+            torque_low=torque.low,
+            torque_high=torque.high,
+            needs=("guide_jams",),
+        )
+        start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
         friction.declare_surface_loads(
-            d, duty, pair, start, area, pack.aid.area_factor * area, torque.pressure, ring.outer_radius
+            d,
+            duty=duty,
+            pair=pair,
+            start=start,
+            area=area,
+            rubbing_area=pack.aid.area_factor * area,
+            pressure=torque.pressure,
+            rubbing_radius=ring.outer_radius,
         )
         size = plate_pack.pack_size(duty, wants, ring, pair, pack)
-        plate_pack.declare_pack_temperature(d, duty, pair, start, size)
+        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size)
         friction.declare_size(
             d,
-            size,
-            "Plates with linings",
-            "Outside of the drum",
-            "2 (b + s_drum)",
-            "Length of the released pack, without actuator and end stops",
+            size=size,
+            mass_of="Plates with linings",
+            outside="Outside of the drum",
+            across="2 (b + s_drum)",
+            along="Length of the released pack, without actuator and end stops",
         )
-        plate_pack.declare_drag(d, duty, wants, ring, pack)
-        friction.declare_envelope(d, duty, force, size.diameter, size.length)
-        plate_pack.declare_pack_remarks(d, options, lubrication)
+        plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
+        friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
+        plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
         self._declare_objectives(d)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:

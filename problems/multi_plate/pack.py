@@ -201,7 +201,7 @@ def declare_lubrication(d: Declaration) -> str:
     )
 
 
-def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication: str) -> PackRequirements:
+def declare_pack_requirements(d: Declaration, *, options: PackOptions, lubrication: str) -> PackRequirements:
     """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
 
     Parameters
@@ -236,7 +236,7 @@ def declare_pack_requirements(d: Declaration, options: PackOptions, lubrication:
     return pack
 
 
-def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
+def declare_pack(d: Declaration, *, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
     """Declare the plates of a pack and their splines.
 
     Parameters
@@ -358,6 +358,7 @@ def declare_pack(d: Declaration, options: PackOptions, wants: PackRequirements, 
 
 def refuse_impossible_pack(
     d: Declaration,
+    *,
     duty: Duty,
     options: PackOptions,
     wants: PackRequirements,
@@ -417,6 +418,7 @@ def refuse_impossible_pack(
 
 def declare_pack_torque(
     d: Declaration,
+    *,
     options: PackOptions,
     wants: PackRequirements,
     ring: Ring,
@@ -479,7 +481,7 @@ def declare_pack_torque(
         source=f"{S0}, first phase of engagement",
     )
     inner, outer = ratios(pair.mu_low)
-    _name_guides(d, wants, inner, outer, net_force, moment_low)
+    _name_guides(d, wants=wants, inner=inner, outer=outer, net_force=net_force, moment=moment_low)
     guide_number = sum((inner, outer)) if series else 0.0
     d.derive(
         "guide_number",
@@ -532,7 +534,7 @@ def declare_pack_torque(
             "guide_model series computes the loss for any number",
             source=f"{S1}, c_z",
         )
-    _declare_lugs(d, wants, pack, moment_high, [share(j, pair.mu_high) for j in (1, 2, 3)])
+    _declare_lugs(d, wants=wants, pack=pack, moment=moment_high, shares=[share(j, pair.mu_high) for j in (1, 2, 3)])
     return PackTorque(
         low=moment_low * factor,
         high=moment_high * factor_high,
@@ -540,7 +542,9 @@ def declare_pack_torque(
     )
 
 
-def _name_guides(d: Declaration, wants: PackRequirements, inner: Any, outer: Any, net_force: Any, moment: Any) -> None:
+def _name_guides(
+    d: Declaration, *, wants: PackRequirements, inner: Any, outer: Any, net_force: Any, moment: Any
+) -> None:
     """Name what the curves of a pack show of its guides, whatever guide_model sizes it."""
     d.step("inner_guide_ratio", "-", inner, symbol="S_i", text="Friction of the inner plates in their guide", source=S0)
     d.step("outer_guide_ratio", "-", outer, symbol="S_o", text="Friction of the outer plates in their guide", source=S0)
@@ -571,7 +575,7 @@ def _name_guides(d: Declaration, wants: PackRequirements, inner: Any, outer: Any
         d.step(name, "-", limit, symbol=symbol, text=text, source=f"{S0}, eq. {equation}")
 
 
-def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
+def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
     """Declare the lug pressures; ``moment`` is mu r F0 and ``shares`` the parts of F0 on surfaces 1, 2 and 3."""
     first, second, third = shares
     outer_torque = moment * (first + second)
@@ -624,7 +628,7 @@ def _declare_lugs(d: Declaration, wants: PackRequirements, pack: Pack, moment: A
     )
 
 
-def declare_drag(d: Declaration, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> None:
+def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> None:
     """Declare the drag of the released pack and its limit."""
     drag = d.derive(
         "drag_torque",
@@ -675,9 +679,9 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
     )
 
 
-def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Startup, size: PackSize) -> None:
+def declare_pack_temperature(d: Declaration, *, duty: Duty, pair: Pair, start: Startup, size: PackSize) -> None:
     """Declare the peak temperature of a pack and its limit."""
-    declare_heated_body(d, size.heat_capacity, size.cooled_area, "The steel plates")
+    declare_heated_body(d, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area, body="The steel plates")
     rise = d.derive(
         "peak_temperature_rise",
         "K",
@@ -696,7 +700,7 @@ def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Star
         text="The lining stands the temperature",
         source="Neale, Tribology Handbook, Table 7.4",
     )
-    advise_frequent_switching(d, duty, size.heat_capacity, size.cooled_area)
+    advise_frequent_switching(d, duty=duty, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area)
     mean_rise = heat.mean_temperature_rise(
         start.friction_work, duty.engagements_per_hour, duty.heat_transfer, size.cooled_area
     )
@@ -708,7 +712,7 @@ def declare_pack_temperature(d: Declaration, duty: Duty, pair: Pair, start: Star
     )
 
 
-def declare_pack_remarks(d: Declaration, options: PackOptions, lubrication: str) -> None:
+def declare_pack_remarks(d: Declaration, *, options: PackOptions, lubrication: str) -> None:
     """Declare the remarks that depend on options only."""
     if options.shaft_position == "vertical":
         d.advise(

@@ -350,19 +350,19 @@ class RollerCoupling(DesignProblem):
             source=f"{S3}, XIV.3",
         )
         wants = d.block(Wants)
-        unknowns = self._declare_unknowns(d, contact)
-        self._refuse_impossible(d, wants, unknowns, guide, removable, contact)
-        loads = self._declare_loads(d, wants, unknowns)
-        self._declare_clearances(d, wants, unknowns, removable)
-        self._declare_strength(d, wants, unknowns, loads, contact)
-        self._declare_remarks(d, wants, unknowns, guide)
+        unknowns = self._declare_unknowns(d, contact=contact)
+        self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)
+        loads = self._declare_loads(d, wants=wants, unknowns=unknowns)
+        self._declare_clearances(d, wants=wants, unknowns=unknowns, removable=removable)
+        self._declare_strength(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
+        self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
         for name in ("outer_diameter", "mass"):
             d.objective(name)
         d.objective("pin_force", default=False)
         d.objective("offset_capacity", "max", default=False)
         d.objective("vibration_force", default=False)
 
-    def _declare_unknowns(self, d: Declaration, contact: str) -> Unknowns:
+    def _declare_unknowns(self, d: Declaration, *, contact: str) -> Unknowns:
         crowned = contact == "crowned"
         return Unknowns(
             arm_radius=d.variable(
@@ -443,7 +443,7 @@ class RollerCoupling(DesignProblem):
         )
 
     def _refuse_impossible(
-        self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str, removable: str, contact: str
+        self, d: Declaration, *, wants: Wants, unknowns: Unknowns, guide: str, removable: str, contact: str
     ) -> None:
         """Refuse what no design can meet, whatever the unknowns, and what the model does not cover."""
         roller, offset = unknowns.roller, wants.effective_offset
@@ -509,12 +509,12 @@ class RollerCoupling(DesignProblem):
         if wants.vibration_limit is not None:
             d.refuse(
                 "vibration_contradictory",
-                unknowns.balance.select({"no": _least_vibration(d, wants) > wants.vibration_limit, "yes": 0.0}),
+                unknowns.balance.select({"no": _least_vibration(d, wants=wants) > wants.vibration_limit, "yes": 0.0}),
                 "balance = yes, or a larger vibration_limit: it is contradictory without balance, the lightest float "
                 "that fits the offset shakes more",
             )
 
-    def _declare_loads(self, d: Declaration, wants: Wants, unknowns: Unknowns) -> Loads:
+    def _declare_loads(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Loads:
         roller, offset = unknowns.roller, wants.effective_offset
         diameter, radius = roller.outer_diameter, unknowns.arm_radius
         d.derive(
@@ -666,7 +666,7 @@ class RollerCoupling(DesignProblem):
             )
         return Loads(tangential, centrifugal, normal, pin, vibration)
 
-    def _declare_clearances(self, d: Declaration, wants: Wants, unknowns: Unknowns, removable: str) -> None:
+    def _declare_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, removable: str) -> None:
         radius, capacity = unknowns.arm_radius, unknowns.offset_capacity
         diameter, angle = unknowns.roller.outer_diameter, wants.guide_angle
         d.at_least(
@@ -711,7 +711,9 @@ class RollerCoupling(DesignProblem):
                 source=f"{S3}, eq. (21)",
             )
 
-    def _declare_strength(self, d: Declaration, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str) -> None:
+    def _declare_strength(
+        self, d: Declaration, *, wants: Wants, unknowns: Unknowns, loads: Loads, contact: str
+    ) -> None:
         roller, material = unknowns.roller, unknowns.material
         length, radius = unknowns.contact_length, roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
@@ -809,7 +811,7 @@ class RollerCoupling(DesignProblem):
             source=EXTENDS_S3,
         )
 
-    def _declare_remarks(self, d: Declaration, wants: Wants, unknowns: Unknowns, guide: str) -> None:
+    def _declare_remarks(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, guide: str) -> None:
         offset, material = wants.effective_offset, unknowns.material
         if guide != "roller":
             d.advise(f"{guide}_guide", True, GUIDES[guide], source=f"{S3}, chapter X")
@@ -901,7 +903,7 @@ def _least_diameter(wants: Wants, roller_diameter: Any, arm_radius: Any) -> Any:
     return 2 * (radius + wants.effective_offset / np.sin(wants.guide_angle))
 
 
-def _least_vibration(d: Declaration, wants: Wants) -> Any:
+def _least_vibration(d: Declaration, *, wants: Wants) -> Any:
     """Vibration force of the lightest material around the smallest roller: section and offset only grow from there."""
     density = float(np.nanmin(d.numbers("float_materials", "density")))
     diameter = float(np.nanmin(d.numbers("guide_rolling_bearings", "outer_diameter")))

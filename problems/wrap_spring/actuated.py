@@ -88,7 +88,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         options = d.block(blocks.Options)
-        duty = blocks.declare_duty(d, ClearanceDuty)
+        duty = blocks.declare_duty(d, kind=ClearanceDuty)
         wants = d.block(Wants)
         clearance = d.variable(
             "clearance",
@@ -108,9 +108,9 @@ class ActuatedWrapSpringClutch(DesignProblem):
             text="Energising torque at the free end of the spring",
             source=NOT_IN_S2,
         )
-        wire = blocks.declare_wire(d, options)
-        coils = blocks.declare_coils(d, options, duty, wire)
-        friction = blocks.declare_friction(d, self.name, duty, coils)
+        wire = blocks.declare_wire(d, options=options)
+        coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
+        friction = blocks.declare_friction(d, family=self.name, duty=duty, coils=coils)
 
         tolerance = duty.interference_tolerance
         widest, narrowest = clearance + tolerance, clearance - tolerance
@@ -131,7 +131,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             source=NOT_IN_S2,
         )
         blocks.declare_closing(
-            d, duty, formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
+            d, duty=duty, torque=formulas.closing_torque(effective, friction.exponent_low, actuator), needs="grip"
         )
         d.at_least(
             "clearance_kept",
@@ -150,8 +150,10 @@ class ActuatedWrapSpringClutch(DesignProblem):
             source=NOT_IN_S2,
         )
         bending = formulas.bending_stress(-loose, wire.width, wire.thickness)
-        stress, _ = blocks.declare_load(d, wire, coils, friction, bending, tight, load)
-        self._declare_actuation(d, duty, wants, coils, widest, actuator)
+        stress, _ = blocks.declare_load(
+            d, wire=wire, coils=coils, friction=friction, bending_stress=bending, moment=tight, load=load
+        )
+        self._declare_actuation(d, duty=duty, wants=wants, coils=coils, widest=widest, actuator=actuator)
         d.at_least(
             "hub_bore",
             coils.hub_diameter,
@@ -160,7 +162,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
             text="The hub has a wall around its bore",
             source="geometry",
         )
-        blocks.declare_size(d, duty, wire, coils, wants.fixed_coils)
+        blocks.declare_size(d, duty=duty, wire=wire, coils=coils, fixed_coils=wants.fixed_coils)
         tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
         d.advise(
             "fatigue_of_the_wire",
@@ -181,7 +183,7 @@ class ActuatedWrapSpringClutch(DesignProblem):
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
 
     def _declare_actuation(
-        self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any
+        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any
     ) -> None:
         closing = coils.per_hub + duty.gap_coils
         angle = d.derive(

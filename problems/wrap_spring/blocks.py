@@ -164,7 +164,7 @@ class Duty(Block):
     )
 
 
-def declare_duty(d: Declaration, kind: type[Duty]) -> Duty:
+def declare_duty(d: Declaration, *, kind: type[Duty]) -> Duty:
     """Declare the requirements that both fits have, and the refusals that concern them alone.
 
     Parameters
@@ -216,7 +216,7 @@ class Wire:
     endurance_amplitude: Any
 
 
-def declare_wire(d: Declaration, options: Options) -> Wire:
+def declare_wire(d: Declaration, *, options: Options) -> Wire:
     """Declare the wire: a slot, or two variables and requirements for its material.
 
     Parameters
@@ -301,7 +301,7 @@ class Coils:
     per_hub: Any
 
 
-def hub_grid(d: Declaration, ladder: str) -> Any:
+def hub_grid(d: Declaration, *, ladder: str) -> Any:
     """Return the makeable hub diameters: a series, or the values of table hub_diameters in mm.
 
     Raises
@@ -320,7 +320,7 @@ def hub_grid(d: Declaration, ladder: str) -> Any:
     return inside
 
 
-def declare_coils(d: Declaration, options: Options, duty: Duty, wire: Wire) -> Coils:
+def declare_coils(d: Declaration, *, options: Options, duty: Duty, wire: Wire) -> Coils:
     """Declare hub diameter, coils and mean radius, and the remarks on their shape.
 
     Parameters
@@ -343,7 +343,7 @@ def declare_coils(d: Declaration, options: Options, duty: Duty, wire: Wire) -> C
         "hub_diameter",
         "mm",
         *HUB_DIAMETER_RANGE,
-        grid=hub_grid(d, options.hub_ladder),
+        grid=hub_grid(d, ladder=options.hub_ladder),
         symbol="d_h",
         text="Outer diameter of both hubs",
         source=f"{S2}, 2 r",
@@ -405,7 +405,7 @@ class Friction:
     exponent_high: Any
 
 
-def declare_friction(d: Declaration, family: str, duty: Duty, coils: Coils) -> Friction:
+def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils) -> Friction:
     """Declare the slot friction_pair and the belt exponent with its limit.
 
     Parameters
@@ -487,7 +487,7 @@ def centrifugal_moment(options: Options, duty: Duty, wire: Wire, coils: Coils) -
     return formulas.centrifugal_moment(wire.density, wire.width, wire.thickness, coils.mean_radius, duty.spring_speed)
 
 
-def declare_closing(d: Declaration, duty: Duty, torque: Any, needs: str | tuple[str, ...] = ()) -> None:
+def declare_closing(d: Declaration, *, duty: Duty, torque: Any, needs: str | tuple[str, ...] = ()) -> None:
     """Declare the least closing torque and its limit."""
     torque = d.derive(
         "closing_torque",
@@ -510,6 +510,7 @@ def declare_closing(d: Declaration, duty: Duty, torque: Any, needs: str | tuple[
 
 def declare_load(
     d: Declaration,
+    *,
     wire: Wire,
     coils: Coils,
     friction: Friction,
@@ -601,7 +602,7 @@ class Size:
     diameter: Any
 
 
-def declare_size(d: Declaration, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
+def declare_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
     """Declare coils, length, diameter and mass, and the limits of the room there is.
 
     Parameters

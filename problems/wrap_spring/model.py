@@ -128,7 +128,7 @@ class WrapSpringClutch(DesignProblem):
             "torque_limited: it sees peak_torque",
             source=NOT_IN_S2,
         )
-        duty = blocks.declare_duty(d, InterferenceDuty)
+        duty = blocks.declare_duty(d, kind=InterferenceDuty)
         wants = d.block(Wants)
         interference = d.variable(
             "interference",
@@ -139,30 +139,49 @@ class WrapSpringClutch(DesignProblem):
             text="By how much the mean radius of the free coils is smaller than that of the fitted ones",
             source=f"{S2}, Delta r",
         )
-        wire = blocks.declare_wire(d, options)
-        coils = blocks.declare_coils(d, options, duty, wire)
-        friction = blocks.declare_friction(d, self.name, duty, coils)
+        wire = blocks.declare_wire(d, options=options)
+        coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
+        friction = blocks.declare_friction(d, family=self.name, duty=duty, coils=coils)
         if wants.drag_torque_limit is not None:
-            self._refuse_drag(d, duty, wants, friction)
+            self._refuse_drag(d, duty=duty, wants=wants, friction=friction)
 
-        self._declare_fit(d, duty, wants, coils, interference)
+        self._declare_fit(d, duty=duty, wants=wants, coils=coils, interference=interference)
         low, high = self._fitted_moments(options, duty, wire, coils, interference)
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
-        guards = self._declare_grip(d, options, duty, wire, coils, low)
-        blocks.declare_closing(d, duty, formulas.closing_torque(effective, friction.exponent_low), needs=guards)
-        self._declare_liftoff(d, duty, wants, wire, coils, low)
-        load = self._declare_overload(d, duty, overload, friction, high)
+        guards = self._declare_grip(d, options=options, duty=duty, wire=wire, coils=coils, low=low)
+        blocks.declare_closing(
+            d, duty=duty, torque=formulas.closing_torque(effective, friction.exponent_low), needs=guards
+        )
+        self._declare_liftoff(d, duty=duty, wants=wants, wire=wire, coils=coils, low=low)
+        load = self._declare_overload(d, duty=duty, overload=overload, friction=friction, high=high)
         bending = formulas.bending_stress(high, wire.width, wire.thickness)
         stress, pressure = blocks.declare_load(
-            d, wire, coils, friction, bending, high, load, needs="interference_positive"
+            d,
+            wire=wire,
+            coils=coils,
+            friction=friction,
+            bending_stress=bending,
+            moment=high,
+            load=load,
+            needs="interference_positive",
         )
-        self._declare_fatigue(d, duty, wants, wire, coils, bending, high)
-        self._declare_hub(d, duty, wants, coils, load)
-        size = blocks.declare_size(d, duty, wire, coils)
-        self._declare_overrun(d, wants, wire, coils, friction, size, high)
-        self._declare_windup(d, duty, wire, coils, friction, low)
-        self._declare_utilisation(d, wire, friction, stress, pressure)
-        self._declare_remarks(d, duty, wants, wire, coils, friction, effective, bending, stress)
+        self._declare_fatigue(d, duty=duty, wants=wants, wire=wire, coils=coils, bending=bending, high=high)
+        self._declare_hub(d, duty=duty, wants=wants, coils=coils, load=load)
+        size = blocks.declare_size(d, duty=duty, wire=wire, coils=coils)
+        self._declare_overrun(d, wants=wants, wire=wire, coils=coils, friction=friction, size=size, high=high)
+        self._declare_windup(d, duty=duty, wire=wire, coils=coils, friction=friction, low=low)
+        self._declare_utilisation(d, wire=wire, friction=friction, stress=stress, pressure=pressure)
+        self._declare_remarks(
+            d,
+            duty=duty,
+            wants=wants,
+            wire=wire,
+            coils=coils,
+            friction=friction,
+            effective=effective,
+            bending=bending,
+            stress=stress,
+        )
         d.objective("mass")
         d.objective("drag_torque")
         for name in ("stress_utilisation", "pressure_utilisation", "outer_diameter"):
@@ -174,7 +193,7 @@ class WrapSpringClutch(DesignProblem):
             return {"over_belt_exponent": curves.over_belt_exponent(spec, spec["drag_torque_limit"])}
         return curves.interference_curves(curves.fitted(self, spec, design), spec, design.values)
 
-    def _refuse_drag(self, d: Declaration, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
+    def _refuse_drag(self, d: Declaration, *, duty: blocks.Duty, wants: Wants, friction: blocks.Friction) -> None:
         """Refuse friction pairs whose range makes the drag limit unreachable, whatever spring and hub."""
         coils = blocks.COILS_RANGE[1]
         low = formulas.belt_exponent(friction.part.mu_min, coils, 1.0)
@@ -201,7 +220,7 @@ class WrapSpringClutch(DesignProblem):
         return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
 
     def _declare_fit(
-        self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
+        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
     ) -> None:
         d.at_least(
             "interference_positive",
@@ -232,6 +251,7 @@ class WrapSpringClutch(DesignProblem):
     def _declare_grip(
         self,
         d: Declaration,
+        *,
         options: blocks.Options,
         duty: blocks.Duty,
         wire: blocks.Wire,
@@ -257,7 +277,7 @@ class WrapSpringClutch(DesignProblem):
         return ("grip",)  # without interference there is no preload either
 
     def _declare_liftoff(
-        self, d: Declaration, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
+        self, d: Declaration, *, duty: blocks.Duty, wants: Wants, wire: blocks.Wire, coils: blocks.Coils, low: Any
     ) -> None:
         speed = d.derive(
             "liftoff_speed",
@@ -278,7 +298,7 @@ class WrapSpringClutch(DesignProblem):
         )
 
     def _declare_overload(
-        self, d: Declaration, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
+        self, d: Declaration, *, duty: blocks.Duty, overload: str, friction: blocks.Friction, high: Any
     ) -> Any:
         """Declare the largest slip torque and return the torque that the wire sees."""
         slip = d.derive(
@@ -309,6 +329,7 @@ class WrapSpringClutch(DesignProblem):
     def _declare_fatigue(
         self,
         d: Declaration,
+        *,
         duty: blocks.Duty,
         wants: Wants,
         wire: blocks.Wire,
@@ -343,7 +364,7 @@ class WrapSpringClutch(DesignProblem):
             source=f"Goodman; {NOT_IN_S2}",
         )
 
-    def _declare_hub(self, d: Declaration, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
+    def _declare_hub(self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, load: Any) -> None:
         d.at_least(
             "hub_bore",
             coils.hub_diameter,
@@ -374,6 +395,7 @@ class WrapSpringClutch(DesignProblem):
     def _declare_overrun(
         self,
         d: Declaration,
+        *,
         wants: Wants,
         wire: blocks.Wire,
         coils: blocks.Coils,
@@ -437,6 +459,7 @@ class WrapSpringClutch(DesignProblem):
     def _declare_windup(
         self,
         d: Declaration,
+        *,
         duty: blocks.Duty,
         wire: blocks.Wire,
         coils: blocks.Coils,
@@ -462,7 +485,7 @@ class WrapSpringClutch(DesignProblem):
         )
 
     def _declare_utilisation(
-        self, d: Declaration, wire: blocks.Wire, friction: blocks.Friction, stress: Any, pressure: Any
+        self, d: Declaration, *, wire: blocks.Wire, friction: blocks.Friction, stress: Any, pressure: Any
     ) -> None:
         d.derive(
             "stress_utilisation",
@@ -484,6 +507,7 @@ class WrapSpringClutch(DesignProblem):
     def _declare_remarks(
         self,
         d: Declaration,
+        *,
         duty: blocks.Duty,
         wants: Wants,
         wire: blocks.Wire,
