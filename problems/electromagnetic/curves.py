@@ -11,7 +11,6 @@ import numpy as np
 from problems.electromagnetic import formulas as pot_magnet
 from problems.magnet import coil_curves
 from problems.magnet.coil_curves import POINTS
-from problems.mechanics import magnetics
 from problems.sources import S4
 
 if TYPE_CHECKING:
@@ -26,30 +25,18 @@ SOURCE = f"{S4}, section 6.6; derived, not measured"
 class Built:
     """The magnet of one design, all in SI."""
 
-    shape: pot_magnet.PotMagnet
-    leakage_factor: float
-    iron_reluctance: float
-    iron_saturation: float
+    circuit: pot_magnet.Circuit
     return_force: float
 
-    def pole(self, flux_density: Any) -> Any:
-        """Return the flux density of the pole iron [T]."""
-        return self.leakage_factor * flux_density
-
-    def yoke(self, flux_density: Any) -> Any:
-        """Return the flux density of the yoke [T]."""
-        return self.pole(flux_density) * pot_magnet.yoke_flux_ratio(self.shape)
-
-    def ampere_turns(self, flux_density: Any) -> Any:
-        """Return the ampere-turns of a flux density [A]."""
-        densest = np.maximum(self.pole(flux_density), self.yoke(flux_density))
-        field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
-        return pot_magnet.engaged_ampere_turns(flux_density, self.shape, field)
+    @property
+    def shape(self) -> pot_magnet.PotMagnet:
+        """Sizes of the magnet."""
+        return self.circuit.shape
 
     def flux_density(self, ampere_turns: Any) -> np.ndarray:
         """Return the flux densities that ampere-turns give, by bisection [T]."""
-        highest = self.iron_saturation / float(np.maximum(self.pole(1.0), self.yoke(1.0)))
-        return coil_curves.flux_densities(ampere_turns, self.ampere_turns, highest)
+        highest = self.circuit.iron_saturation / float(self.circuit.densest(1.0))
+        return coil_curves.flux_densities(ampere_turns, self.circuit.ampere_turns, highest)
 
     def force(self, flux_density: Any) -> Any:
         """Return what is left for the pack [N]."""
@@ -59,20 +46,16 @@ class Built:
 def built(spec: Mapping[str, Any], design: Any) -> Built:
     """Return what the formulas need of the magnet of a design."""
     value = design.values
-    return Built(
-        shape=pot_magnet.PotMagnet(
-            bore=spec["magnet_bore_radius"],
-            pole_width=value["inner_pole_width"],
-            coil_length=value["coil_length"],
-            coil_height=value["coil_height"],
-            thickness=value["yoke_thickness"],
-            residual_gap=spec["residual_gap"],
-        ),
-        leakage_factor=spec["leakage_factor"],
-        iron_reluctance=spec["iron_reluctance"],
-        iron_saturation=spec["iron_saturation"],
-        return_force=spec["return_spring_force"],
+    shape = pot_magnet.PotMagnet(
+        bore=spec["magnet_bore_radius"],
+        pole_width=value["inner_pole_width"],
+        coil_length=value["coil_length"],
+        coil_height=value["coil_height"],
+        thickness=value["yoke_thickness"],
+        residual_gap=spec["residual_gap"],
     )
+    circuit = pot_magnet.Circuit(shape, spec["leakage_factor"], spec["iron_reluctance"], spec["iron_saturation"])
+    return Built(circuit, spec["return_spring_force"])
 
 
 def _torques(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
@@ -113,8 +96,8 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
             "torque [N*m]": force / value["actuation_force"] * value["torque"],
             "on the pack [N]": force,
             "pull on the released armature [N]": share**2 * value["pull_in_force"],
-            "poles [T]": body.pole(flux_density),
-            "yoke [T]": body.yoke(flux_density),
+            "poles [T]": body.circuit.pole(flux_density),
+            "yoke [T]": body.circuit.yoke(flux_density),
             "temperature rise [K]": warm.rise(current),
         }
     )
@@ -196,7 +179,7 @@ def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
     turned = value["ampere_turns"]
     pull = []
     for gap in gaps:
-        opened = replace(body, shape=replace(body.shape, residual_gap=gap))
+        opened = replace(body, circuit=replace(body.circuit, shape=replace(body.shape, residual_gap=gap)))
         pull.append(float(pot_magnet.magnet_force(opened.flux_density([turned])[0], body.shape)))
     springs = design.steps["springs_and_drag"]
     frame = pd.DataFrame(

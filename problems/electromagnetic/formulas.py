@@ -229,3 +229,33 @@ def magnet_mass(density: Quantity, magnet: PotMagnet, copper: Quantity) -> Quant
     """
     discs = 2 * np.pi * (magnet.outer_radius**2 - magnet.bore**2) * magnet.thickness
     return density * (2 * magnet.pole_area * magnet.coil_length + discs) + copper
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """The magnetic circuit of an engaged magnet: what a flux density of its poles' gap asks of iron and coil.
+
+    Declaration and curves speak through it of the same iron; all in SI, numbers or symbols.
+    """
+
+    shape: PotMagnet
+    leakage_factor: Quantity
+    iron_reluctance: Quantity
+    iron_saturation: Quantity
+
+    def pole(self, flux_density: Quantity) -> Quantity:
+        """Flux density of the pole iron [T]."""
+        return self.leakage_factor * flux_density
+
+    def yoke(self, flux_density: Quantity) -> Quantity:
+        """Flux density of yoke and armature [T]."""
+        return self.pole(flux_density) * yoke_flux_ratio(self.shape)
+
+    def densest(self, flux_density: Quantity) -> Quantity:
+        """Flux density of the iron that has most [T]."""
+        return self.pole(flux_density) * np.maximum(yoke_flux_ratio(self.shape), 1.0)
+
+    def ampere_turns(self, flux_density: Quantity) -> Quantity:
+        """Ampere-turns that the flux density needs [A]."""
+        field = magnetics.iron_field(self.densest(flux_density), self.iron_reluctance, self.iron_saturation)
+        return engaged_ampere_turns(flux_density, self.shape, field)

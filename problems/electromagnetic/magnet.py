@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from problems.electromagnetic import formulas as pot_magnet
 from problems.friction.duty import Duty
 from problems.magnet import coil as coil_blocks
@@ -163,14 +161,12 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
         Mass of the magnet [kg].
     """
     wants, iron, unknowns, shape = magnet.wants, magnet.iron, magnet.unknowns, magnet.shape
-    pole = iron.leakage_factor * unknowns.flux_density
-    ratio = pot_magnet.yoke_flux_ratio(shape)
-    yoke = pole * ratio
-    densest = pole * np.maximum(ratio, 1.0)
-    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=densest)
+    circuit = pot_magnet.Circuit(shape, iron.leakage_factor, iron.iron_reluctance, iron.iron_saturation)
+    flux_density = unknowns.flux_density
+    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=circuit.densest(flux_density))
     d.at_most(
         "pole_flux_density",
-        pole,
+        circuit.pole(flux_density),
         iron.iron_flux_limit,
         "T",
         text="The iron of the poles carries the flux",
@@ -178,14 +174,13 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
     )
     d.at_most(
         "yoke_flux_density",
-        yoke,
+        circuit.yoke(flux_density),
         iron.iron_flux_limit,
         "T",
         text="Yoke and armature carry the flux at the inner pole",
         source=f"{S4}, section 6.6",
     )
-    field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
-    ampere_turns = pot_magnet.engaged_ampere_turns(unknowns.flux_density, shape, field)
+    ampere_turns = circuit.ampere_turns(flux_density)
     released, springs = _name_release(d, duty=duty, wants=wants, surfaces=surfaces)
     pull_in = d.derive(
         "pull_in_force",

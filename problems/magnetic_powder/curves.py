@@ -11,7 +11,6 @@ import numpy as np
 from problems.magnet import coil_curves
 from problems.magnet.coil_curves import POINTS
 from problems.magnetic_powder import formulas as powder
-from problems.mechanics import magnetics
 from problems.sources import S4
 
 if TYPE_CHECKING:
@@ -27,63 +26,50 @@ SOURCE = f"{S4} [P1] to [P8]; the shear curve of the powder is unverified"
 class Built:
     """One design, all in SI."""
 
-    layout: powder.Layout
-    permeability: float
+    circuit: powder.Circuit
     saturation_stress: float
     half_flux_density: float
-    leakage_factor: float
-    iron_reluctance: float
-    iron_saturation: float
-
-    def yoke(self, flux_density: Any) -> Any:
-        """Return the flux density of the yoke [T]."""
-        line_flux = flux_density * self.layout.pole_length
-        return powder.yoke_flux_density(self.leakage_factor, line_flux, self.layout.yoke_ratio, self.layout.thickness)
-
-    def rotor(self, flux_density: Any) -> Any:
-        """Return the flux density of the rim of the rotor [T]."""
-        width = powder.rim_section_width(self.layout.gap_radius, self.layout.thickness)
-        return powder.rotor_flux_density(flux_density * self.layout.pole_length, width)
-
-    def ampere_turns(self, flux_density: Any) -> Any:
-        """Return the ampere-turns of a flux density [A]."""
-        densest = np.maximum(self.yoke(flux_density), self.rotor(flux_density))
-        field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
-        return powder.ampere_turns(flux_density, self.permeability, self.layout, field)
 
     def flux_density(self, ampere_turns: Any) -> np.ndarray:
         """Return the flux densities that ampere-turns give, by bisection [T]."""
-        highest = self.iron_saturation / float(np.maximum(self.yoke(1.0), self.rotor(1.0)))
-        return coil_curves.flux_densities(ampere_turns, self.ampere_turns, highest)
+        circuit = self.circuit
+        highest = circuit.iron_saturation / float(circuit.iron(1.0).densest)
+
+        def excitation(flux_density: Any) -> Any:
+            return circuit.ampere_turns(flux_density, circuit.iron(flux_density).densest)
+
+        return coil_curves.flux_densities(ampere_turns, excitation, highest)
 
     def torque(self, flux_density: Any) -> Any:
         """Return the torque of a flux density [N m]."""
+        layout = self.circuit.layout
         stress = powder.shear_stress(np.maximum(flux_density, 1e-9), self.saturation_stress, self.half_flux_density)
-        return powder.torque(stress, self.layout.gap_radius, self.layout.pole_length)
+        return powder.torque(stress, layout.gap_radius, layout.pole_length)
 
 
 def built(spec: Mapping[str, Any], design: Any) -> Built:
     """Return what the formulas need of a design."""
     value, row = design.values, design.parts["powder"]
     still = design.choices["coil"] == "stationary"
-    return Built(
-        layout=powder.Layout(
-            gap_radius=value["gap_radius"],
-            pole_length=value["pole_length"],
-            gap=value["powder_gap"],
-            coil_length=value["coil_length"],
-            coil_height=value["coil_height"],
-            thickness=value["yoke_thickness"],
-            drum=spec["drum_thickness"] if still else 0.0,
-            air_gap=spec["air_gap"] if still else 0.0,
-        ),
+    layout = powder.Layout(
+        gap_radius=value["gap_radius"],
+        pole_length=value["pole_length"],
+        gap=value["powder_gap"],
+        coil_length=value["coil_length"],
+        coil_height=value["coil_height"],
+        thickness=value["yoke_thickness"],
+        drum=spec["drum_thickness"] if still else 0.0,
+        air_gap=spec["air_gap"] if still else 0.0,
+    )
+    circuit = powder.Circuit(
+        layout=layout,
+        rim=powder.rim_section_width(layout.gap_radius, layout.thickness),
         permeability=row["relative_permeability"],
-        saturation_stress=row["tau_sat"],
-        half_flux_density=row["half_flux_density"],
         leakage_factor=spec["leakage_factor"],
         iron_reluctance=spec["iron_reluctance"],
         iron_saturation=spec["iron_saturation"],
     )
+    return Built(circuit, row["tau_sat"], row["half_flux_density"])
 
 
 def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.DataFrame:
@@ -139,13 +125,14 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
     body, heat, value = built(spec, design), coil_curves.warmth(spec, design, "insulation and powder"), design.values
     current = np.linspace(0.0, 1.5, POINTS) * value["current"]
     flux_density = body.flux_density(current * value["turns"])
+    iron = body.circuit.iron(flux_density)
     frame = pd.DataFrame(
         {
             "current [A]": current,
             "torque [N*m]": body.torque(flux_density),
             "powder [T]": flux_density,
-            "yoke [T]": body.yoke(flux_density),
-            "rotor [T]": body.rotor(flux_density),
+            "yoke [T]": iron.yoke,
+            "rotor [T]": iron.rotor,
             "temperature rise [K]": heat.rise(current),
         }
     )

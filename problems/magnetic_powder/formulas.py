@@ -12,10 +12,11 @@ gives about 75 N m at 80 mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from problems.mechanics import Quantity
+from problems.mechanics import Quantity, magnetics
 from problems.mechanics.magnetics import gap_field
 from synth.special import special
 
@@ -512,3 +513,39 @@ def ampere_turns(
     powder = 2 * layout.gap * gap_field(1.0, relative_permeability)
     air = 2 * layout.air_gap * layout.air_flux_share * gap_field(1.0)
     return flux_density * (powder + air) + iron_field * layout.iron_path
+
+
+class Iron(NamedTuple):
+    """Flux densities of the iron: yoke outside the coil, rim of the rotor, and the larger of both [T]."""
+
+    yoke: Quantity
+    rotor: Quantity
+    densest: Quantity
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """The magnetic circuit of a powder clutch: what a flux density of the powder asks of iron and coil.
+
+    Declaration and curves speak through it of the same iron; all in SI, numbers or symbols. ``rim`` is the width of the
+    section of the rotor's rim.
+    """
+
+    layout: Layout
+    rim: Quantity
+    permeability: Quantity
+    leakage_factor: Quantity
+    iron_reluctance: Quantity
+    iron_saturation: Quantity
+
+    def iron(self, flux_density: Quantity) -> Iron:
+        """Flux densities of the iron."""
+        line_flux = flux_density * self.layout.pole_length
+        yoke = yoke_flux_density(self.leakage_factor, line_flux, self.layout.yoke_ratio, self.layout.thickness)
+        rotor = rotor_flux_density(line_flux, self.rim)
+        return Iron(yoke, rotor, magnetics.larger(yoke, rotor))
+
+    def ampere_turns(self, flux_density: Quantity, densest: Quantity) -> Quantity:
+        """Ampere-turns that a flux density needs, with that of the densest iron [A]."""
+        field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
+        return ampere_turns(flux_density, self.permeability, self.layout, field)

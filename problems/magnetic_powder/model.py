@@ -346,14 +346,19 @@ def _declare_circuit(
     rim: Any,
 ) -> Any:
     """Declare the flux densities of the iron and return the ampere-turns that the circuit needs."""
-    line_flux = flux_density * layout.pole_length
-    outside = powder.yoke_flux_density(iron.leakage_factor, line_flux, layout.yoke_ratio, layout.thickness)
-    inside = powder.rotor_flux_density(line_flux, rim)
-    densest = magnetics.larger(outside, inside)
-    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=densest)
+    circuit = powder.Circuit(
+        layout=layout,
+        rim=rim,
+        permeability=part.relative_permeability,
+        leakage_factor=iron.leakage_factor,
+        iron_reluctance=iron.iron_reluctance,
+        iron_saturation=iron.iron_saturation,
+    )
+    found = circuit.iron(flux_density)
+    coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=found.densest)
     d.at_most(
         "yoke_flux_density",
-        outside,
+        found.yoke,
         iron.iron_flux_limit,
         "T",
         text="The yoke outside the coil carries the flux",
@@ -361,7 +366,7 @@ def _declare_circuit(
     )
     d.at_most(
         "rotor_flux_density",
-        inside,
+        found.rotor,
         iron.iron_flux_limit,
         "T",
         text="The rim of the rotor carries the flux",
@@ -375,8 +380,7 @@ def _declare_circuit(
         text="The shaft fits inside the rim of the rotor",
         source="geometry",
     )
-    field = magnetics.iron_field(densest, iron.iron_reluctance, iron.iron_saturation)
-    return powder.ampere_turns(flux_density, part.relative_permeability, layout, field)
+    return circuit.ampere_turns(flux_density, found.densest)
 
 
 def _declare_size(
