@@ -19,6 +19,8 @@ from synth.problem import DesignProblem, load
 from synth.results import Design, Frame, PartRow
 from synth.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
 from synth.special import expanded
+from synth.statistics import SearchStatistics
+from synth.told import UNTOLD
 from synth.units import format_quantity, parse_quantity
 
 if TYPE_CHECKING:
@@ -196,19 +198,19 @@ def _which(masks: Sequence[tuple[str, np.ndarray]], count: int) -> list[tuple[st
     return result
 
 
-def offered(instance: Instance) -> dict[str, Any]:
+def offered(instance: Instance) -> SearchStatistics:
     """Return what a question leaves to choose from, for the statistics of a front."""
     selection = instance.selection
-    return {
-        "combinations": instance.combinations.count,
-        "rows_offered": {s.slot: selection.offered[s.slot] for s in selection.slots},
-        "rows_used": {s.slot: len(s.rows) for s in selection.slots},
-        "counts": {n: len(v) for n, v in selection.counts.items()},
-        "choices": {n: len(v) for n, v in selection.choices.items()},
-        "rows_left_out": selection.left_out,
-        **({"combinations_left_out": instance.combinations_left_out} if instance.compared else {}),
-        "not_asked": list(instance.not_asked),
-    }
+    return SearchStatistics(
+        combinations=instance.combinations.count,
+        rows_offered={s.slot: selection.offered[s.slot] for s in selection.slots},
+        rows_used={s.slot: len(s.rows) for s in selection.slots},
+        counts={n: len(v) for n, v in selection.counts.items()},
+        choices={n: len(v) for n, v in selection.choices.items()},
+        rows_left_out=selection.left_out,
+        combinations_left_out=instance.combinations_left_out if instance.compared else UNTOLD,
+        not_asked=list(instance.not_asked),
+    )
 
 
 def _message(code: str, message: str, source: str) -> str:

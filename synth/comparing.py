@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from synth.assembly import ranked
 from synth.comparison import Comparison, FamilyOutcome
 from synth.deadline import Stopped, until
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.instance import Instance
-from synth.pareto import rank, spread_subset
+from synth.pareto import spread_subset
 from synth.rating import Rater
 from synth.resolution import rounded_up
 from synth.results import Certificate, Design, ParetoFront
@@ -326,26 +327,14 @@ class _Comparing:
         listed, every = self._listed()
         certificate = self._certificate(bool(listed))
         weights = [float((self.ranked["weights"] or {}).get(n, 1.0)) for n in self.objectives]
-        designs: list[Design] = []
-        owners: list[str] = []
-        if listed:
-            values = self._signed([d for _, d in listed]) * self.senses
-            complete = certificate.kind == "global" and all(m.front.complete for m in self.members)
-            ranking = rank(self.objectives, values, weights, complete)
-            proven = certificate.kind == "global"
-            for position, k in enumerate(ranking.order):
-                member, design = listed[k]
-                owners.append(member.one.label)
-                designs.append(
-                    replace(
-                        design,
-                        rank=position + 1,
-                        score=float(ranking.scores[k]),
-                        note=ranking.notes[k],
-                        status=design.status if proven else Status.FEASIBLE,
-                        gap=certificate.gap if proven else None,
-                    )
-                )
+        proven = certificate.kind == "global"
+        complete = proven and all(m.front.complete for m in self.members)
+        order, designs = ranked([d for _, d in listed], self.objectives, weights, complete)
+        owners = [listed[k][0].one.label for k in order]
+        designs = [
+            replace(d, status=d.status if proven else Status.FEASIBLE, gap=certificate.gap if proven else None)
+            for d in designs
+        ]
         outcomes = [self._outcome(one, designs, owners, every) for one in self.found]
         settings = {
             "points": self.settings.points,

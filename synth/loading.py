@@ -11,6 +11,7 @@ from synth.files import read_json
 from synth.front_record import FORMAT, changed
 from synth.output_folder import settle
 from synth.results import Certificate, Design, Frame, ParetoFront, PartRow
+from synth.statistics import SearchStatistics
 
 COMPARISON = "comparison.json"
 
@@ -106,7 +107,7 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         designs=designs,
         status=Status(content["status"]),
         complete=content["complete"],
-        statistics=content["statistics"],
+        statistics=SearchStatistics.from_json(content["statistics"]),
         certificate=_certificate_from_json(content["certificate"]),
         explanation=content["explanation"],
         settings=content["settings"],

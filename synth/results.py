@@ -14,6 +14,7 @@ from synth.front_record import digest_of, front_record, record_text
 from synth.output_folder import FRONT, save_result
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.resolution import in_words
+from synth.statistics import SearchStatistics
 from synth.units import format_quantity, from_si, header
 
 if TYPE_CHECKING:
@@ -183,7 +184,7 @@ class ParetoFront:
     designs: list[Design]
     status: Status
     complete: bool
-    statistics: Mapping[str, Any]
+    statistics: SearchStatistics
     certificate: Certificate
     explanation: Mapping[str, Any] | None
     settings: Mapping[str, Any]

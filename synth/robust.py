@@ -10,14 +10,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-import numpy as np
-
+from synth.assembly import ranked
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.instance import Instance, catalogs_for
 from synth.output_folder import RATING, save_result
-from synth.pareto import rank
 from synth.posed import nominal
 from synth.problem import load
 from synth.rated import COLUMNS, limits_table, rating_row
@@ -288,7 +286,7 @@ class _Answer:
             front,
             frame=frame,
             designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
-            statistics={**front.statistics, "robust": counts},
+            statistics=replace(front.statistics, robust=counts),
             settings={**front.settings, "robust": block},
             interrupted=self.stopped,
         )
@@ -299,14 +297,8 @@ def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
     """Return a front without some of its designs, ranked again."""
     kept = [d for j, d in enumerate(front.designs) if j not in failing]
     chosen = dict(front.frame.objectives)
-    values = np.array([[d.values[n] for n in chosen] for d in kept]).reshape(len(kept), len(chosen))
-    if kept:
-        weights = front.settings.get("weights") or {}
-        ranking = rank(chosen, values, [weights.get(n, 1.0) for n in chosen])
-        kept = [
-            replace(kept[k], rank=position, score=float(ranking.scores[k]), note=ranking.notes[k])
-            for position, k in enumerate(ranking.order, start=1)
-        ]
+    weights = front.settings.get("weights") or {}
+    _, kept = ranked(kept, chosen, [weights.get(n, 1.0) for n in chosen])
     if not kept:
         # Nothing says that there is no robust design; there is none here that anything could be proven of.
         certificate = replace(front.certificate, kind="heuristic", gap=None, resolution={}, units={})

@@ -12,6 +12,7 @@ import numpy as np
 
 from synth import deadline
 from synth.analysis import chosen_objectives, found_designs, make_frame, offered, with_ties
+from synth.assembly import front_of, ranked
 from synth.best_first import best_first
 from synth.clock import Clock, Stopped
 from synth.compilation import meanwhile, switched_off
@@ -25,7 +26,7 @@ from synth.feasibility import Status
 from synth.formulation import Archive, Boxes, Candidate, Formulation, rows_of
 from synth.instance import Instance
 from synth.outer import BEGUN_ANEW, passed_over, search_parts, study_file
-from synth.pareto import extremes, rank, spread_subset
+from synth.pareto import extremes, spread_subset
 from synth.posed import posed
 from synth.problem import DesignProblem
 from synth.propagation import Lessons
@@ -973,24 +974,18 @@ class FrontSearch:
         costs = elasticities(self.form, settled if settle else [], self.m) or [{}] * len(settled)
         points = np.array([c.variables for c in settled]).reshape(len(settled), self.form.n)
         result = self.form.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
-        values = np.stack([result.values[name] for name in self.chosen], axis=1)
-        ranking = rank(self.chosen, values, weights, settle and self.complete)
         proven = self.closed and settle
         more = [
             {
                 "status": Status.OPTIMAL if proven else Status.FEASIBLE,
                 "gap": self.gap if proven else None,
-                "score": float(ranking.scores[k]),
-                "note": ranking.notes[k],
                 "alternatives": alternatives[k],
                 "elasticity": costs[k],
             }
             for k in range(len(settled))
         ]
-        for position, k in enumerate(ranking.order):
-            more[k]["rank"] = position + 1
         designs = found_designs(self.form, [frame] * len(settled), settled, result, more)
-        return [designs[k] for k in ranking.order]
+        return ranked(designs, self.chosen, weights, settle and self.complete)[1]
 
     def _settled(self) -> tuple[list[Candidate], list[tuple[str, ...]]]:
         """Settle what the chosen objectives do not see, and name other combinations that tie."""
@@ -1030,30 +1025,19 @@ class FrontSearch:
         amounts = self._amounts(gap) if designs and gap is not None else {}
         units = {name: self.instance.model.units[name] for name in amounts}
         certificate = Certificate(kind, gap, total, excluded, solved, self.unresolved, spent, amounts, units)
-        statistics = {
-            **offered(self.instance),
-            "excluded_by_bound": excluded,
-            "solved": solved,
-            "boxes": self.form.contracted,
-            "scalar_problems": self.scalar_problems,
-            "designs_known": len(self.form.archive),
-            "nlp_solves": self.form.nlp_solves,
-            "nlp_solves_to_find": self.solves_to_find,
-            "outer_trials": self.outer_trials,
-            "seconds": {**self.stage_seconds, "total": time.monotonic() - self.started},
-        }
-        status = Status.OPTIMAL if designs and kind == "global" else Status.FEASIBLE if designs else Status.NOT_SOLVED
-        if not designs and not interrupted:
-            status = Status.INFEASIBLE
-        return ParetoFront(
-            frame=frame,
-            designs=list(designs),
-            status=status,
-            complete=self.complete and not interrupted,
-            statistics=statistics,
-            certificate=certificate,
-            explanation=explanation,
-            settings=settings,
-            interrupted=interrupted,
-            question=self.instance,
+        statistics = replace(
+            offered(self.instance),
+            excluded_by_bound=excluded,
+            solved=solved,
+            boxes=self.form.contracted,
+            scalar_problems=self.scalar_problems,
+            designs_known=len(self.form.archive),
+            nlp_solves=self.form.nlp_solves,
+            nlp_solves_to_find=self.solves_to_find,
+            outer_trials=self.outer_trials,
+            seconds={**self.stage_seconds, "total": time.monotonic() - self.started},
         )
+        return front_of(
+            self.instance, frame, designs, certificate, statistics, settings,
+            complete=self.complete, explanation=explanation, interrupted=interrupted,
+        )  # fmt: skip

@@ -5,20 +5,20 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
-from itertools import groupby
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from synth.analysis import found_designs, make_frame, offered, with_ties
+from synth.assembly import front_of, ranked
 from synth.clock import Clock
 from synth.cover import cover
 from synth.elasticity import elasticities
 from synth.feasibility import Status
 from synth.formulation import Boxes, Candidate, Formulation, rows_of
-from synth.pareto import rank
 from synth.resolution import rounded_up, slack
-from synth.results import Certificate, Design, Frame, ParetoFront
+from synth.results import Certificate, Design, ParetoFront
 from synth.search import Question
 from synth.settle import settle_ties
 from synth.together import BestOfEach, Each, Together
@@ -318,28 +318,21 @@ class TogetherSearch:
         for number, designs in self._designs(found, traded).items():
             question = self.questions[number]
             total, own = question.instance.combinations.count, int(solved[number])
-            statistics = {
-                **offered(question.instance),
-                "excluded_by_bound": total - own,
-                "solved": own,
-                "searched_together": len(self.questions),
-                "boxes": form.contracted,
-                "nlp_solves": form.nlp_solves,
-                "nlp_solves_to_find": solves,
-                "seconds": {"total": time.monotonic() - self.started},
-            }
-            fronts[number] = ParetoFront(
-                frame=designs[0].frame,
-                designs=designs,
-                status=Status.OPTIMAL,
-                complete=traded == 1,
-                statistics=statistics,
-                certificate=Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded)),
-                explanation=None,
-                settings=question.record(),
-                interrupted="",
-                question=question.instance,
+            statistics = replace(
+                offered(question.instance),
+                excluded_by_bound=total - own,
+                solved=own,
+                searched_together=len(self.questions),
+                boxes=form.contracted,
+                nlp_solves=form.nlp_solves,
+                nlp_solves_to_find=solves,
+                seconds={"total": time.monotonic() - self.started},
             )
+            certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
+            fronts[number] = front_of(
+                question.instance, designs[0].frame, designs, certificate, statistics, question.record(),
+                complete=traded == 1,
+            )  # fmt: skip
         return fronts
 
     def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
@@ -365,26 +358,17 @@ class TogetherSearch:
         combinations, points, _ = rows_of(candidates)
         result = form.evaluate(points.reshape(len(candidates), form.n), combinations)
         numbers = together.combinations.question(combinations).tolist()
-        frames: list[Frame] = []
-        more: list[dict[str, Any]] = []
-        for number, group in groupby(range(len(numbers)), key=numbers.__getitem__):
-            own, question = list(group), self.questions[number]
-            values = np.stack([result.values[name][own] for name in question.chosen], axis=1)
-            ranking = rank(question.chosen, values, list(question.weights.values()))
-            places = np.argsort(ranking.order)
-            frames += [make_frame(question.instance, question.chosen)] * len(own)
-            more += [
-                {
-                    "status": Status.OPTIMAL, "gap": self.gap, "rank": int(places[k]) + 1,
-                    "score": float(ranking.scores[k]), "note": ranking.notes[k],
-                    "alternatives": found[j][1], "elasticity": costs[j],
-                }
-                for k, j in enumerate(own)
-            ]  # fmt: skip
+        made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
+        more = [
+            {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
+            for (_, also), cost in zip(found, costs, strict=True)
+        ]
         designs: dict[int, list[Design]] = {}
+        frames = [made[number] for number in numbers]
         for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
             designs.setdefault(number, []).append(design)
-        return {number: sorted(own, key=lambda d: d.rank or 0) for number, own in designs.items()}
+        asked = {number: self.questions[number] for number in designs}
+        return {q: ranked(own, asked[q].chosen, list(asked[q].weights.values()))[1] for q, own in designs.items()}
 
     def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
         """Return the elasticities of each design, as its question alone would tell them."""

@@ -11,19 +11,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from synth.assembly import ranked
 from synth.breaks import find_breaks, weight_breaks
 from synth.deadline import Stopped, until
 from synth.fingerprint import hash_of, joined
 from synth.front_record import front_record
 from synth.loading import front_of_record
 from synth.output_folder import claimed
-from synth.pareto import rank
 from synth.problem import DesignProblem
 from synth.rating import Rater
 from synth.request import Request
-from synth.results import Design, ParetoFront
+from synth.results import ParetoFront
 from synth.robust import robust_front
 from synth.search import Question
 from synth.search_settings import Progress, SearchSettings, check_progress
@@ -294,13 +292,7 @@ class _Run:
 
 def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     """Return a front with other weights: the designs are the same, their order is not."""
-    names = list(question.chosen)
-    values = np.array([[d.values[n] for n in names] for d in front.designs]).reshape(len(front.designs), len(names))
-    ranking = rank(question.chosen, values, list(question.weights.values()))
-    designs: list[Design] = [
-        replace(front.designs[k], rank=place + 1, score=float(ranking.scores[k]), note=ranking.notes[k])
-        for place, k in enumerate(ranking.order)
-    ]
+    _, designs = ranked(front.designs, question.chosen, list(question.weights.values()))
     return replace(front, designs=designs, settings={**front.settings, **question.record()})
 
 

@@ -37,6 +37,7 @@ LEVELS = {place: level for level, places in enumerate(LAYERS) for place in place
 
 # Where modules belong that still lie side by side.
 FLAT: dict[str, str] = {
+    "assembly": "results",
     "batch_nlp": "nlp",
     "best_first": "search",
     "breaks": "studies",
@@ -113,6 +114,7 @@ FLAT: dict[str, str] = {
     "slot_comparison": "model",
     "spec": "question",
     "spec_patch": "question",
+    "statistics": "results",
     "steps": "search",
     "structure": "bounds",
     "study": "studies",
@@ -123,6 +125,7 @@ FLAT: dict[str, str] = {
     "sweeps": "nlp",
     "tape": "proof",
     "terminal_options": "terminal",
+    "told": "results",
     "together": "parametric",
     "together_fronts": "parametric",
     "together_look": "parametric",

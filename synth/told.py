@@ -1,0 +1,53 @@
+"""Records that read like dictionaries: what a program reads by name and type, scripts and files read by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from enum import Enum
+from typing import Any, NoReturn, Self
+
+
+class Untold(Enum):
+    """The value of a field that is not told."""
+
+    UNTOLD = "untold"
+
+
+UNTOLD = Untold.UNTOLD
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Told(dict[str, Any]):
+    """A record whose fields are keys as well, in the order of their declaration; it cannot be changed.
+
+    A field that is not told is no key. ``more`` are keys that no field is for, as other versions may have written them.
+    """
+
+    more: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Fill in the keys."""
+        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "more"}
+        super().update({name: value for name, value in own.items() if value is not UNTOLD} | dict(self.more))
+
+    @classmethod
+    def from_json(cls, content: Mapping[str, Any]) -> Self:
+        """Return the record that a file tells."""
+        names = {f.name for f in fields(cls)} - {"more"}
+        own = {name: value for name, value in content.items() if name in names}
+        return cls(**own, more={name: value for name, value in content.items() if name not in names})
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the keys and values as a plain dictionary."""
+        return dict(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Tell how it is made again: by pickle and copy."""
+        return type(self).from_json, (self.to_json(),)
+
+    def _refuse(self, *_: Any, **__: Any) -> NoReturn:
+        raise TypeError(f"{type(self).__name__} cannot be changed; dict(...) of it can")
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    update = setdefault = pop = popitem = clear = _refuse
