@@ -83,7 +83,7 @@ def test_families_are_listed_with_their_titles() -> None:
 
 
 def test_describe_fits_on_a_line_and_respects_options() -> None:
-    done = clutchsynth("describe", "multi_plate_clutch", "--option", "lubrication=dry")
+    done = at_once("describe", "multi_plate_clutch", "--option", "lubrication=dry")
     assert done.returncode == 0
     assert max(len(line) for line in done.stdout.splitlines()) <= 100
     assert "lubrication == 'dry'" in " ".join(done.stdout.split())
@@ -100,7 +100,7 @@ def test_describe_fits_on_a_line_and_respects_options() -> None:
 
 
 def test_describe_as_csv() -> None:
-    done = clutchsynth("describe", "multi_plate_clutch", "--csv")
+    done = at_once("describe", "multi_plate_clutch", "--csv")
     rows = {(row["kind"], row["name"]): row for row in csv.DictReader(io.StringIO(done.stdout))}
     assert rows["requirement", "safety_factor"]["default"] == "1.5"
     assert rows["column", "friction_pair.mu_dynamic"]["unit"] == "-"
@@ -141,7 +141,7 @@ def test_check_lists_every_violated_limit(tmp_path: Path) -> None:
     design["requirements"]["jerk_limit"] = "10 rad/s3"
     path = tmp_path / "weak.yaml"
     path.write_text(yaml.safe_dump(design))
-    done = clutchsynth("check", path, "-o", tmp_path / "out")
+    done = at_once("check", path, "-o", tmp_path / "out")
     assert done.returncode == 3
     assert "violated: torque_capacity, startup_torque_available, jerk\n" in done.stdout
     limits = done.stdout[done.stdout.index("\nLimits") :]
@@ -277,12 +277,12 @@ def test_run_finds_ranks_saves_and_explains(tmp_path: Path) -> None:
         assert word in done.stdout
     assert max(len(line) for line in done.stdout.splitlines()) <= 100
     # A design that was saved reads back as it was.
-    assert clutchsynth("check", tmp_path / "out" / "design_01.yaml").returncode == 0
+    assert at_once("check", tmp_path / "out" / "design_01.yaml").returncode == 0
 
 
 def test_run_quietly_says_nothing(tmp_path: Path) -> None:
     (tmp_path / "small.yaml").write_text(SMALL)
-    done = clutchsynth("run", "small.yaml", "-o", "out", "--quiet", "--objective", "mass", folder=tmp_path)
+    done = at_once("run", "small.yaml", "-o", "out", "--quiet", "--objective", "mass", folder=tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert json.loads((tmp_path / "out" / "front.json").read_text())["objectives"] == {"mass": "min"}
 
@@ -290,7 +290,7 @@ def test_run_quietly_says_nothing(tmp_path: Path) -> None:
 def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
     # Around a ring of 262 mm the drum is 280 mm wide.
     (tmp_path / "tight.yaml").write_text(SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, "))
-    done = clutchsynth("run", "tight.yaml", "-o", "out", folder=tmp_path)
+    done = at_once("run", "tight.yaml", "-o", "out", folder=tmp_path)
     assert done.returncode == 3
     assert "outer_diameter" in done.stdout
     text = (tmp_path / "out" / "explanation.txt").read_text()
@@ -301,7 +301,7 @@ def test_nothing_feasible_is_explained(tmp_path: Path) -> None:
     assert content["explanation"]["conflicts"]
     # The next run into the same folder that finds something takes the explanation away.
     (tmp_path / "small.yaml").write_text(SMALL)
-    assert clutchsynth("run", "small.yaml", "-o", "out", "-q", folder=tmp_path).returncode == 0
+    assert at_once("run", "small.yaml", "-o", "out", "-q", folder=tmp_path).returncode == 0
     assert not (tmp_path / "out" / "explanation.txt").exists()
 
 
@@ -347,12 +347,12 @@ def test_the_same_question_gives_the_same_bytes_whether_code_was_compiled_before
 def test_a_saved_front_is_gone_on_with(tmp_path: Path) -> None:
     (tmp_path / "small.yaml").write_text(SMALL)
     words = ("run", "small.yaml", "-o")
-    assert clutchsynth(*words, "first", "-q", folder=tmp_path).returncode == 0
-    more = clutchsynth(*words, "second", "--more", "first", folder=tmp_path)
+    assert at_once(*words, "first", "-q", folder=tmp_path).returncode == 0
+    more = at_once(*words, "second", "--more", "first", folder=tmp_path)
     assert more.returncode == 0, more.stderr
     first, second = (json.loads((tmp_path / name / "front.json").read_text()) for name in ("first", "second"))
     assert second["certificate"] == first["certificate"]
     assert second["designs"] == first["designs"]
     (tmp_path / "small.yaml").write_text(SMALL.replace("26.6 rad/s", "26.7 rad/s"))
-    assert "requirement driver_speed" in refused(clutchsynth(*words, "third", "--more", "first", folder=tmp_path))
+    assert "requirement driver_speed" in refused(at_once(*words, "third", "--more", "first", folder=tmp_path))
     assert not (tmp_path / "third").exists()

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from tests.endtoend.entry import COMMAND, at_once, clutchsynth
+from tests.endtoend.test_batch_cli import clutchsynth as in_process
 from tests.endtoend.test_choice_cli import SEVERAL
 from tests.endtoend.test_cli import HOIST, SMALL, refused
 from tests.unit.test_output_folder import small_disk
@@ -203,24 +204,24 @@ def test_a_batch_whose_disk_gets_full_keeps_what_it_has_and_goes_on(tmp_path: Pa
         assert "is full" in full.stderr
         assert "what was found is in the database, the same command goes on" in full.stderr
         subprocess.run(["mount", "-o", "remount,size=20m", str(disk)], check=True)
-        assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
+        assert in_process(*BATCH, "-q", folder=tmp_path).returncode == 0
         assert len((disk / "rows.csv").read_text().splitlines()) == 31
 
 
 def test_what_a_batch_has_found_is_kept_where_it_cannot_be_written(tmp_path: Path) -> None:
     rows(tmp_path / "rows.csv", 600)
-    assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
+    assert in_process(*BATCH, "-q", folder=tmp_path).returncode == 0
     before = (tmp_path / "out" / "designs.csv").read_bytes()
     rows(tmp_path / "rows.csv", 600, 610)
     (tmp_path / "out" / "rows.csv").unlink()
     (tmp_path / "out" / "rows.csv").mkdir()  # in the way
-    blocked = clutchsynth(*BATCH, "-q", folder=tmp_path)
+    blocked = in_process(*BATCH, "-q", folder=tmp_path)
     assert blocked.returncode == 4
     assert len(blocked.stderr.splitlines()) == 1
     assert "what was found is in the database, the same command goes on" in blocked.stderr
     assert (tmp_path / "out" / "designs.csv").read_bytes() == before
     (tmp_path / "out" / "rows.csv").rmdir()
-    assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
+    assert in_process(*BATCH, "-q", folder=tmp_path).returncode == 0
     assert len((tmp_path / "out" / "designs.csv").read_text().splitlines()) == 3
 
 
@@ -228,7 +229,7 @@ def test_a_batch_of_other_rows_that_is_stopped_stands_beside(tmp_path: Path) -> 
     """The result of a finished batch stays until another one is finished."""
     out = tmp_path / "out"
     rows(tmp_path / "rows.csv", 600)
-    assert clutchsynth(*BATCH, "-q", folder=tmp_path).returncode == 0
+    assert in_process(*BATCH, "-q", folder=tmp_path).returncode == 0
     before = {name: raw for name, raw in contents(out).items() if not name.startswith("jobs.sqlite")}
     rows(tmp_path / "rows.csv", *range(600, 760))
     with subprocess.Popen(
