@@ -335,10 +335,11 @@ class Reference:
         count, n = agents.x.shape
         span = self.high - self.low
         merit = self._merit(agents, base, weights)
+        rng = np.random.default_rng([self.case.seed, count, rounds])  # the same whatever was searched for before
         for _ in range(rounds):
-            size = 10.0 ** self.rng.uniform(-5, -0.3, (count, TRIES, 1))
-            step = self.rng.normal(size=(count, TRIES, n)) * size * span
-            single = np.arange(n) == self.rng.integers(0, n, (count, TRIES, 1))
+            size = 10.0 ** rng.uniform(-5, -0.3, (count, TRIES, 1))
+            step = rng.normal(size=(count, TRIES, n)) * size * span
+            single = np.arange(n) == rng.integers(0, n, (count, TRIES, 1))
             step = np.where((np.arange(TRIES) % 3 == 0)[None, :, None] & ~single, 0.0, step)
             x = np.clip(agents.x[:, None, :] + step, self.low, self.high).reshape(-1, n)
             tried = self.evaluate(np.repeat(agents.which, TRIES), x)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -143,7 +144,7 @@ def steps(monkeypatch):
 def test_a_front_step_by_step_claims_nothing_that_is_wrong(steps, structure, seed):
     case = make(structure, seed)
     to_the_end = {"narrow": 0.0} if seed == 1 else {}
-    a = Answer(case, run(case, tuned(tree=STEPS | to_the_end)), Reference(case))
+    a = Answer(case, run(case, tuned(tree=STEPS | to_the_end)), answer(structure, seed).reference)
     assert steps or not a.front.designs or len(a.case.objectives) != 2 or a.proven
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
@@ -153,6 +154,12 @@ def of_two(structure: str, seed: int, points: int) -> Case:
     """Return a case with its first two objectives."""
     case = make(structure, seed)
     return replace(case, objectives=dict(list(case.objectives.items())[:2]), points=points)
+
+
+@cache
+def reference(structure: str, seed: int) -> Reference:
+    """Return the reference of a case with its first two objectives, whatever the number of points asked for."""
+    return Reference(of_two(structure, seed, 2))
 
 
 @pytest.mark.parametrize("points", [5, 20])
@@ -169,7 +176,7 @@ def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, effort, poin
         "narrow": 20.0 if points == 5 else 0.0,
     }
     case = of_two(structure, seed, points)
-    a = Answer(case, run(case, tuned(tree=STEPS | given_up)), Reference(case))
+    a = Answer(case, run(case, tuned(tree=STEPS | given_up)), reference(structure, seed))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
 
@@ -178,7 +185,7 @@ def test_steps_that_are_given_up_claim_nothing_that_is_wrong(steps, effort, poin
 @pytest.mark.parametrize("seed", range(3))
 def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(steps, seconds, seed):
     case = of_two("hard", seed, 5)
-    a = Answer(case, run(case, tuned(tree=STEPS), time_limit=seconds), Reference(case))
+    a = Answer(case, run(case, tuned(tree=STEPS), time_limit=seconds), reference("hard", seed))
     assert a.proven or a.front.interrupted == "time limit"
     wrong = faults(a)
     assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])
@@ -187,8 +194,12 @@ def test_a_front_that_was_stopped_between_steps_claims_nothing_that_is_wrong(ste
 # -- fronts of several questions together ---------------------------------------------------------
 
 
-def together(case: Case) -> synth.ParetoFront | None:
+@cache
+def together(structure: str, seed: int, points: int) -> synth.ParetoFront | None:
     """Return the front of a case that was searched together with others, whose requirements are a little larger."""
+    case = of_two(structure, seed, points)
+    if len(case.objectives) != 2:
+        return None
     problem = RandomProblem(structure=case.structure, seed=str(case.seed))
     more = {k: v for k, v in case.question().items() if k != "time_limit"}
     catalogs = Catalogs(more.pop("catalogs")) if "catalogs" in more else None
@@ -207,18 +218,16 @@ JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(INS
 @pytest.mark.parametrize("points", [2, 3, 6])
 @pytest.mark.parametrize(("structure", "seed"), JOINT)
 def test_a_front_searched_with_others_claims_nothing_that_is_wrong(points, structure, seed):
-    case = of_two(structure, seed, points)
-    front = together(case) if len(case.objectives) == 2 else None
+    front = together(structure, seed, points)
     if front is not None:
-        a = Answer(case, front, Reference(case))
+        a = Answer(of_two(structure, seed, points), front, reference(structure, seed))
         wrong = faults(a)
         assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
         assert a.proven
 
 
 def test_there_are_enough_fronts_searched_with_others():
-    cases = [of_two(structure, seed, 3) for structure, seed in JOINT]
-    answered = [together(case) is not None for case in cases if len(case.objectives) == 2]
+    answered = [together(structure, seed, 3) is not None for structure, seed in JOINT]
     assert sum(answered) >= 20, f"{sum(answered)} of {len(answered)}"
 
 
