@@ -1,4 +1,4 @@
-# make demo, make test, make lint, make lock, make clean
+# make demo, make check, make test, make lint, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -7,10 +7,14 @@ DEV := $(VENV)/.installed-dev
 COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-annotate --custom-compile-command "make lock" --quiet
 
-.PHONY: demo test lint lock clean
+.PHONY: demo check test lint lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
+
+# All but the tests that are slow; `test` is everything, as the build runs it.
+check: lint
+	$(BIN)/python -m pytest -n auto --dist loadscope -m "not slow"
 
 test: lint
 	$(BIN)/python -m pytest -n auto --dist loadscope

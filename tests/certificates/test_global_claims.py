@@ -30,6 +30,8 @@ from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, Case, RandomProblem, make
 from tests.tuned import tuned
 
+pytestmark = pytest.mark.slow  # hundreds of searches
+
 INSTANCES = (
     dict.fromkeys(STRUCTURES, 6)
     | {

@@ -5,6 +5,8 @@ import pytest
 from tests.certificates.structures import STRUCTURES, make
 from tests.certificates.test_global_claims import run
 
+pytestmark = pytest.mark.slow  # hundreds of searches
+
 SEED = 40  # beyond those that the claims are compared with enumeration for
 # A refused design that looked like a better one; two designs that settling made one; points behind a guard.
 KNOWN = [("refusals", 27), ("posynomial", 35), ("guards", 21), ("guards", 22)]

@@ -20,6 +20,8 @@ from synth.model import Model
 from synth.program import OP_SELECT, OP_SPECIAL
 from synth.structure import Structure, classify
 
+pytestmark = pytest.mark.slow
+
 CANCELLED = 1e-5  # a difference that is smaller than this beside its terms has too few digits to be compared
 BORDER = 1e-4  # of the domain of a special function
 

@@ -16,6 +16,8 @@ from synth.units import parse_unit
 from tests.conformance.cases import CASES, answer, question
 from tests.regimes import refereed
 
+pytestmark = pytest.mark.slow
+
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 POINTS = 400

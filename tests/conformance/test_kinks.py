@@ -18,6 +18,8 @@ from synth.nlp import Task
 from tests.conformance.cases import CASES, Case, answer
 from tests.regimes import best_in_any_regime, referee
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 STARTS = 8
 NEAR = 1e-3  # how far around an answer the referee looks, as a share of values or of ranges

@@ -11,6 +11,8 @@ from synth.units import parse_quantity
 from tests.conformance.cases import CASES
 from tests.endtoend.entry import at_once
 
+pytestmark = pytest.mark.slow
+
 FAMILIES = ("wrap_spring", "roller_coupling")
 
 

@@ -19,7 +19,10 @@ from tests.endtoend.test_choice_cli import SEVERAL
 from tests.endtoend.test_cli import HOIST, SMALL, refused
 from tests.unit.test_output_folder import small_disk
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX"),
+]
 
 LONG = ["--points", "500", "--gap", "1e-6", "--no-grid"]
 TIGHT = SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")
