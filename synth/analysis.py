@@ -13,9 +13,10 @@ from synth.declaration import VariableRecord
 from synth.errors import InputError, RefusedError, at
 from synth.feasibility import Status, utilisation
 from synth.inputs import inputs_of_design, part_value
-from synth.instance import Instance, as_mapping, catalogs_for
+from synth.instance import Instance, as_mapping
 from synth.model import DataInput, Evaluation, Model
-from synth.problem import DesignProblem, load
+from synth.problem import DesignProblem
+from synth.request import Request
 from synth.results import Design, Frame, PartRow
 from synth.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
 from synth.special import expanded
@@ -297,8 +298,7 @@ def _evaluate(
     objectives: Any,
     in_si: bool,
 ) -> Design:
-    problem = load(p)
-    instance = Instance(problem, requirements, catalogs_for(problem, catalogs), limits=limits, restrict=False)
+    instance = Instance(Request.of(p, requirements, catalogs, limits=limits), restrict=False)
     model = instance.model
     rows = _chosen_rows(instance, parts)
     known, choices, derived = _read_values(model, values, in_si)

@@ -239,7 +239,7 @@ class _Comparing:
         if request.robust is None:
             front = ask(None).within(limit).answer(shown)
         else:
-            rater = Rater(one.problem, request.requirements, self.tables, request.limits, request.robust)
+            rater = Rater(request, request.robust)
             front = robust_front(ask, rater, shown, limit)
         search = next(k.search for k in reversed(kept) if k.search is not None)
         return _Member(one, search, front, list(front.designs), rater)

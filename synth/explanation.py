@@ -384,10 +384,8 @@ class _Explaining:
         self.deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
         self.catalogs = request.catalogs
         whole = posed(request.problem, request.robust, request.limits)
-        asked = (
-            whole, request.requirements, request.catalogs, request.parts, request.limits, request.fix, request.grid,
-        )  # fmt: skip
-        self.instance = Instance(*asked, refuse=False)
+        asked = replace(request, problem=whole)
+        self.instance = Instance(asked, refuse=False)
         model, d = self.instance.model, self.instance.model.declaration
         self.names = d.names()
         variables = {v.name for v in model.variables}
@@ -416,7 +414,7 @@ class _Explaining:
         }
         if not fired_guards(self.instance):
             # What is refused only because several refusals leave out all rows between them.
-            Instance(*asked)
+            Instance(asked)
 
     def _pins(self, fix: Mapping[str, Any]) -> dict[str, _Pin]:
         """Return what is pinned to a number, and the counts of which comparisons leave some values."""
@@ -471,7 +469,9 @@ class _Explaining:
         bounds |= {AMOUNT: f"<= {most!r}"} if most < MOST else {}
         parts = {name: rule for name, rule in self.parts.items() if name not in loose}
         try:
-            instance = Instance(relaxed, self.given, self.catalogs, parts, bounds, fix, self.request.grid)
+            instance = Instance(
+                replace(self.request, problem=relaxed, requirements=self.given, parts=parts, limits=bounds, fix=fix)
+            )
         except RefusedError:
             return _Answer(None, True)
         front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), EFFORT)
@@ -881,9 +881,7 @@ class _Explaining:
         asked = self._with(patch)
         try:
             problem = posed(nominal(asked.problem), asked.robust, asked.limits)
-            instance = Instance(
-                problem, asked.requirements, asked.catalogs, asked.parts, asked.limits, asked.fix, asked.grid
-            )
+            instance = Instance(replace(asked, problem=problem))
             design = self._as_asked(found, patch)
             instance.combinations.number(design)
         except InputError:

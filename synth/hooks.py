@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.declaration import Setting
-    from synth.results import Design
+    from synth.request import Request
+from synth.results import Design
 
 FILE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 OPINION = ["quantity", "unit", "closed_form", "simulation", "difference", "relative_difference"]
@@ -103,7 +104,7 @@ def curves(
     problem = load(p)
     catalogs = catalogs_for(problem, catalogs)
     if design is None and values is None:
-        instance = Instance(problem, requirements, catalogs, restrict=False)
+        instance = Instance(Request(problem=problem, requirements=requirements, catalogs=catalogs), restrict=False)
         spec = {**instance.requirements, **dict.fromkeys(instance.not_asked)}
         return _checked(problem, "curves", "curves", problem.curves(spec))
     evaluated = evaluate(problem, requirements, design, values=values, parts=parts, catalogs=catalogs)

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -29,6 +29,9 @@ from synth.special import expanded
 from synth.tables import Catalogs, Table
 from synth.units import Quantity, format_quantity, from_si, parse_quantity, parse_unit
 from synth.user_limits import check_number_of_limits, contradict, read_limits
+
+if TYPE_CHECKING:
+    from synth.request import Request
 
 MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
 
@@ -105,7 +108,7 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     """
     model = problem.model(frozenset(), catalogs)
     result: dict[str, Any] = {}
-    for word, value in as_mapping(requirements, "requirements", "{'mass': '20 kg'}").items():
+    for word, value in requirements.items():
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
         if name in result:
             right = "each requirement once (name and symbol mean the same)"
@@ -120,14 +123,8 @@ class Instance:
 
     Parameters
     ----------
-    problem : DesignProblem
-    requirements : mapping
-        Names or symbols; text with units, or bare numbers in the declared unit.
-    catalogs : Catalogs
-    parts, limits, fix : mapping, optional
-        Restrictions as in ``synth.synthesize``.
-    grid : bool
-        Whether makeable values are asked for.
+    request : Request
+        What is asked; its problem has the limits that what scatters calls for already.
     restrict : bool
         False for the analysis of a given design: then rows are not filtered, and limits on what it is made of bound
         nothing.
@@ -147,24 +144,11 @@ class Instance:
         The counts of which a set of values is allowed, with the values.
     """
 
-    def __init__(
-        self,
-        problem: DesignProblem,
-        requirements: Mapping[str, Any],
-        catalogs: Catalogs,
-        parts: Mapping[str, Any] | None = None,
-        limits: Mapping[str, Any] | None = None,
-        fix: Mapping[str, Any] | None = None,
-        grid: bool = True,
-        restrict: bool = True,
-        refuse: bool = True,
-    ) -> None:
-        asked = known_requirements(problem, requirements, catalogs)
-        self.problem = problem
-        self.catalogs = catalogs
-        rules = as_mapping(parts, "parts", "{'slot': ['designation', 'designation']}") if restrict else {}
+    def __init__(self, request: Request, *, restrict: bool = True, refuse: bool = True) -> None:
+        self.problem, self.catalogs, self.grid = request.problem, request.catalogs, request.grid
+        asked = known_requirements(self.problem, request.requirements, self.catalogs)
+        rules = request.parts if restrict else {}
         self.compared, self.model = self._traced(frozenset(asked), rules)
-        self.grid = grid
         d = self.model.declaration
         self.requirements = self._requirement_values(asked)
         self.given = frozenset(asked)
@@ -176,7 +160,7 @@ class Instance:
         self.pinned = np.zeros(len(self.model.variables), dtype=bool)
         self.own: list[Constraint] = []
         self.bounding: list[Constraint] = []
-        self.asked_limits = dict(as_mapping(limits, "limits", "{'mass': '<= 20 kg'}"))
+        self.asked_limits = dict(request.limits)
         self._fixed_discrete: dict[str, Any] = {}
         self.count_sets: list[tuple[str, np.ndarray]] = []
         check_number_of_limits(self.asked_limits)
@@ -184,10 +168,9 @@ class Instance:
         self.limited = self.model.by_name(self.asked_limits, "limits", quantities, "a quantity")
         for name, conditions in self.limited.items():
             self._add_limit(name, conditions, restrict)
-        pinned = as_mapping(fix, "fix", "{'mass': '20 kg'}")
         among = [*quantities, *d.choices, *d.slots]
         kinds = "a variable, count, choice, slot or derived quantity"
-        for name, value in self.model.by_name(pinned, "fix", among, kinds).items():
+        for name, value in self.model.by_name(request.fix, "fix", among, kinds).items():
             with at("fix", name):
                 self._pin(name, value)
         self.selection = Selection()

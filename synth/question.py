@@ -8,6 +8,7 @@ from synth.errors import InputError
 from synth.instance import Instance, catalogs_for
 from synth.posed import posed
 from synth.problem import DesignProblem, load
+from synth.request import Request
 from synth.tables import Catalogs
 
 if TYPE_CHECKING:
@@ -46,8 +47,10 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
     """
     settings = front.settings
     return Instance(
-        problem, front.frame.requirements, catalogs, settings["parts"], settings["limits"], settings["fix"],
-        bool(settings["grid"]),
+        Request(
+            problem=problem, requirements=front.frame.requirements, catalogs=catalogs, parts=settings["parts"],
+            limits=settings["limits"], fix=settings["fix"], grid=bool(settings["grid"]),
+        )
     )  # fmt: skip
 
 

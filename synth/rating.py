@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -21,11 +21,10 @@ from synth.enclosure import ZERO, Enclosed, Encloser, Pair, Slopes
 from synth.feasibility import holds, utilisation
 from synth.inputs import first_value, inputs_of_design
 from synth.instance import Instance
-from synth.problem import DesignProblem
 from synth.program import OP_SELECT
+from synth.request import Request
 from synth.results import Design
 from synth.scatter import Member, check_values, scattered
-from synth.tables import Catalogs
 from synth.tape import Tape
 from synth.uncertainty import Uncertainty
 
@@ -40,12 +39,8 @@ class Rater:
 
     Parameters
     ----------
-    problem : DesignProblem
-    requirements : mapping
-        As for ``synthesize``.
-    catalogs : Catalogs
-    limits : mapping or None
-        The user's own limits.
+    request : Request
+        The problem without limits over the range, its requirements, tables and the user's own limits count.
     asked : Uncertainty
         What scatters.
 
@@ -55,15 +50,8 @@ class Rater:
         When the problem has no such thing.
     """
 
-    def __init__(
-        self,
-        problem: DesignProblem,
-        requirements: Mapping[str, Any],
-        catalogs: Catalogs,
-        limits: Mapping[str, Any] | None,
-        asked: Uncertainty,
-    ) -> None:
-        self.instance = Instance(problem, requirements, catalogs, limits=limits, restrict=False)
+    def __init__(self, request: Request, asked: Uncertainty) -> None:
+        self.instance = Instance(replace(request, parts={}, fix={}), restrict=False)
         self.model, self.asked = self.instance.model, asked
         d = self.model.declaration
         self.things = scattered(asked, d)

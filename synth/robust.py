@@ -20,6 +20,7 @@ from synth.posed import nominal
 from synth.problem import load
 from synth.rated import COLUMNS, limits_table, rating_row
 from synth.rating import PROVEN, Rater
+from synth.request import Request
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.scatter import check_rows
 from synth.search_settings import Progress, SearchSettings, check_progress
@@ -163,7 +164,9 @@ def rate(
         problem, catalogs = nominal(question.problem), question.catalogs if catalogs is None else catalogs
     own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
     tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
-    rater = Rater(own, frame.requirements, tables, frame.restated.get("limits"), asked)
+    limits = frame.restated.get("limits") or {}
+    request = Request(problem=own, requirements=frame.requirements, catalogs=tables, limits=limits)
+    rater = Rater(request, asked)
     deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
     found, stopped = rater.rate(designs, progress, deadline)
     rated = [replace(d, robust=r) for d, r in zip(designs, found, strict=False)]

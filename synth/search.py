@@ -132,7 +132,7 @@ def find_front(request: Request, settings: SearchSettings, progress: Progress | 
     if request.robust is None:
         question = pose(request, settings)
         return question.within(settings.since(begun).time_limit).answer(progress)
-    rater = Rater(request.problem, request.requirements, request.catalogs, request.limits, request.robust)
+    rater = Rater(request, request.robust)
     left = settings.since(begun).time_limit
     return robust_front(lambda wanted: pose(replace(request, robust=wanted), settings), rater, progress, left)
 
@@ -227,9 +227,7 @@ def pose(
     """
     if problem is None:
         problem = posed(request.problem, request.robust, request.limits)
-    instance = Instance(
-        problem, request.requirements, request.catalogs, request.parts, request.limits, request.fix, request.grid
-    )
+    instance = Instance(replace(request, problem=problem))
     chosen = chosen_objectives(instance.model, request.objectives)
     weights = dict(zip(chosen, _weights(instance, chosen, request.weights), strict=True))
     return Question(

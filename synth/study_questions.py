@@ -52,7 +52,7 @@ def _rater_of(request: Request) -> Rater | None:
     """
     if request.robust is None:
         return None
-    return Rater(request.problem, request.requirements, request.catalogs, request.limits, request.robust)
+    return Rater(request, request.robust)
 
 
 def _with_option(request: Request, name: str, word: str) -> DesignProblem:

@@ -6,11 +6,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from synth import search
+from synth.instance import Instance
+from synth.problem import DesignProblem
+from synth.rating import Rater
 from synth.request import Request
 from synth.search_settings import SearchSettings
 from synth.spec_keys import SEARCHED
 from synth.study_questions import Steps
+from synth.tables import Catalogs
 from synth.tuning import TUNING, Tuning
+from synth.uncertainty import Uncertainty
 
 
 def pose(
@@ -21,6 +26,22 @@ def pose(
     how = {name: more.pop(name) for name in SEARCHED if name in more}
     request = Request.of(p, requirements, catalogs, objectives=objectives, parts=parts, **more)
     return search.pose(request, SearchSettings(points=points, **how), tuning=tuning)
+
+
+def instance_of(
+    problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs, parts: Any = None, limits: Any = None,
+    fix: Any = None, grid: bool = True, **how: bool,
+) -> Instance:  # fmt: skip
+    """Return a model with its requirement values and restrictions."""
+    asked = {"parts": parts, "limits": limits, "fix": fix, "grid": grid}
+    return Instance(Request(problem=problem, requirements=requirements, catalogs=catalogs, **asked), **how)
+
+
+def rater_of(
+    problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs, limits: Any, block: Uncertainty
+) -> Rater:
+    """Return what rates designs over a range."""
+    return Rater(Request(problem=problem, requirements=requirements, catalogs=catalogs, limits=limits), block)
 
 
 def steps_of(

@@ -19,6 +19,7 @@ from synth.jobs.store import digest, encoded
 from synth.jobs.table import RowTable
 from synth.jobs.vocabulary import FAMILY, FIX, LIMITS, OPTIONS, PARTS, STRUCTURE, Universe, Word, words_of
 from synth.problem import DesignProblem, families, load
+from synth.request import Request
 from synth.spec import read_content
 from synth.units import check_number, parse_quantity, parse_unit, split_header
 
@@ -426,10 +427,9 @@ class Questioner:
             given = frozenset(question["requirements"])
             key = digest(question)
             if key not in self._checked:
-                instance = Instance(
-                    problem, question["requirements"], catalogs, question[PARTS], question[LIMITS], question[FIX],
-                    self.settings["grid"],
-                )  # fmt: skip
+                asked = {name: question[name] for name in (REQUIREMENTS, PARTS, LIMITS, FIX)}
+                grid = self.settings["grid"]
+                instance = Instance(Request(problem=problem, catalogs=catalogs, grid=grid, **asked))
                 instance.grids()
                 if given not in variant.checked:
                     chosen_objectives(instance.model, self.settings["objectives"])

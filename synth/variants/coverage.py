@@ -15,6 +15,7 @@ from synth.inputs import inputs_of, part_value
 from synth.instance import Instance, numeric
 from synth.model import DataInput, Evaluation, Model
 from synth.problem import DesignProblem
+from synth.request import Request
 from synth.special import expanded
 from synth.tables import Catalogs
 
@@ -101,10 +102,8 @@ def objective_of_pairs(
 
 
 def _instance(structure: Structure, question: Mapping[str, Any]) -> Instance:
-    return Instance(
-        structure.problem, question["requirements"], structure.catalogs, question["parts"], question["limits"],
-        question["fix"],
-    )  # fmt: skip
+    asked = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
+    return Instance(Request(problem=structure.problem, catalogs=structure.catalogs, **asked))
 
 
 class _VariantColumns:

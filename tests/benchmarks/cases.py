@@ -18,8 +18,8 @@ import pandas as pd
 
 from problems.multi_plate.model import MultiPlateClutch
 from synth.declaration import Declaration
-from synth.instance import Instance
 from synth.tables import Catalogs
+from tests.asking import instance_of
 
 # The hoist of examples/hoist_multi_plate.yaml; the ramp time is free here.
 HOIST: dict[str, Any] = {
@@ -94,7 +94,7 @@ def problem() -> CountedTraces:
 @cache
 def offered() -> dict[str, tuple[str, ...]]:
     """Return, per table to enlarge, the designations of the shipped rows that the family may use."""
-    slots = Instance(problem(), HOIST, Catalogs()).selection.slots
+    slots = instance_of(problem(), HOIST, Catalogs()).selection.slots
     return {s.table.name: tuple(s.table.designations[row] for row in s.rows) for s in slots}
 
 

@@ -10,10 +10,11 @@ import numpy as np
 
 import synth
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Task
 from synth.nlp_rows import Rows
+from tests.asking import instance_of
 
 REQUIREMENTS = {
     "load_torque": "600 N*m",
@@ -39,7 +40,7 @@ class Workload:
     """
 
     def __init__(self, count: int, seed: int = 0) -> None:
-        instance = Instance(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
+        instance = instance_of(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
         self.model = model = instance.model
         self.n = len(model.variables)
         self.rows = Rows(

@@ -18,6 +18,7 @@ import numpy as np
 from synth.instance import Instance
 from synth.special import expanded
 from synth.tables import Catalogs
+from tests.asking import instance_of
 from tests.benchmarks import cases
 
 POPULATION = 200
@@ -106,7 +107,7 @@ class Vectorised:
 def run(case: Mapping[str, Any]) -> dict[str, Any]:
     """Run one peer; return its front at each checkpoint, or the seconds per problem of IPOPT."""
     question = cases.question(cases.SIZES[case["size"]])
-    instance = Instance(
+    instance = instance_of(
         cases.problem(), cases.HOIST, question["catalogs"] or Catalogs(), question["parts"], grid=case["grid"]
     )
     if case["peer"] == "ipopt":

@@ -22,6 +22,7 @@ from synth.intervals import Cut, Goal
 from synth.model import Evaluation
 from synth.nlp_rows import Rows
 from synth.tables import Catalogs
+from tests.asking import instance_of
 from tests.benchmarks import cases, hypervolume
 
 SOLVED_ENTIRELY = ("6k", "110k", "1M")
@@ -275,7 +276,7 @@ def enumerate_all(size: str, grid: bool) -> tuple[np.ndarray, str]:
     """Return the front of a size from all its combinations, and how it was made."""
     question = cases.question(cases.SIZES[size])
     catalogs = question["catalogs"] or Catalogs()
-    instance = Instance(cases.problem(), cases.HOIST, catalogs, question["parts"], grid=grid)
+    instance = instance_of(cases.problem(), cases.HOIST, catalogs, question["parts"], grid=grid)
     begin = time.perf_counter()
     enumeration = Enumeration(instance, cases.OBJECTIVES)
     points = enumeration.front()

@@ -10,6 +10,7 @@ import numpy as np
 
 import synth
 from synth.instance import Instance, as_catalogs
+from tests.asking import instance_of
 from tests.conformance.cases_magnetic import magnetic
 
 
@@ -730,7 +731,7 @@ def question(family: str, options: Mapping[str, str], optional: bool, **settings
         requirements |= data.needed.get(f"{option}={value}", {})
         absent = data.unknown.get(f"{option}={value}", frozenset())
         requirements = {name: given for name, given in requirements.items() if name not in absent}
-    return Instance(synth.load(family, **options), requirements, as_catalogs(None), **settings)
+    return instance_of(synth.load(family, **options), requirements, as_catalogs(None), **settings)
 
 
 def known_design(family: str, name: str, optional: bool) -> tuple[np.ndarray, list[np.ndarray]] | None:

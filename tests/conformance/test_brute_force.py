@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 GAP = 1e-3
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
@@ -44,7 +45,7 @@ class Enumeration:
     """All makeable designs of an instance that are feasible, with what is needed to compare them."""
 
     def __init__(self, requirements, limits, ramps=9, forces=(1.0, 1.03, 1.1, 1.25, 1.6, 2.2)):
-        self.instance = instance = Instance(
+        self.instance = instance = instance_of(
             FAMILY, requirements, as_catalogs(None), parts=SETTINGS["parts"], limits=limits
         )
         assert 50 <= instance.combinations.count <= 500

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 GAP = 1e-3
 SPEEDS = {
@@ -105,7 +106,7 @@ def enumerate_all(case):
     """Return the objectives of all feasible designs on the ladder."""
     family, options, requirements, parts, limits, pins, ladders, _ = CASES[case]
     problem = synth.load(family, **options)
-    instance = Instance(problem, requirements, as_catalogs(None), parts=parts, limits=limits, fix=pins)
+    instance = instance_of(problem, requirements, as_catalogs(None), parts=parts, limits=limits, fix=pins)
     names = [v.name for v in instance.model.variables]
     axes = []
     for k, (name, grid) in enumerate(zip(names, instance.grids(), strict=True)):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 from tests.conformance.cases import ENGINE
 
 GAP = 1e-3
@@ -48,7 +49,7 @@ OBJECTIVES = ["outer_diameter", "engagement_band"]
 
 def enumerate_all(family):
     """Return the objectives of all feasible makeable designs, each with the least mass."""
-    instance = Instance(synth.load(family), ENGINE, as_catalogs(None), **QUESTIONS[family])
+    instance = instance_of(synth.load(family), ENGINE, as_catalogs(None), **QUESTIONS[family])
     names = [v.name for v in instance.model.variables]
     grids = [
         np.array([1.0]) if name == "flyweight_mass" else grid if len(grid) else np.array([low])

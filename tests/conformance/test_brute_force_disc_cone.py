@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 GAP = 1e-3
 LADDER = (1.0, 1.04, 1.15, 1.4, 1.9)
@@ -86,7 +87,7 @@ def dimensions(instance):
 @pytest.fixture(scope="module", params=INSTANCES)
 def enumerated(request):
     family, requirements, parts, limits = INSTANCES[request.param]
-    instance = Instance(synth.load(family), requirements, as_catalogs(None), parts=parts, limits=limits)
+    instance = instance_of(synth.load(family), requirements, as_catalogs(None), parts=parts, limits=limits)
     names, points = dimensions(instance)
     force = names.index("actuation_force")
     found = []

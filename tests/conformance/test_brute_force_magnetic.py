@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 GAP = 1e-3
 FAMILY = "magnetic_powder_clutch"
@@ -29,7 +30,7 @@ OBJECTIVES = ("coil_power", "input_inertia", "mass", "outer_diameter")
 
 @pytest.fixture(scope="module")
 def enumerated():
-    instance = Instance(synth.load(FAMILY), ASKED, as_catalogs(None), parts=PARTS, limits=LIMITS, fix=FIX)
+    instance = instance_of(synth.load(FAMILY), ASKED, as_catalogs(None), parts=PARTS, limits=LIMITS, fix=FIX)
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
@@ -117,7 +118,7 @@ def least_flux_density(instance, points, position, combination, steps=60):
 def test_no_makeable_magnet_beats_the_front():
     """Power and saturation grow with the flux density, mass does not see it: the least one is the best."""
     family = "electromagnetic_clutch"
-    instance = Instance(synth.load(family), SPINDLE, as_catalogs(None), parts=PRESSED, limits=MAGNETS, fix=PINNED)
+    instance = instance_of(synth.load(family), SPINDLE, as_catalogs(None), parts=PRESSED, limits=MAGNETS, fix=PINNED)
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 GAP = 1e-3
 CASES = {
@@ -50,7 +51,7 @@ NAMES = ("outer_diameter", "mass", "pin_force", "vibration_force", "offset_capac
 def enumerate_all(case):
     """Return the objectives of all feasible makeable designs."""
     options, requirements, parts, limits = CASES[case]
-    instance = Instance(
+    instance = instance_of(
         synth.load("roller_coupling", **options), requirements, as_catalogs(None), parts=parts, limits=limits
     )
     arms, halves, lengths, rims, _ = instance.grids()

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.special import expanded
 from synth.units import format_quantity
+from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer
 
 
@@ -104,7 +105,7 @@ def test_sets_of_counts_are_kept_to(found):
             other = {n: v for n, v in (case.settings.get("fix") or {}).items() if n not in (name, count.symbol)}
             asked = {"limits": own, "fix": other}
             asked[key] = {**asked[key], name: allowed}
-            posed = Instance(
+            posed = instance_of(
                 synth.load(family, **case.options),
                 case.requirements,
                 as_catalogs(None),
@@ -155,7 +156,7 @@ def test_slots_that_share_a_column_may_be_compared(found):
 
     def left(rule):
         problem = synth.load(family, **case.options)
-        posed = Instance(
+        posed = instance_of(
             problem, case.requirements, as_catalogs(None), {**rules, one: rule}, case.settings.get("limits"), fix
         )
         slots = {s.slot: s for s in posed.selection.slots}

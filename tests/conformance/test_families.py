@@ -9,10 +9,11 @@ import pytest
 
 import synth
 from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.nlp import Task
 from synth.special import expanded
 from synth.units import parse_unit
+from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer, question
 from tests.regimes import refereed
 
@@ -317,7 +318,7 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
     objective = first_objective(family)
     settings = {k: v for k, v in case.settings.items() if k in ("parts", "limits", "fix")}
     optimum = best(family, case, objective.name, grid=False).values[objective.name]
-    instance = Instance(
+    instance = instance_of(
         synth.load(family, **case.options), case.requirements, as_catalogs(None), **settings, grid=False
     )
     form = Formulation(instance, {objective.name: objective.sense}, 1)

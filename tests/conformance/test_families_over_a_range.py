@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.posed import posed
-from synth.rating import Rater
 from synth.scatter import CATALOGUE, LEAST, MOST, SLIDING
 from synth.uncertainty import read_block
 from synth.units import format_quantity
+from tests.asking import instance_of, rater_of
 from tests.conformance.cases import CASES
 
 POINTS = 4
@@ -58,10 +58,10 @@ def designs_of(family, case, instance):
 def test_posed_limits_are_those_of_the_family_and_proofs_hold(family):
     case = next(iter(CASES[family].feasible.values()))
     problem, catalogs = synth.load(family, **case.options), as_catalogs(None)
-    instance = Instance(problem, case.requirements, catalogs)
+    instance = instance_of(problem, case.requirements, catalogs)
     asked = read_block(block_of(instance))
-    rater = Rater(problem, case.requirements, catalogs, None, asked)
-    robust = Instance(posed(problem, asked, None), case.requirements, catalogs, restrict=False)
+    rater = rater_of(problem, case.requirements, catalogs, None, asked)
+    robust = instance_of(posed(problem, asked, None), case.requirements, catalogs, restrict=False)
     things = {x.name: j for j, x in enumerate(rater.things)}
     names = [x.name for x in rater.limits]
     copies = [x.name for x in robust.model.limits if x.name not in instance.model.declaration.limits]

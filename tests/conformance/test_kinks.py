@@ -13,8 +13,9 @@ import synth
 from synth.analysis import chosen_objectives, with_ties
 from synth.batch_nlp import MISSED, Tasks
 from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.nlp import Task
+from tests.asking import instance_of
 from tests.conformance.cases import CASES, Case, answer
 from tests.regimes import best_in_any_regime, referee
 
@@ -55,7 +56,7 @@ class Question:
     """The continuous problems of one combination, every size free to move."""
 
     def __init__(self, problem: Any, case: Case, pinned: Pinned) -> None:
-        instance = Instance(
+        instance = instance_of(
             problem, case.requirements, as_catalogs(None), parts=pinned.parts, fix=pinned.fix, grid=False
         )
         assert instance.combinations.count == 1

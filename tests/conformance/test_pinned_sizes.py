@@ -6,7 +6,8 @@ import pytest
 import synth
 from synth.analysis import chosen_objectives, with_ties
 from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 from tests.tuned import tuned
 
 DUTY = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
@@ -21,7 +22,7 @@ def test_a_pinned_ring_that_is_feasible_is_kept(outer, ratio, compiled):
     tuning = tuned(compiling={"boxes": 0 if compiled else 1e9})
     inner = round(outer * (1 - ratio) / (1 + ratio))
     fix = {"ramp_time": "2 s", "d_out": f"{outer} mm", "d_in": f"{inner} mm", "friction_surfaces": 24}
-    instance = Instance(CLUTCH, DUTY, as_catalogs(None), PARTS, None, fix)
+    instance = instance_of(CLUTCH, DUTY, as_catalogs(None), PARTS, None, fix)
     form = Formulation(instance, with_ties(instance.model, chosen_objectives(instance.model, None)), 2, tuning=tuning)
     forces = np.geomspace(500, 20000, 400)
     points = np.column_stack([np.full(400, outer / 1e3), np.full(400, inner / 1e3), forces, np.full(400, 2.0)])

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance
 from synth.tables import Catalogs
+from tests.asking import instance_of
 from tests.benchmarks import batch, cases
 from tests.benchmarks.__main__ import main
 from tests.benchmarks.child import MARK
@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 def test_catalogues_have_the_combinations_that_are_documented(size: str, combinations: int) -> None:
     question = cases.question(cases.SIZES[size])
     catalogs = question["catalogs"] or Catalogs()
-    assert Instance(cases.problem(), cases.HOIST, catalogs, question["parts"]).combinations.count == combinations
+    assert instance_of(cases.problem(), cases.HOIST, catalogs, question["parts"]).combinations.count == combinations
 
 
 def test_a_larger_catalogue_begins_with_a_smaller_one() -> None:

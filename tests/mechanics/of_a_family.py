@@ -1,11 +1,12 @@
 """What tests of families read from a question and from a design."""
 
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 
 def requirements_in_si(problem, requirements):
     """Return all requirements as simulations and curves take them: in SI, None where an optional one is not given."""
-    instance = Instance(problem, requirements, as_catalogs(None))
+    instance = instance_of(problem, requirements, as_catalogs(None))
     return {name: instance.requirements.get(name) for name in instance.model.declaration.requirements}
 
 

@@ -8,7 +8,8 @@ from of_a_family import requirements_in_si
 from start_by_steps import start
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 BASE = {"load_torque": "100 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
 OPTIONAL = {
@@ -258,7 +259,7 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 
 
 def test_only_dry_pairs_of_the_family():
-    instance = Instance(synth.load("disc_clutch"), BASE, as_catalogs(None))
+    instance = instance_of(synth.load("disc_clutch"), BASE, as_catalogs(None))
     slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
     table = slot.table
     names = {table.designations[k] for k in slot.rows}

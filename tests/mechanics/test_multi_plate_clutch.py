@@ -6,9 +6,10 @@ import pytest
 from start_by_steps import start
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.tables import Catalogs
 from synth.units import parse_unit, to_si
+from tests.asking import instance_of
 
 BASE = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 OPTIONAL = {
@@ -360,7 +361,7 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 
 def test_obsolete_pairs_need_an_option():
     def rows(**options):
-        instance = Instance(synth.load("multi_plate_clutch", **options), BASE, as_catalogs(None))
+        instance = instance_of(synth.load("multi_plate_clutch", **options), BASE, as_catalogs(None))
         slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
         return {slot.table.designations[k] for k in slot.rows}, slot.table
 

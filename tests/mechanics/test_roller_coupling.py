@@ -8,8 +8,9 @@ import pytest
 from of_a_family import requirements_in_si
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.tables import Catalogs
+from tests.asking import instance_of
 
 BASE = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
 OPTIONAL = {"outer_diameter_limit": "300 mm", "mass_limit": "10 kg", "vibration_limit": "500 N"}
@@ -193,7 +194,7 @@ def test_slots_offer_what_fits_the_contact():
     table = Catalogs().table("guide_rolling_bearings")
     kinds = dict(zip(table.designations, table.text("kind"), strict=True))
     for options, wanted in (({}, {"deep_groove_ball_bearing"}), ({"roller_contact": "crowned"}, None)):
-        rows = Instance(family(**options), BASE, as_catalogs(None)).selection.slots[0]
+        rows = instance_of(family(**options), BASE, as_catalogs(None)).selection.slots[0]
         offered = {kinds[rows.table.designations[k]] for k in rows.rows}
         assert offered == wanted if wanted else all("track_roller" in kind for kind in offered)
 
@@ -248,11 +249,11 @@ def test_sideways_removal_can_be_what_the_envelope_forbids():
     """A roller of 110 mm fits 87.5 mm of arm and is pulled out from 112 mm on."""
     asked = {**BASE, "outer_diameter_limit": "280 mm"}
     rows = {"roller": ["6212"]}
-    assert Instance(family(), asked, as_catalogs(None), parts=rows).combinations.count == 50
+    assert instance_of(family(), asked, as_catalogs(None), parts=rows).combinations.count == 50
     with pytest.raises(synth.InputError, match=r"not_removable.*pulled apart sideways"):
-        Instance(family(sideways_removable="yes"), asked, as_catalogs(None), parts=rows)
+        instance_of(family(sideways_removable="yes"), asked, as_catalogs(None), parts=rows)
     wide = {**BASE, "outer_diameter_limit": "320 mm"}
-    assert Instance(family(sideways_removable="yes"), wide, as_catalogs(None), parts=rows).combinations.count == 50
+    assert instance_of(family(sideways_removable="yes"), wide, as_catalogs(None), parts=rows).combinations.count == 50
 
 
 def test_rows_that_make_no_sense_are_left_out():
@@ -267,7 +268,7 @@ def test_rows_that_make_no_sense_are_left_out():
             "mass [kg]": [0.11, 0.11, 0.11],
         }
     )
-    instance = Instance(family(), BASE, as_catalogs({"guide_rolling_bearings": frame}))
+    instance = instance_of(family(), BASE, as_catalogs({"guide_rolling_bearings": frame}))
     assert instance.selection.slots[0].table.designations[instance.selection.slots[0].rows[0]] == "good"
     assert len(instance.selection.slots[0].rows) == 1
     assert {e["designation"] for e in instance.selection.left_out} == {"bore", "wide"}

@@ -8,7 +8,8 @@ import pytest
 from of_a_family import remarks, requirements_in_si
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
+from tests.asking import instance_of
 
 PI = math.pi
 BASE = {"required_torque": "30 N*m", "bore_diameter": "20 mm"}
@@ -377,7 +378,7 @@ def test_less_than_two_coils_are_not_offered(value):
 
 
 def left_out(requirements, catalogs=None):
-    instance = Instance(synth.load("wrap_spring"), BASE | requirements, as_catalogs(catalogs))
+    instance = instance_of(synth.load("wrap_spring"), BASE | requirements, as_catalogs(catalogs))
     return {row["designation"]: row["reason"] for row in instance.selection.left_out}
 
 
@@ -481,7 +482,7 @@ def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
 @pytest.mark.parametrize("family", ["wrap_spring", "wrap_spring_actuated"])
 def test_pairs_are_those_offered_to_the_family(family):
     given = ACTUATED if family == "wrap_spring_actuated" else BASE
-    instance = Instance(synth.load(family), given, as_catalogs(None))
+    instance = instance_of(synth.load(family), given, as_catalogs(None))
     slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
     hints = slot.table.text("family_hint")
     assert {k for k in range(len(slot.table)) if family in hints[k].split(";")} == set(slot.rows.tolist())
@@ -489,7 +490,7 @@ def test_pairs_are_those_offered_to_the_family(family):
 
 @pytest.mark.parametrize(("ladder", "some", "step"), [("R20", 0.0224, 20), ("R40", 0.0236, 40)])
 def test_hub_diameters_are_on_the_ladder_chosen(ladder, some, step):
-    instance = Instance(synth.load("wrap_spring", hub_ladder=ladder), BASE, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring", hub_ladder=ladder), BASE, as_catalogs(None))
     (grid,) = [g for g in instance.grids() if len(g)]
     assert np.isclose(grid, some).any()
     assert len(grid) == pytest.approx(step * math.log10(200 / 6), abs=1.5)
@@ -504,7 +505,7 @@ def test_a_hub_table_of_ones_own_is_the_ladder():
 
 
 def test_peak_torque_follows_the_required_torque():
-    instance = Instance(synth.load("wrap_spring"), BASE | {"required_torque": 8}, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring"), BASE | {"required_torque": 8}, as_catalogs(None))
     assert instance.requirements["peak_torque"] == 20.0
 
 
@@ -514,7 +515,7 @@ def test_objectives_are_surely_positive_so_that_the_gap_is_relative(torque, more
     from synth.formulation import Formulation
 
     given = {"required_torque": torque, "bore_diameter": "4 mm", **more}
-    instance = Instance(synth.load("wrap_spring"), given, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring"), given, as_catalogs(None))
     goals = ("mass", "drag_torque", "stress_utilisation", "pressure_utilisation", "outer_diameter")
     assert Formulation(instance, dict.fromkeys(goals, "min"), 2).log_goals.all()
 

@@ -4,8 +4,9 @@ import pandas as pd
 
 import synth
 from synth.formulation import Candidate, Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.tuning import TUNING
+from tests.asking import instance_of
 
 RODS = pd.DataFrame(
     {
@@ -53,7 +54,7 @@ class Strut(synth.DesignProblem):
 def strut_form(grid=True, tuning=TUNING):
     """Return the problem ready to be searched."""
     problem = Strut()
-    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
+    instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
     return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, tuning=tuning)
 
 

@@ -16,11 +16,12 @@ import pytest
 import synth
 from synth import native, native_general
 from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Task
 from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import Program
+from tests.asking import instance_of
 
 HAS_COMPILER = shutil.which("cc") is not None
 NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
@@ -412,7 +413,7 @@ class Clutch:
     """Random combinations of the catalogue, each with a box of the variables and a task."""
 
     def __init__(self, count: int, seed: int, kind: str) -> None:
-        self.instance = Instance(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
+        self.instance = instance_of(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
         self.model = model = self.instance.model
         self.n = len(model.variables)
         self.rows = Rows(

@@ -13,10 +13,11 @@ from synth.clock import Clock, Stopped
 from synth.cover import best, cover
 from synth.effort import SearchEffort
 from synth.formulation import Boxes, Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.proven_gap import Bound, least_gap
 from synth.purposes import Cover
 from synth.tuning import TUNING
+from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 from tests.unit.spring import OPTIMUM, TensionSpring
 from tests.unit.strut import NEEDED, RODS, Strut
@@ -25,7 +26,7 @@ EFFORT = SearchEffort(seconds=np.inf)
 
 
 def prepared():
-    instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
+    instance = instance_of(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
     return Formulation(instance, {"mass": "min", "flexibility": "min"}, 2)
 
 

@@ -16,6 +16,7 @@ from synth.analysis import part_row
 from synth.combinations import Combinations, JointCombinations, MixedRadix
 from synth.errors import InputError
 from synth.instance import Instance, catalogs_for
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, Strut
 
 
@@ -38,7 +39,7 @@ def instance(densities: list[float], **more: Any) -> Instance:
         "source": ["test"] * len(densities),
     })  # fmt: skip
     problem = Picky()
-    return Instance(problem, NEEDED, catalogs_for(problem, {"rods": rods}), **more)
+    return instance_of(problem, NEEDED, catalogs_for(problem, {"rods": rods}), **more)
 
 
 def design_of(combinations: Combinations, number: int) -> Any:

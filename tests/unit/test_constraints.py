@@ -18,11 +18,11 @@ from synth.intervals import Cut
 from synth.nlp_rows import GUARD_MARGIN
 from synth.posed import posed
 from synth.prooftree import Point, void_without
-from synth.rating import Rater
 from synth.relaxation import AMOUNT, Relaxed
 from synth.uncertainty import read_block
 from synth.units import format_quantity
 from synth.verify import Check
+from tests.asking import instance_of, rater_of
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
 from tests.conformance.cases import CASES
 
@@ -88,7 +88,7 @@ def own_limits(instance, variables, combinations, rng):
 
 def question(problem, requirements, catalogs, objectives, sound, rng, **restricted):
     """Return a question with points at random and limits that some of them keep and some do not."""
-    plain = Instance(problem, requirements, catalogs, **restricted)
+    plain = instance_of(problem, requirements, catalogs, **restricted)
     variables = sound(plain)
     total = plain.combinations.count
     allowed = np.arange(total) if total < 10_000 else rng.integers(0, total, 999)
@@ -97,7 +97,7 @@ def question(problem, requirements, catalogs, objectives, sound, rng, **restrict
     limits = {**restricted.pop("limits", {})}
     for name, text in own_limits(plain, variables, combinations, rng).items():
         limits.setdefault(name, text)
-    instance = Instance(problem, requirements, catalogs, limits=limits, **restricted)
+    instance = instance_of(problem, requirements, catalogs, limits=limits, **restricted)
     chosen = chosen_objectives(instance.model, objectives)
     return Asked(problem, requirements, catalogs, limits, instance, chosen, variables, combinations)
 
@@ -266,8 +266,8 @@ def test_limits_posed_at_a_corner_are_what_a_rating_finds_there(asked):
     first = asked.instance.model.variables[0].name
     block = read_block({"tolerance": {first: "+-1 %"}})
     problem = posed(asked.problem, block, asked.limits)
-    corners = Instance(problem, asked.requirements, asked.catalogs, limits=asked.limits, restrict=False)
-    rater = Rater(asked.problem, asked.requirements, asked.catalogs, asked.limits, block)
+    corners = instance_of(problem, asked.requirements, asked.catalogs, limits=asked.limits, restrict=False)
+    rater = rater_of(asked.problem, asked.requirements, asked.catalogs, asked.limits, block)
     copies = [x for x in corners.constraints if x.origin is Origin.RANGE]
     names, data = [x.name for x in rater.limits], [np.asarray(x, dtype=float) for x in asked.data]
     assert [x.name for x in rater.limits] == [x.name for x in asked.instance.constraints if x.sense != "equal"]
@@ -325,7 +325,7 @@ def worn(limits):
     import pandas as pd
 
     pads = pd.DataFrame({"designation": ["told", "untold"], "life [-]": [3.0, np.nan]})
-    return Instance(Worn(), {}, as_catalogs({"pads": pads}), limits=limits)
+    return instance_of(Worn(), {}, as_catalogs({"pads": pads}), limits=limits)
 
 
 def test_what_a_user_limits_must_have_a_value():

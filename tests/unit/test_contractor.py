@@ -16,11 +16,12 @@ from synth import native
 from synth.clusters import ClusterTree, Factor
 from synth.contractor import Contractor, Layout
 from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs, catalogs_for
+from synth.instance import as_catalogs, catalogs_for
 from synth.intervals import Cut, Goal
 from synth.program import Program
 from synth.special import recorded
 from synth.tuning import TUNING
+from tests.asking import instance_of
 from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
 
@@ -371,7 +372,7 @@ class Levels(synth.DesignProblem):
 @pytest.mark.parametrize("second", ["none", "constant", "contradiction"])
 def test_a_void_column_says_nothing(second):
     problem = Levels(second=second)
-    instance = Instance(problem, {}, catalogs_for(problem, {"rows": LEVELS}), grid=False)
+    instance = instance_of(problem, {}, catalogs_for(problem, {"rows": LEVELS}), grid=False)
     form = Formulation(instance, {"cost": "min"}, 1)
     x = np.linspace(0.5, 10, 20)[:, None]
     assert form.evaluate(x, np.full(20, 1)).feasible.all()
@@ -479,7 +480,7 @@ class Family:
 
     def __init__(self, options, objectives, wanted=600):
         problem = synth.load("multi_plate_clutch", **options)
-        self.instance = instance = Instance(problem, REQUIREMENTS, as_catalogs(None), grid=False)
+        self.instance = instance = instance_of(problem, REQUIREMENTS, as_catalogs(None), grid=False)
         self.model = instance.model
         self.form = Formulation(instance, dict.fromkeys(objectives, "min"), len(objectives))
         self.points, self.combinations = self._feasible(np.random.default_rng(11), wanted)

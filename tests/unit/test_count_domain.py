@@ -8,8 +8,9 @@ import pytest
 
 import synth
 from synth.count_domain import compares, entries
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.spec import spec_from_mapping
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
 CATALOGS = {"rods": RODS}
@@ -17,7 +18,7 @@ SMALL = {"catalogs": CATALOGS, "parts": {"plate": ["core 1", "core 2"]}, "points
 
 
 def counts(**more):
-    instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), CATALOGS), **more)
+    instance = instance_of(Strut(), NEEDED, catalogs_for(Strut(), CATALOGS), **more)
     return instance.selection.counts["plates"].tolist()
 
 

@@ -12,11 +12,12 @@ import synth
 from synth.clock import Clock, Stopped
 from synth.cover import best, cover
 from synth.formulation import Archive, Candidate, Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.purposes import Cover, Staircase
 from synth.search import distinct
 from synth.seeker import spread_choice
 from synth.tuning import TUNING
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut, feasible_candidates
 
 TIE = TUNING.tolerances.tie
@@ -186,7 +187,7 @@ def test_boxes_are_chosen_along_the_front_and_by_room():
 @pytest.fixture
 def form():
     problem = Strut()
-    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
+    instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
     return Formulation(instance, {"mass": "min", "flexibility": "min"}, 2)
 
 

@@ -18,8 +18,9 @@ from synth.declaration import (
     Variable,
     grid_values,
 )
-from synth.instance import Instance, number
+from synth.instance import number
 from synth.tables import Catalogs
+from tests.asking import instance_of
 
 RODS = pd.DataFrame(
     {
@@ -91,9 +92,9 @@ def test_a_default_may_follow_an_earlier_requirement():
         d.objective("x")
         d.variable("x", "mm", 1, 2)
 
-    instance = Instance(problem(declare)(), {"force": "2 kN"}, CATALOGS)
+    instance = instance_of(problem(declare)(), {"force": "2 kN"}, CATALOGS)
     assert instance.requirements == {"force": 2000.0, "peak": 5000.0, "most": 10000.0}
-    instance = Instance(problem(declare)(), {"force": 2, "peak": "20000 N"}, CATALOGS)
+    instance = instance_of(problem(declare)(), {"force": 2, "peak": "20000 N"}, CATALOGS)
     assert instance.requirements == {"force": 2000.0, "peak": 20000.0, "most": 20000.0}
 
 
@@ -267,19 +268,19 @@ def test_a_label_that_cannot_be_offered_is_refused_with_its_reason():
 
 def test_a_refusal_over_a_choice_names_its_labels():
     asked = problem(choosing)
-    left = Instance(asked(), {"load": 3}, CATALOGS).selection.left_out
+    left = instance_of(asked(), {"load": 3}, CATALOGS).selection.left_out
     assert left == [{"slot": "end", "designation": "hook", "reason": "hook_bends: an eye"}]
     with pytest.raises(synth.InputError, match="hook_bends: got 'end = hook'; expected an eye"):
-        Instance(asked(), {"load": 3}, CATALOGS, fix={"end": "hook"})
+        instance_of(asked(), {"load": 3}, CATALOGS, fix={"end": "hook"})
 
 
 def test_no_limit_above_its_ceiling_may_be_typed_for_a_quantity():
     asked = problem(choosing)()
     for text in ("<= 4 N/mm2", ">= 5 N/mm2", "1 N/mm2 .. 3 N/mm2"):
-        Instance(asked, {}, CATALOGS, limits={"stress": text})
+        instance_of(asked, {}, CATALOGS, limits={"stress": text})
     for text in ("<= 4.1 N/mm2", "== 5 N/mm2", "1 N/mm2 .. 5 N/mm2"):
         with pytest.raises(synth.InputError, match=r"limits: stress: got .*; expected at most 4 N/mm2"):
-            Instance(asked, {}, CATALOGS, limits={"stress": text})
+            instance_of(asked, {}, CATALOGS, limits={"stress": text})
 
 
 # -- parts -----------------------------------------------------------------------------------------
@@ -363,7 +364,7 @@ def test_one_use_that_needs_a_column_makes_it_required():
         d.at_most("b", 2e6, rod.stress_allow, "N/mm2")
         d.objective("length")
 
-    instance = Instance(problem(declare)(), {}, CATALOGS)
+    instance = instance_of(problem(declare)(), {}, CATALOGS)
     assert instance.combinations.count == 2
     assert instance.selection.left_out == [
         {"slot": "rod", "designation": "odd", "reason": "no value in column stress_allow"}
@@ -378,7 +379,7 @@ def test_a_fixed_row_gives_its_columns():
         d.variable("length", "m", 1, 2)
         d.objective("length")
 
-    instance = Instance(problem(declare)(), {}, Catalogs())
+    instance = instance_of(problem(declare)(), {}, Catalogs())
     assert instance.requirements == {"transfer": 50.0, "bonus": 1.0}
     with pytest.raises(synth.InputError, match="storm"):
         declaration().row("cooling_options", "storm")
@@ -510,7 +511,7 @@ def test_a_refusal_of_a_continuous_variable_is_no_refusal():
 
     for declare in (direct, through_a_quantity):
         with pytest.raises(DeclarationError, match="refusal narrow speaks of a continuous variable; that is a limit"):
-            Instance(problem(declare)(), {}, CATALOGS)
+            instance_of(problem(declare)(), {}, CATALOGS)
 
 
 def test_a_refusal_over_requirements_stops_the_call_and_shows_their_values():
@@ -520,9 +521,9 @@ def test_a_refusal_over_requirements_stops_the_call_and_shows_their_values():
         d.variable("x", "mm", 1, 2)
         d.objective("x")
 
-    Instance(problem(declare)(), {}, CATALOGS)
+    instance_of(problem(declare)(), {}, CATALOGS)
     with pytest.raises(synth.InputError, match=r"crossed: got 'low = 3 kN, high = 2 kN'; expected low below high"):
-        Instance(problem(declare)(), {"low": "3 kN"}, CATALOGS)
+        instance_of(problem(declare)(), {"low": "3 kN"}, CATALOGS)
 
 
 def test_a_refusal_of_an_option_shows_it():
@@ -532,9 +533,9 @@ def test_a_refusal_of_an_option_shows_it():
         d.variable("x", "mm", 1, 2)
         d.objective("x")
 
-    Instance(problem(declare)(), {}, CATALOGS)
+    instance_of(problem(declare)(), {}, CATALOGS)
     with pytest.raises(synth.InputError, match="too_dear: got 'finish = gold'; expected finish = plain"):
-        Instance(problem(declare)(finish="gold"), {}, CATALOGS)
+        instance_of(problem(declare)(finish="gold"), {}, CATALOGS)
 
 
 def test_a_refusal_over_a_part_or_count_leaves_rows_out():
@@ -546,7 +547,7 @@ def test_a_refusal_over_a_part_or_count_leaves_rows_out():
         d.variable("x", "mm", 1, 2)
         d.objective("x")
 
-    instance = Instance(problem(declare)(), {}, CATALOGS)
+    instance = instance_of(problem(declare)(), {}, CATALOGS)
     assert instance.selection.counts["n"].tolist() == [2, 4]
     assert [instance.selection.slots[0].table.designations[k] for k in instance.selection.slots[0].rows] == [
         "thick",
@@ -558,7 +559,7 @@ def test_a_refusal_over_a_part_or_count_leaves_rows_out():
         {"slot": "n", "designation": "3", "reason": "odd_number: an even number"},
     ]
     with pytest.raises(synth.InputError, match="too_thin: got 'thin, thick, odd'; expected a thicker rod"):
-        Instance(problem(declare)(), {"least": "30 mm"}, CATALOGS)
+        instance_of(problem(declare)(), {"least": "30 mm"}, CATALOGS)
     with pytest.raises(synth.InputError, match="too_thin"):
         synth.evaluate(problem(declare), {}, values={"x": 1, "n": 2}, parts={"rod": "thin"}, catalogs={"rods": RODS})
 
@@ -600,7 +601,7 @@ def test_a_problem_needs_a_name_and_a_declare():
     with pytest.raises(DeclarationError, match="needs a class attribute 'name'"):
         type("Nameless", (synth.DesignProblem,), {})()
     with pytest.raises(DeclarationError, match="does not define declare"):
-        Instance(type("Empty", (synth.DesignProblem,), {"name": "empty"})(), {}, CATALOGS)
+        instance_of(type("Empty", (synth.DesignProblem,), {"name": "empty"})(), {}, CATALOGS)
 
 
 def test_a_symbol_from_elsewhere_is_found():
@@ -611,7 +612,7 @@ def test_a_symbol_from_elsewhere_is_found():
         d.at_most("sum", x + stranger, 1, "mm")
 
     with pytest.raises(DeclarationError, match=r"limit sum uses \['stranger'\], which the declaration does not make"):
-        Instance(problem(declare)(), {}, CATALOGS)
+        instance_of(problem(declare)(), {}, CATALOGS)
 
 
 def test_loading_takes_options_with_a_name_or_a_class_only():

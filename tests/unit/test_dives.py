@@ -10,7 +10,8 @@ import synth
 from synth.clock import Clock
 from synth.dives import dive
 from synth.formulation import Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
+from tests.asking import instance_of
 
 WIDTHS = np.round(np.geomspace(1.0, 8.0, 25), 2)
 ROWS = pd.DataFrame({"designation": [f"r{k}" for k in range(25)], "width [-]": WIDTHS})
@@ -45,7 +46,7 @@ def every_design():
 @pytest.mark.parametrize("seed", range(3))
 def test_dives_come_near_the_best_and_keep_only_feasible_designs(seed):
     problem, rng = Fits(), np.random.default_rng(seed)
-    instance = Instance(problem, {}, catalogs_for(problem, {"rows": ROWS}))
+    instance = instance_of(problem, {}, catalogs_for(problem, {"rows": ROWS}))
     form = Formulation(instance, {"mass": "min", "length": "min"}, 2)
     points = form.makeable(form.lower + rng.random((20000, 2)) * (form.upper - form.lower))
     own = rng.integers(instance.combinations.count, size=len(points))

@@ -13,10 +13,10 @@ import synth
 from synth.declaration import Declaration
 from synth.errors import InputError, UnknownOptionError, at, shortened, whole_number
 from synth.input_limits import INPUT_LIMITS
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.sheet import applicants, sheet_of
 from synth.spec import read_spec, spec_from_mapping
-from tests.asking import steps_of
+from tests.asking import instance_of, steps_of
 
 HUGE = ("x" * 1_000_000, "x " * 500_000, "5 " + "N" * 1_000_000)
 # Twice the share of a field and the value, and our own words about what is right.
@@ -227,7 +227,7 @@ def test_readers_put_their_keys_in_front_and_workers_keep_them() -> None:
 
 def test_as_many_limits_as_are_documented_are_read() -> None:
     most = [f"<= {5 + k} kg" for k in range(INPUT_LIMITS.limits)]
-    assert len(Instance(Shelf(), {"load": "1 kN"}, as_catalogs(None), limits={"mass": most}).own) == len(most)
+    assert len(instance_of(Shelf(), {"load": "1 kN"}, as_catalogs(None), limits={"mass": most}).own) == len(most)
     refused = told(lambda: asked(limits={"mass": most * 100}))
     assert "20000 limits" in str(refused)
     assert "at most 200" in str(refused)

@@ -12,13 +12,14 @@ from synth import fingerprint
 from synth.fingerprint import code_digest, native_code, package_folder, processor
 from synth.instance import Instance, catalogs_for
 from synth.posed import posed
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
 
 def question(needed: Any = NEEDED, rods: Any = RODS, robust: Any = None, **more: Any) -> Instance:
     limits = more.get("limits") or {}
     problem = posed(Strut(**more.pop("options", {})), robust, limits)
-    return Instance(problem, needed, catalogs_for(problem, {"rods": rods}), **more)
+    return instance_of(problem, needed, catalogs_for(problem, {"rods": rods}), **more)
 
 
 def test_the_same_question_has_the_same_fingerprint() -> None:
@@ -80,7 +81,7 @@ def test_another_formula_is_another_computation() -> None:
             d.derive("lost", "kg", 2 * d.derived["mass"].sx)
 
     problem = Heavier()
-    other = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS})).fingerprint()
+    other = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS})).fingerprint()
     assert other.question == question().fingerprint().question
     assert other.computation != question().fingerprint().computation
 

@@ -5,8 +5,9 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.tables import Catalogs
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
 PLATES = (
@@ -24,7 +25,7 @@ PLATES = (
 
 
 def instance(requirements=NEEDED, rods=RODS, catalogs=None, **more):
-    return Instance(Strut(), requirements, Catalogs(catalogs or {"rods": rods}), **more)
+    return instance_of(Strut(), requirements, Catalogs(catalogs or {"rods": rods}), **more)
 
 
 def designations(question, slot):
@@ -268,7 +269,7 @@ class Hinted(synth.DesignProblem):
 
 
 def pairs(table):
-    question = Instance(Hinted(), {}, as_catalogs({"friction_materials": table}))
+    question = instance_of(Hinted(), {}, as_catalogs({"friction_materials": table}))
     return designations(question, "pair")
 
 
@@ -291,7 +292,7 @@ def test_a_users_row_without_family_hint_is_offered_to_all():
 
 
 def test_rows_added_to_a_shipped_table_join_it():
-    shipped = designations(Instance(Hinted(), {}, as_catalogs(None)), "pair")
+    shipped = designations(instance_of(Hinted(), {}, as_catalogs(None)), "pair")
     more = pd.DataFrame({"designation": ["mine"], "mu_dynamic [-]": [0.1], "lubrication": ["oil"]})
     assert pairs(["+", more]) == (*shipped, "mine")
     assert "felt_dry" not in shipped

@@ -6,10 +6,11 @@ import pytest
 import synth
 from synth import native
 from synth.formulation import Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.margins import above, below, within
 from synth.search import one_best
 from synth.search_settings import SearchSettings
+from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 
 OVER_ARRAYS = tuned(compiling={"boxes": 1e9})
@@ -80,7 +81,7 @@ def test_a_front_of_negative_makeable_values_is_whole(code):
 
 def test_thin_boxes_of_any_sign_are_kept_and_split(code):
     form = Formulation(
-        Instance(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False),
+        instance_of(synth.load(Tilt), {}, catalogs_for(synth.load(Tilt), None), grid=False),
         {"cost": "min"},
         1,
         tuning=code,
@@ -97,7 +98,7 @@ def test_thin_boxes_of_any_sign_are_kept_and_split(code):
 
 def test_what_falls_without_end_beside_a_pole_is_not_proven():
     problem = synth.load(Pole)
-    instance = Instance(problem, {}, catalogs_for(problem, None))
+    instance = instance_of(problem, {}, catalogs_for(problem, None))
     front = one_best(instance, "cost", SearchSettings(points=1), 3000, tuning=OVER_ARRAYS)
     assert front.statistics["boxes"] > 3000
     assert front.certificate.kind != "global"

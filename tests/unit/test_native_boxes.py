@@ -15,12 +15,13 @@ from synth import native, native_boxes
 from synth.c_text import template
 from synth.contractor import Contractor, Layout
 from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.intervals import BACKWARD, FORWARD, Cut, Goal
 from synth.margins import above
 from synth.program import OP_SELECT, Program
 from synth.special import TABLE, recorded
 from synth.tuning import TUNING
+from tests.asking import instance_of
 from tests.tuned import tuned
 
 HERE = native.cache_folder() is not None and native._compiler() is not None
@@ -372,7 +373,7 @@ OBJECTIVES = {"mass": "min", "actuation_force": "min", "friction_work": "min"}
 
 def formulation(options, grid=False, requirements=REQUIREMENTS, tuning=TUNING):
     problem = synth.load("multi_plate_clutch", **options)
-    return Formulation(Instance(problem, requirements, as_catalogs(None), grid=grid), OBJECTIVES, 2, tuning=tuning)
+    return Formulation(instance_of(problem, requirements, as_catalogs(None), grid=grid), OBJECTIVES, 2, tuning=tuning)
 
 
 def batches(form, rounds=12):

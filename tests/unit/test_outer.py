@@ -12,10 +12,11 @@ from synth.clock import Clock, Stopped
 from synth.effort import SearchEffort
 from synth.file_locks import alone
 from synth.formulation import Archive, Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.outer import BEGUN_ANEW, passed_over, search_parts, study_file
 from synth.purposes import Cover
 from synth.tuning import PartSampling
+from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut
 
@@ -164,7 +165,7 @@ def test_another_question_does_not_take_up_the_study(monkeypatch, tmp_path):
 @pytest.mark.parametrize(("columns", "kept"), [([0], False), ([0, 1], True)])
 def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, kept):
     problem = Strut()
-    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
+    instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
     form = Formulation(instance, {"mass": "min", "flexibility": "min"}, 2, tuning=tuned(**SMALL))
     root = form.root()
     left = form.split(root)[0].take(slice(0, 1))  # half of everything
@@ -185,7 +186,7 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
 def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
     def file(objectives=("mass",), seed=0, needed=NEEDED, **more):
         problem = Strut(**more)
-        instance = Instance(problem, needed, catalogs_for(problem, {"rods": RODS}))
+        instance = instance_of(problem, needed, catalogs_for(problem, {"rods": RODS}))
         return study_file(instance, dict.fromkeys(objectives, "min"), seed)
 
     files = [
@@ -204,7 +205,7 @@ def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
 @pytest.mark.parametrize("what", ["code_digest", "problem_digest", "native_code", "processor"])
 def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeypatch, tmp_path, what):
     def file():
-        instance = Instance(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
+        instance = instance_of(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
         return study_file(instance, {"mass": "min"}, 0)
 
     before = file()

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.program import ARITY_ONE, ARITY_TWO, OP_SELECT, OP_SPECIAL, TEMPLATES, Program, UnsupportedOperation
 from synth.special import TABLE, expanded, recorded, special
+from tests.asking import instance_of
 
 REQUIREMENTS = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 OPTIONAL = {
@@ -51,7 +52,7 @@ class Traced:
     """A model of the multi-plate family with random points of its unknowns."""
 
     def __init__(self, options, requirements=REQUIREMENTS, points=POINTS):
-        self.instance = Instance(synth.load("multi_plate_clutch", **options), requirements, as_catalogs(None))
+        self.instance = instance_of(synth.load("multi_plate_clutch", **options), requirements, as_catalogs(None))
         self.model = self.instance.model
         rng = np.random.default_rng(7)
         low, high = self.instance.lower, self.instance.upper

@@ -8,9 +8,10 @@ import pytest
 
 import synth
 from synth import prooftree
-from synth.instance import Instance, as_catalogs
+from synth.instance import as_catalogs
 from synth.prooftree import Clusters, Point, ProofTree
 from synth.tables import Catalogs
+from tests.asking import instance_of
 from tests.conformance.cases import CASES, known_design
 from tests.unit.formulas import BINARY, UNARY
 
@@ -125,7 +126,7 @@ def sample(instance, variables, combinations):
 @pytest.mark.parametrize("seed", range(12))
 def test_no_feasible_design_of_a_random_problem_is_lost(seed, monkeypatch):
     problem = Anything(seed)
-    instance = Instance(problem, {}, THINGS_CATALOG)
+    instance = instance_of(problem, {}, THINGS_CATALOG)
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values()}
     rng = np.random.default_rng(seed)
     x = instance.lower + (instance.upper - instance.lower) * rng.random((3000, 3))
@@ -144,7 +145,7 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed, monkeypatch):
 @pytest.mark.parametrize("family", CASES)
 def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
     case = CASES[family]
-    instance = Instance(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
+    instance = instance_of(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
     rng = np.random.default_rng(1)
     known = known_design(family, "default", optional=False)
     if known is None:
@@ -217,7 +218,7 @@ class Box(synth.DesignProblem):
 
 
 def tree_of(problem, objectives, requirements=None, catalogs=None, **more):
-    instance = Instance(problem, requirements or {}, as_catalogs(catalogs), **more)
+    instance = instance_of(problem, requirements or {}, as_catalogs(catalogs), **more)
     return instance, ProofTree(instance, objectives)
 
 

@@ -7,10 +7,10 @@ import pytest
 
 import synth
 from synth.instance import as_catalogs
-from synth.rating import Rater
 from synth.robust_console import percent
 from synth.scatter import scattered
 from synth.uncertainty import Uncertainty, read_block
+from tests.asking import rater_of
 from tests.unit.shaft_brake import CATALOGS, NEEDED, PAIRS, ShaftBrake
 
 
@@ -93,7 +93,7 @@ def test_proven_corners_are_the_worst_of_a_dense_grid(seed):
     )
     block = {"friction": "catalogue range", "torque": "+-10 %", "speed": "1100 .. 1300 1/min", "wear": "new and worn"}
     told = rated(block, of)
-    rater = Rater(
+    rater = rater_of(
         ShaftBrake(), of.frame.requirements, as_catalogs(CATALOGS), {"braking_torque": "<= 150 N*m"}, read_block(block)
     )
     axis = np.linspace(0, 1, 9)

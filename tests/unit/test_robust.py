@@ -9,8 +9,8 @@ import synth.question
 import synth.robust
 from synth.instance import as_catalogs
 from synth.posed import RobustProblem, posed
-from synth.rating import Rater
 from synth.uncertainty import read_block
+from tests.asking import rater_of
 from tests.unit.shaft_brake import CATALOGS, FACE, NEEDED, PAIRS, ShaftBrake
 
 RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "tolerance": {"radius": "+-1 mm"}}
@@ -24,7 +24,7 @@ def synthesized(robust=None, requirements=DUTY, problem=ShaftBrake, **settings):
 
 def worst(design, block, count=4000, limits=None):
     """Return the largest residual over random points of the range and its corners."""
-    rater = Rater(ShaftBrake(), design.frame.requirements, as_catalogs(CATALOGS), limits, read_block(block))
+    rater = rater_of(ShaftBrake(), design.frame.requirements, as_catalogs(CATALOGS), limits, read_block(block))
     points = np.random.default_rng(7).random((count, len(rater.things)))
     residuals = rater.residuals(design, np.concatenate([rater.corners, points]))
     return residuals.max()

@@ -13,14 +13,15 @@ import synth
 from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.formulation import Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
 from synth.purposes import Cover
 from synth.seeker import Seeker, corners, spread_choice
+from tests.asking import instance_of
 
 
 def strut_form(traded=2, grid=False):
     problem = Strut()
-    instance = Instance(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
+    instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
     return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, traded)
 
 
@@ -135,7 +136,7 @@ class Narrow(synth.DesignProblem):
 
 
 def test_what_no_point_hits_is_solved_for():
-    form = Formulation(Instance(Narrow(), {}, catalogs_for(Narrow(), {})), {"size": "min"}, 1)
+    form = Formulation(instance_of(Narrow(), {}, catalogs_for(Narrow(), {})), {"size": "min"}, 1)
     sliver, combination = np.array([0.02, 0.5]), np.zeros(1, dtype=np.int64)
     force, time = 10 + sliver * (3.2**2 - 10), 10**0.5 + sliver * (3.2 - 10**0.5)
     assert not len(form.feasible_rows(np.stack([[10.0, 10.0], force, time], axis=1), np.zeros(2, dtype=int))[0])
@@ -162,7 +163,7 @@ class Lidded(synth.DesignProblem):
 def test_boxes_are_split_along_what_matters_at_the_designs_known():
     rows = pd.DataFrame({"designation": list("abcd"), "size [-]": [1.0, 1.1, 1.3, 1.6]})
     problem = Lidded()
-    form = Formulation(Instance(problem, {}, catalogs_for(problem, {"rows": rows})), {"mass": "min"}, 1)
+    form = Formulation(instance_of(problem, {}, catalogs_for(problem, {"rows": rows})), {"mass": "min"}, 1)
     caps = np.array([np.inf])
     before = form.contract(form.root(), caps)
     point, combination = np.array([[1.5]]), np.array([0])

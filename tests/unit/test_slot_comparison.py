@@ -11,7 +11,8 @@ import synth
 from synth import refused_cells
 from synth.conditions import parse_condition
 from synth.formulation import Formulation
-from synth.instance import Instance, catalogs_for
+from synth.instance import catalogs_for
+from tests.asking import instance_of
 
 rng = np.random.default_rng(7)
 COUNT = 24
@@ -96,7 +97,7 @@ def offered(instance):
 
 @pytest.mark.parametrize("text", CONDITIONS)
 def test_the_combinations_left_are_those_of_a_plain_loop(text):
-    instance = Instance(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
+    instance = instance_of(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
     allowed = pairs(CONDITIONS[text])
     assert offered(instance) == set(allowed)
     (told,) = instance.combinations_left_out
@@ -142,7 +143,7 @@ def test_a_front_that_broke_the_comparison_does_not_hold(tmp_path):
 def test_boxes_of_clusters_are_given_up_before_single_rows(monkeypatch):
     """Of 24 x 24 pairs with a rule that few meet, clusters without any are left out as a whole, and no other."""
     text = "designation == two.designation"
-    instance = Instance(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
+    instance = instance_of(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
     form = Formulation(instance, {"cost": "min", "weight": "min"}, 2)
     trees = form.cells.trees
     cells = np.array(list(itertools.product(range(len(trees[0])), range(len(trees[1])), [0])), dtype=np.int32)

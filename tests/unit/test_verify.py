@@ -13,13 +13,13 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.instance import Instance
 from synth.loading import load_front, unchecked_front
 from synth.prooftree import Point
 from synth.results import ParetoFront, PartRow
 from synth.tables import Catalogs
 from synth.verification import Verdict
 from synth.verify import Check, uncovered
+from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
 ROOT = Path(__file__).parents[2]
@@ -216,7 +216,7 @@ def test_a_design_that_is_refused_refutes_nothing():
 @pytest.fixture(scope="module")
 def front():
     found = synth.synthesize(STRUT, ASKED, points=5, parts=FEW_PLATES, catalogs=RODS_TABLE, gap=5e-2)
-    return dataclasses.replace(found, question=Instance(STRUT, ASKED, Catalogs(RODS_TABLE), parts=FEW_PLATES))
+    return dataclasses.replace(found, question=instance_of(STRUT, ASKED, Catalogs(RODS_TABLE), parts=FEW_PLATES))
 
 
 @pytest.fixture(scope="module")
