@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
@@ -14,13 +13,13 @@ from problems.centrifugal.levers import RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4, S4
 from synth import DesignProblem
+from synth.declaration import Block, Declaration, Requirement, Variable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pandas as pd
 
-    from synth.declaration import Declaration
 
 # Ranges of the arms [mm]; refusals reason with them.
 SPRING_ARM, ROD_ARM = (10.0, 200.0), (3.0, 150.0)
@@ -29,14 +28,33 @@ PLACES = f"{S4}, what if rod and spring change places; {NOT_IN_S4}"
 GUARDS = ("rod_inside_spring", "clamp_springs_loaded")
 
 
-@dataclass(frozen=True)
-class Rods:
+class Rods(Block):
     """Arms of rod and spring, and what is asked of them, all in SI."""
 
-    spring_arm: Any
-    rod_arm: Any
-    ratio_max: Any
-    retraction_min: Any
+    rod_ratio_max = Requirement(
+        "-",
+        0.8,
+        lower=0.1,
+        upper=0.99,
+        symbol="rho_rod",
+        text="Largest arm of the rod over arm of the spring; at 1 nothing draws the lever back",
+        source=PLACES,
+    )
+    retraction_force_min = Requirement(
+        "N",
+        150,
+        lower=0,
+        upper=1e5,
+        symbol="F_retract_min",
+        text="Least force at the spring's arm that draws the lever back at standstill",
+        source=NOT_IN_S4,
+    )
+    spring_arm = Variable(
+        "mm", *SPRING_ARM, grid=0.5, symbol="l_s", text="Arm of the clamp springs on the lever", source=RECONSTRUCTED
+    )
+    rod_arm = Variable(
+        "mm", *ROD_ARM, grid=0.5, symbol="l_r", text="Arm of the headed rod on the lever", source=RECONSTRUCTED
+    )
 
     @property
     def ratio(self) -> Any:
@@ -66,13 +84,13 @@ class CentrifugalLever(DesignProblem):
         """Declare requirements, unknowns, limits and objectives."""
         duty = blocks.declare_duty(d)
         lever = lever_blocks.declare_lever(d, duty=duty, stop_text="beyond contact, so that the clamp force is capped")
-        rods = self._declare_rods(d)
+        rods = d.block(Rods)
         springs = blocks.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
         )
         lining = blocks.declare_lining(d, family=self.name, duty=duty)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=rods.rod_arm, longest=ROD_ARM[1], name="rod_arm")
-        shortest = lever.worn_travel / (rods.ratio_max * lever.weights.angle_limit)
+        shortest = lever.worn_travel / (rods.rod_ratio_max * lever.weights.angle_limit)
         lever_blocks.refuse_room(d, duty=duty, least_leg=shortest, name="spring_arm")
 
         squeeze = rods.spring_arm * lever.stop_angle
@@ -152,48 +170,6 @@ class CentrifugalLever(DesignProblem):
         regimes, own = centrifugal_lever_curves.ROD_REGIMES, centrifugal_lever_curves.ROD_OWN
         return states.of_lever(spec, design, lever, regimes, own, point["speed"])
 
-    def _declare_rods(self, d: Declaration) -> Rods:
-        return Rods(
-            ratio_max=d.requirement(
-                "rod_ratio_max",
-                "-",
-                0.8,
-                lower=0.1,
-                upper=0.99,
-                symbol="rho_rod",
-                text="Largest arm of the rod over arm of the spring; at 1 nothing draws the lever back",
-                source=PLACES,
-            ),
-            retraction_min=d.requirement(
-                "retraction_force_min",
-                "N",
-                150,
-                lower=0,
-                upper=1e5,
-                symbol="F_retract_min",
-                text="Least force at the spring's arm that draws the lever back at standstill",
-                source=NOT_IN_S4,
-            ),
-            spring_arm=d.variable(
-                "spring_arm",
-                "mm",
-                *SPRING_ARM,
-                grid=0.5,
-                symbol="l_s",
-                text="Arm of the clamp springs on the lever",
-                source=RECONSTRUCTED,
-            ),
-            rod_arm=d.variable(
-                "rod_arm",
-                "mm",
-                *ROD_ARM,
-                grid=0.5,
-                symbol="l_r",
-                text="Arm of the headed rod on the lever",
-                source=RECONSTRUCTED,
-            ),
-        )
-
     def _declare_guards(self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(
             GUARDS[0],
@@ -268,7 +244,7 @@ class CentrifugalLever(DesignProblem):
         d.at_most(
             "retraction_arm",
             rods.rod_arm,
-            rods.ratio_max * rods.spring_arm,
+            rods.rod_ratio_max * rods.spring_arm,
             "mm",
             text="The spring draws the lever back with an arm to spare",
             source=PLACES,
@@ -277,7 +253,7 @@ class CentrifugalLever(DesignProblem):
         d.at_least(
             "retraction_force",
             force,
-            rods.retraction_min,
+            rods.retraction_force_min,
             "N",
             text="At standstill the spring draws the lever back",
             source=NOT_IN_S4,

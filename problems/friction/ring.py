@@ -3,16 +3,47 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from problems.mechanics import ring as ring_formulas
 from problems.sources import S0, S1
-
-if TYPE_CHECKING:
-    from synth.declaration import Declaration
+from synth.declaration import Block, Declaration, Requirement, Variable
 
 # Largest friction ring offered to the search [mm]; the refusal torque_above_guide_limit reasons with it.
 RING_OUTER_DIAMETER_MAX = 800.0
+
+
+class RingSizes(Block):
+    """Range of the ratio, whose defaults are those of the family, and the two diameters."""
+
+    ring_ratio_min = Requirement(
+        "-",
+        lower=0.02,
+        upper=0.9,
+        symbol="c_min",
+        text="Least ring width over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
+    ring_ratio_max = Requirement(
+        "-",
+        lower=0.02,
+        upper=0.9,
+        symbol="c_max",
+        text="Largest ring width over mean diameter",
+        source=f"{S1}, empirical range of c",
+    )
+    ring_outer_diameter = Variable(
+        "mm",
+        40,
+        RING_OUTER_DIAMETER_MAX,
+        grid=1,
+        symbol="d_out",
+        text="Outer diameter of the friction ring",
+        source=f"{S1}, d1",
+    )
+    ring_inner_diameter = Variable(
+        "mm", 20, 700, grid=1, symbol="d_in", text="Inner diameter of the friction ring", source=f"{S1}, d2"
+    )
 
 
 @dataclass(frozen=True)
@@ -45,50 +76,13 @@ def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float) -> Ring:
     Ring
         Symbols of the block.
     """
-    least = d.requirement(
-        "ring_ratio_min",
-        "-",
-        ratio_min,
-        lower=0.02,
-        upper=0.9,
-        symbol="c_min",
-        text="Least ring width over mean diameter",
-        source=f"{S1}, empirical range of c",
-    )
-    most = d.requirement(
-        "ring_ratio_max",
-        "-",
-        ratio_max,
-        lower=0.02,
-        upper=0.9,
-        symbol="c_max",
-        text="Largest ring width over mean diameter",
-        source=f"{S1}, empirical range of c",
-    )
+    sizes = d.block(RingSizes, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
+    least, most = sizes.ring_ratio_min, sizes.ring_ratio_max
+    outer, inner = sizes.ring_outer_diameter, sizes.ring_inner_diameter
     d.refuse(
         "bad_ratio",
         least > most,
         "a ring_ratio_min of at most ring_ratio_max; otherwise no ring satisfies both",
-    )
-    outer = d.variable(
-        "ring_outer_diameter",
-        "mm",
-        40,
-        RING_OUTER_DIAMETER_MAX,
-        grid=1,
-        symbol="d_out",
-        text="Outer diameter of the friction ring",
-        source=f"{S1}, d1",
-    )
-    inner = d.variable(
-        "ring_inner_diameter",
-        "mm",
-        20,
-        700,
-        grid=1,
-        symbol="d_in",
-        text="Inner diameter of the friction ring",
-        source=f"{S1}, d2",
     )
     mean = d.derive(
         "mean_diameter",
