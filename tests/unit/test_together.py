@@ -133,7 +133,7 @@ def check_front(front: ParetoFront, question: Question, own: ParetoFront, priced
     assert front.certificate.excluded_by_bound + front.certificate.solved == front.certificate.combinations
     assert front.question is question.instance
     assert front.frame == own.frame
-    assert front.settings == question.settings
+    assert front.settings == question.record()
     (design,), (other,) = front.designs, own.designs
     assert front.verify().holds  # what is zero to the amount that the certificate tells
     if made_of(design) == made_of(other):
