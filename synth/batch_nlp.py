@@ -28,12 +28,8 @@ from synth.native import Solver, native
 from synth.native_general import General, general
 from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import Program
+from synth.tuning import TUNING, NlpSettings
 
-# Rows broken by more than this count as missed, and the problem is tried again from another start.
-MISSED = 1e-7
-OTHER_STARTS = (0.75, 0.25)
-CHUNK, NATIVE_CHUNK = 6000, 512  # problems at a time; the result is the same for any number
-STEP = 1000  # evaluations of the general solver take as long as one step over arrays
 # How problems are solved: over arrays of NumPy, by code that serves all formulas, or by code of their own.
 Code = Literal["arrays", "general", "own"]
 
@@ -121,6 +117,7 @@ class BatchNlp:
         By which share the edge of max and min is rounded off; 0: not at all.
     conditions : int
         How many of the last limits never give way: they say where formulas are the right ones.
+    settings : NlpSettings
     """
 
     def __init__(
@@ -131,8 +128,9 @@ class BatchNlp:
         code: Code = "own",
         edge: float = 0.0,
         conditions: int = 0,
+        settings: NlpSettings = TUNING.nlp,
     ) -> None:
-        self.rows = rows
+        self.rows, self.settings = rows, settings
         self.functions = RowFunctions(program, n_variables, rows, edge)
         self.log_variables = np.array(rows.log_variables, dtype=bool)
         self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
@@ -144,15 +142,16 @@ class BatchNlp:
         self._sides = self._compile_sides(program)
 
     def _solver(self, code: Code) -> InteriorPoint | Solver:
-        made = {"own": native, "general": general}[code](self.functions) if code != "arrays" else None
-        return made or InteriorPoint(self.functions)
+        compiled = {"own": native, "general": general}
+        made = compiled[code](self.functions, self.settings.method) if code != "arrays" else None
+        return made or InteriorPoint(self.functions, self.settings)
 
     @property
     def evaluations(self) -> int:
         """Return how many evaluations all has cost that was solved without code of its own."""
         if isinstance(self.solver, General):
             return self.solver.evaluations
-        return STEP * self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
+        return self.settings.step_cost * self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
 
     def _compile_sides(self, program: Program) -> Any:
         """Return a function of both sides of the rows that enter by a scaled difference."""
@@ -193,7 +192,7 @@ class BatchNlp:
         """
         count = len(tasks.weights)
         columns = [np.asarray(x, dtype=float) for x in data]
-        chunk = NATIVE_CHUNK if self.compiled else CHUNK
+        chunk = self.settings.compiled_at_once if self.compiled else self.settings.at_once
 
         def solved(first: int) -> Solutions:
             deadline.check()
@@ -252,9 +251,10 @@ class BatchNlp:
             ends = self.solver.solve(problems)
             result = self._finished(problems, ends, scales, low, high, worth)
             status = ends.status
-            for share in OTHER_STARTS:
+            for share in self.settings.other_starts:
                 # Where the rows cannot be met near where a solver ended, another start has hardly ever met them.
-                again = np.flatnonzero((status != CONVERGED) & (status != INFEASIBLE) & ~(result.violation <= MISSED))
+                missed = ~(result.violation <= self.settings.missed)
+                again = np.flatnonzero((status != CONVERGED) & (status != INFEASIBLE) & missed)
                 if not len(again):
                     break
                 some = problems.moved(again, share)

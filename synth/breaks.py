@@ -21,20 +21,12 @@ from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search import Question
 from synth.study import Break, Composition, Step, best_design
+from synth.study_limits import BREAKS, BreakLimits
 from synth.study_questions import Steps
 from synth.together import alike, different, groups_of
 from synth.together_search import TogetherSearch, Wider
 from synth.vary import Value
 
-WIDTH = 1e-3  # of a value: a break is known to be within this
-GAP = 1e-5  # of the searches that compare parts
-SAME = 2 * GAP  # values that differ by less count as equal: parts that tie do not change at random
-MOST = 20  # breaks of one objective between two steps
-AT_ONCE = 16  # intervals that are looked into together; what is found of them is kept together
-PARTS = 6  # into which an interval is divided at a time
-GUESSES = 4  # where a break lies, before its interval is simply halved
-FINEST = 1e-6  # of the step: how narrow the range of a break at zero gets
-LONGEST = 60.0  # seconds of one search
 UNPROVEN = "the search on one side did not finish"
 NOT_ROBUST = "the design on one side does not keep all limits over the whole range"
 INTERRUPTED = "interrupted"
@@ -62,6 +54,7 @@ def find_breaks(
     left: Left,
     workers: int,
     shown: Shown,
+    limits: BreakLimits = BREAKS,
 ) -> None:
     """Find the break points of every objective between neighbouring steps.
 
@@ -80,10 +73,11 @@ def find_breaks(
     workers : int
     shown : callable, optional
         Progress.
+    limits : BreakLimits
     """
     pairs = [(a, b) for a, b in _pairs(along, answered) if a.front is not None and b.front is not None]
-    for first in range(0, len(pairs), AT_ONCE):
-        some = pairs[first : first + AT_ONCE]
+    for first in range(0, len(pairs), limits.at_once):
+        some = pairs[first : first + limits.at_once]
         left()
         if shown is not None:
             says = f"{steps.stated(some[0][0].values)} to {steps.stated(some[-1][1].values)}"
@@ -92,7 +86,7 @@ def find_breaks(
         if all(entries is not None for entries in known):
             found += [_read(entry) for entries in known for entry in entries]
             continue
-        own = _Oracle(steps, along, left, workers).breaks(some)
+        own = _Oracle(steps, along, left, workers, limits).breaks(some)
         for (a, b), breaks in zip(some, own, strict=True):
             kept.keep(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}", [asdict(x) for x in breaks])
             found += breaks
@@ -145,7 +139,8 @@ class _Wanted:
 class _Oracle:
     """Answers what is wanted to know of best designs, for many intervals at a time."""
 
-    def __init__(self, steps: Steps, along: int, left: Left, workers: int) -> None:
+    def __init__(self, steps: Steps, along: int, left: Left, workers: int, limits: BreakLimits) -> None:
+        self.limits = limits
         self.steps, self.along, self.left, self.workers = steps, along, left, workers
         self.senses: dict[str, str] = {}
         self.known: dict[_Wanted, _Best] = {}
@@ -234,12 +229,13 @@ class _Oracle:
         if alone and w.alone:
             made = Composition.of(self.made[w.alone], w.objective)
             slots, pins = {slot: [word] for slot, word in made.parts.items()}, {**made.counts, **made.choices}
-        return self.steps.one_best(w.values, {w.objective: self.senses[w.objective]}, GAP, slots, pins)
+        return self.steps.one_best(w.values, {w.objective: self.senses[w.objective]}, self.limits.gap, slots, pins)
 
     def _alone(self, w: _Wanted) -> ParetoFront | None:
         """Search what cannot be answered together with other things; None where the family refuses it."""
         left = self.left()
-        seconds = LONGEST if left is None else min(LONGEST, left)
+        longest = self.limits.seconds
+        seconds = longest if left is None else min(longest, left)
         ideas = list(self.ideas.get(w.objective, {}).values())
         try:
             question = self._question(w, alone=True)
@@ -274,7 +270,7 @@ class _Between:
         yield [self._wanted(self.low), self._wanted(self.high)]
         place, holder, count = self.low, self._best(self.low).design, 0
         while not (yield from self._holds(holder, self.high)):
-            if count == MOST:
+            if count == self.oracle.limits.most:
                 found[-1] = replace(found[-1], remark=f"more changes follow up to {self.high:g}")
                 return
             low, high = yield from self._break(holder, place)
@@ -299,7 +295,7 @@ class _Between:
         """
         high, rival, guesses = self.high, self._best(self.high).design, 0
         while high - low > self._narrow(low, high):
-            if guesses < GUESSES:
+            if guesses < self.oracle.limits.guesses:
                 first, last = yield from self._crossing(holder, rival, low, high)
                 guesses += 1
             else:
@@ -314,12 +310,14 @@ class _Between:
         return low, high
 
     def _narrow(self, low: float, high: float) -> float:
-        return max(WIDTH * max(abs(low), abs(high)), FINEST * (self.high - self.low))
+        limits = self.oracle.limits
+        return max(limits.width * max(abs(low), abs(high)), limits.finest * (self.high - self.low))
 
     def _crossing(self, holder: Design | None, rival: Design | None, low: float, high: float) -> Asking:
         """Return a narrow range in which a rival becomes better than the holder, each alone."""
         while high - low > self._narrow(low, high):
-            inner = [low + (high - low) * k / PARTS for k in range(1, PARTS)]
+            parts = self.oracle.limits.parts
+            inner = [low + (high - low) * k / parts for k in range(1, parts)]
             yield [self._wanted(x, d) for x in inner for d in (holder, rival) if d is not None]
             beaten = [self._beats(self._own(rival, x), self._own(holder, x)) for x in inner]
             k = beaten.index(True) if True in beaten else len(inner)
@@ -356,7 +354,7 @@ class _Between:
         if one is None or other is None:
             return one is not other and other is None
         a, b = (self.sign * d.values[self.objective] for d in (one, other))
-        return a < b - SAME * max(abs(a), abs(b))
+        return a < b - self.oracle.limits.same * max(abs(a), abs(b))
 
     def _holds(self, holder: Design | None, value: float) -> Asking:
         """Tell whether a design's parts are (still) the best at a value, or as good as the best."""
@@ -379,7 +377,7 @@ def _words(design: Design) -> str:
 # ---- weights --------------------------------------------------------------------------------------------------------
 
 
-def weight_breaks(steps: Steps, along: int, answered: Sequence[Step]) -> list[Break]:
+def weight_breaks(steps: Steps, along: int, answered: Sequence[Step], limits: BreakLimits = BREAKS) -> list[Break]:
     """Return the weights at which another design comes first; the designs of a front do not depend on weights."""
     result: list[Break] = []
     for one, two in _pairs(along, answered):
@@ -388,7 +386,7 @@ def weight_breaks(steps: Steps, along: int, answered: Sequence[Step]) -> list[Br
             continue
         low, high = (float(s.values[along]) for s in (one, two))  # type: ignore[arg-type]
         name, weights = steps.varied[along].name, front.settings["weights"]
-        _leaders(front, {**weights}, name, low, high, one, along, result)
+        _leaders(front, {**weights}, name, low, high, one, along, result, limits)
     return result
 
 
@@ -401,6 +399,7 @@ def _leaders(
     step: Step,
     along: int,
     result: list[Break],
+    limits: BreakLimits,
 ) -> None:
     """Halve until the leading designs at both ends are the same or the ends meet."""
     names = list(front.frame.objectives)
@@ -413,12 +412,12 @@ def _leaders(
     first, last = leader(low), leader(high)
     if first is last or first is None or last is None:
         return
-    if high - low <= max(WIDTH * max(abs(low), abs(high)), FINEST):
+    if high - low <= max(limits.width * max(abs(low), abs(high)), limits.finest):
         proven = front.certificate.kind == "global"
         before, after = (Composition.of(d, names[0]) for d in (first, last))
         others = _others(step, along)
         result.append(Break("score", others, low, high, before, after, proven, "the leading design of the front"))
         return
     middle = 0.5 * (low + high)
-    _leaders(front, weights, name, low, middle, step, along, result)
-    _leaders(front, weights, name, middle, high, step, along, result)
+    _leaders(front, weights, name, low, middle, step, along, result, limits)
+    _leaders(front, weights, name, middle, high, step, along, result, limits)

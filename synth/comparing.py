@@ -30,6 +30,7 @@ from synth.search import FrontSearch, Question, pose
 from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.sheet import Applicant, Sheet, applicants, common_objectives, refuse_all, sheet_of
 from synth.tables import Catalogs
+from synth.tuning import TUNING, Tuning
 from synth.uncertainty import RATE, Uncertainty
 from synth.units import format_quantity
 
@@ -151,6 +152,11 @@ class _Kept:
         """The model with its requirements and restrictions."""
         return self.question.instance
 
+    @property
+    def tuning(self) -> Tuning:
+        """What its search goes by."""
+        return self.question.tuning
+
     def within(self, seconds: float | None) -> _Kept:
         """Limit the time of what is asked next."""
         self.question = self.question.within(seconds)
@@ -173,8 +179,9 @@ class _Comparing:
         tables: Catalogs,
         settings: SearchSettings,
         progress: Progress | None,
+        tuning: Tuning = TUNING,
     ) -> None:
-        self.started = time.monotonic()
+        self.started, self.tuning = time.monotonic(), tuning
         self.found, self.sheet, self.ranked, self.tables = found, sheet, ranked, tables
         self.objectives: dict[str, str] = dict(ranked["objectives"])
         self.settings, self.progress = settings, progress
@@ -233,7 +240,7 @@ class _Comparing:
         request, rater = one.request(self.sheet, self.tables, **self.ranked), None
 
         def ask(block: Uncertainty | None) -> _Kept:
-            kept.append(_Kept(pose(replace(request, robust=block), self.settings)))
+            kept.append(_Kept(pose(replace(request, robust=block), self.settings, tuning=self.tuning)))
             return kept[-1]
 
         if request.robust is None:

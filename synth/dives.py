@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from synth.batch_nlp import MISSED, Tasks
+from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.cover import cover
 from synth.formulation import Formulation
@@ -62,7 +62,7 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
     free = np.full(weights.shape, np.inf)
     tasks = Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0)
     found = form.solve_many(tasks, combinations, start, rough=True)
-    reach = np.where(found.violation <= MISSED, found.phi[:, k], np.nan)
+    reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
     good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
     if not len(good):
         return combinations[:0]

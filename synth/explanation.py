@@ -32,6 +32,7 @@ from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.spec_patch import patched
 from synth.special import expanded
 from synth.structure import classify
+from synth.study_limits import WAYS_OUT, WayOutLimits
 from synth.units import Quantity, format_quantity, from_si, outward, parse_unit
 
 if TYPE_CHECKING:
@@ -39,13 +40,6 @@ if TYPE_CHECKING:
 
     from synth.model import Model
 
-GAP = 8e-3  # of the amount by which something must give way
-EFFORT = 100_000  # boxes for each way out
-NOTHING = 1e-7  # an amount as small as this is none
-FIRST = 4  # limits that are looked at first
-FLAT = 1e-12  # an elasticity as small as this is none
-SLACK = 1e-12  # of bounds, for rounding
-FURTHER = 5  # roundings of an amount that are tried, each further on the side where it does
 PIN, CHOICE = "pin", "choice"
 
 
@@ -270,7 +264,7 @@ def explain(
         For everything that is wrong with the input, in one sentence.
     """
     begin = time.monotonic()
-    settings = SearchSettings(points=1, gap=GAP, seed=seed, time_limit=time_limit)
+    settings = SearchSettings(points=1, gap=WAYS_OUT.gap, seed=seed, time_limit=time_limit)
     check_progress(progress)
     request = Request.of(p, requirements, catalogs, robust, parts=parts, limits=limits, fix=fix, grid=grid)
     return explanation_of(request, settings.since(begin), progress, physics)
@@ -308,7 +302,7 @@ def _explain(asking: _Explaining, result: Explanation, physics: bool) -> None:
     if not result.fired:
         asking.say("limits", 0.02, "all limits together")
         widest = asking.ask({(LIMIT, name): asking.sign(name) for name in asking.giving})
-        if widest.design is not None and widest.amount <= NOTHING:
+        if widest.design is not None and widest.amount <= asking.ways.nothing:
             result.feasible = True
             return
         asking.say("conflict", 0.1, "which limits exclude each other")
@@ -378,9 +372,10 @@ class _Explaining:
         request: Request,
         settings: SearchSettings,
         progress: Progress | None,
+        ways: WayOutLimits = WAYS_OUT,
     ) -> None:
-        self.request, self.progress = request, progress
-        self.settings = replace(settings, points=1, gap=GAP, workers=1)
+        self.request, self.progress, self.ways = request, progress, ways
+        self.settings = replace(settings, points=1, gap=ways.gap, workers=1)
         self.deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
         self.catalogs = request.catalogs
         whole = posed(request.problem, request.robust, request.limits)
@@ -474,7 +469,7 @@ class _Explaining:
             )
         except RefusedError:
             return _Answer(None, True)
-        front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), EFFORT)
+        front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), self.ways.boxes)
         if front.interrupted:
             raise Stopped(front.interrupted)
         return _Answer(front.designs[0] if front.designs else None, front.certificate.kind == "global")
@@ -557,7 +552,7 @@ class _Explaining:
         left out in turn, and stays out where the others still exclude each other.
         """
         near = [] if nearest is None else self._tightest(self._as_asked(nearest))
-        kept = [x for x in near if x in self.limits][:FIRST]
+        kept = [x for x in near if x in self.limits][: self.ways.first]
         while True:
             found = self.ask({}, kept)
             if found.design is None:
@@ -584,7 +579,7 @@ class _Explaining:
         """Return the limits that a design of the relaxed question breaks, the worst first."""
         design = self._as_asked(found)
         missed = {name: r for name, r in design.residuals.items() if name in design.violated}
-        return sorted(missed, key=lambda name: -missed[name])[:FIRST]
+        return sorted(missed, key=lambda name: -missed[name])[: self.ways.first]
 
     # -- ways out ------------------------------------------------------------------------------------
 
@@ -602,7 +597,7 @@ class _Explaining:
         if kind == CHOICE:
             return self._chosen(name)
         most = self._room(name, sign) if kind == REQUIREMENT else MOST
-        if most <= NOTHING:
+        if most <= self.ways.nothing:
             return None
         pins = [self.pins[name]] if kind == PIN else []
         give = {} if pins else {(kind, x): sign for x in ([name] if kind != LIMIT else self._at_corners(name))}
@@ -616,7 +611,7 @@ class _Explaining:
         stated = kind == REQUIREMENT or (kind == LIMIT and any(x.name == name for x in self.own))
         if way.patch is None and stated:
             # Within the tolerance of a limit both sides of a refusal look allowed.
-            return None if found.amount <= NOTHING else f"{way.sentence}: not shown to do as it is written"
+            return None if found.amount <= self.ways.nothing else f"{way.sentence}: not shown to do as it is written"
         return way
 
     def _at_corners(self, limit: str) -> list[str]:
@@ -761,14 +756,14 @@ class _Explaining:
                 return self.sign(limit)
         model = self.instance.model
         position = model.input_number["requirement", name, ""] - len(model.variables)
-        shapes = self._shapes()
+        shapes, flat = self._shapes(), self.ways.flat
         for some in (self.limits, conflict):
             ends = [shapes.limits[x] for x in some if x in shapes.limits]
             spans = [x.elasticity[self._followers(position)] for x in ends if x.sign == 1]
             low, high = min((s.min() for s in spans), default=0.0), max((s.max() for s in spans), default=0.0)
-            if low >= -FLAT and high > FLAT:
+            if low >= -flat and high > flat:
                 return -1.0
-            if high <= FLAT and low < -FLAT:
+            if high <= flat and low < -flat:
                 return 1.0
         return 0.0
 
@@ -796,7 +791,7 @@ class _Explaining:
             value = found.design.values[pin.name]
             if not pin.low <= value <= pin.high:
                 end = pin.high if value > pin.high else pin.low
-                texts = (format_quantity(value, pin.unit, None),) * FURTHER
+                texts = (format_quantity(value, pin.unit, None),) * self.ways.further
                 changes.append(_Change(PIN, pin.name, pin.name, texts, format_quantity(end, pin.unit)))
         return changes
 
@@ -804,7 +799,7 @@ class _Explaining:
         self, changes: list[_Change], rest: Mapping[str, Any], design: Design
     ) -> tuple[dict[str, Any], list[str]] | None:
         """Return the patch of as few changes as the design needs, and their words."""
-        for k in range(FURTHER):
+        for k in range(self.ways.further):
             if not self._works(self._together(changes, k, rest), design):
                 continue
             some = list(changes)
@@ -887,8 +882,9 @@ class _Explaining:
         except InputError:
             return False
         values = [design.values[v.name] for v in instance.model.variables]
+        slack = self.ways.slack
         inside = all(
-            low - SLACK * abs(low) <= x <= high + SLACK * abs(high)
+            low - slack * abs(low) <= x <= high + slack * abs(high)
             for x, low, high in zip(values, instance.lower, instance.upper, strict=True)
         )
         return inside and not design.violated

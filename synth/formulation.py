@@ -27,8 +27,6 @@ from synth.refused_cells import RefusedCells
 from synth.resolution import declared_resolution, goal_scales, slack
 from synth.tuning import TUNING, Tuning
 
-EDGE = 1e-3  # share of max and min by which their edge is rounded off for a first solve
-
 
 @dataclass(frozen=True)
 class Boxes:
@@ -716,14 +714,15 @@ class Formulation:
             return self._batch_nlp()  # over arrays: compiled code is switched off now
 
     def _batch_nlp(self) -> BatchNlp | KinkedNlp:
-        rows, kinks, model = self.rows(), self._kinks, self.model
+        rows, kinks, model, nlp = self.rows(), self._kinks, self.model, self.tuning.nlp
         large = self.instance.combinations.count * self.alike >= self.tuning.compiling.combinations
         long = self.work > self.tuning.compiling.work
         code: Code = "arrays" if not switched_on() else "own" if self.compiled and (large or long) else "general"
         # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
-        edge = EDGE if self._has_edges(kinks) else 0.0
+        edge = nlp.edge if self._has_edges(kinks) else 0.0
         first: BatchNlp = model.function(
-            ("batch", rows, code, edge), lambda: BatchNlp(model.program, self.n, rows, code, edge)
+            ("batch", rows, code, edge, nlp),
+            lambda: BatchNlp(model.program, self.n, rows, code, edge, settings=nlp),
         )
         if not kinks:
             return first
@@ -732,9 +731,9 @@ class Formulation:
         def made() -> KinkedNlp:
             pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
             # Few problems are solved again where the formulas are solved as they stand.
-            return KinkedNlp(first, PiecedNlp(pieces, "general" if code == "own" and not edge else code))
+            return KinkedNlp(first, PiecedNlp(pieces, "general" if code == "own" and not edge else code, nlp))
 
-        kinked: KinkedNlp = model.function(("kinked", rows, code, edge, kinks, positive), made)
+        kinked: KinkedNlp = model.function(("kinked", rows, code, edge, kinks, positive, nlp), made)
         return kinked
 
     def _positive(self, node: int | None) -> bool:

@@ -34,34 +34,9 @@ from typing import Any
 import numpy as np
 
 from synth.derivatives import RowFunctions
+from synth.tuning import InteriorPointSettings
 
 CONVERGED, INFEASIBLE, STUCK, STOPPED = 1, 2, 3, 4
-
-# Ends: a lane gives up after so many evaluations, or so many with a barrier below LATE_BARRIER: along a flat and bent
-# valley the last steps are tiny, and what they could still gain is not worth them.
-MAX_EVALUATIONS, MAX_LATE, LATE_BARRIER = 100, 15, 1e-8
-DUAL_TOLERANCE, GAP_TOLERANCE, ROW_TOLERANCE = 1e-8, 1e-9, 1e-9
-# The barrier goes down where the errors are below BARRIER_ERROR times itself: by the factor, or to the power 3/2.
-FIRST_BARRIER, LEAST_BARRIER = 1.0, 1e-10
-BARRIER_ERROR, BARRIER_FACTOR = 10.0, 0.2
-# Rows that press against the penalty are met on their own, without the objective, before the penalty is raised.
-FIRST_PENALTY, LAST_PENALTY, PENALTY_FACTOR, PENALTY_BARRIER = 5.0, 1e6, 20.0, 1e-2
-MET = 1e-7
-# Without an objective, rows that are broken by far more than the barrier explains will not be met near here.
-HOPELESS_BARRIER, HOPELESS_DUAL, HOPELESS_RATIO = 1e-3, 1e-4, 100.0
-# The line search; after MAX_REJECTED refusals the barrier is lowered instead, down to STUCK_BARRIER.
-ARMIJO, ROUNDING, TO_BOUNDARY = 1e-4, 1e-12, 0.99
-MAX_REJECTED, STUCK_BARRIER = 10, 1e-9
-# Multipliers stay within this factor of those that the point itself implies.
-MULTIPLIER_SPREAD = 1e4
-# Starts: share of the width a point keeps from its bounds, room that t leaves.
-INSIDE, FIRST_ROOM = 1e-2, 0.1
-# A variable whose bounds (or their logarithms) are closer than this does not move.
-PINNED_WIDTH = 1e-10
-# Inertia: pivots below LEAST_PIVOT of their diagonal call for a shift of the diagonal.
-LEAST_PIVOT, FIRST_SHIFT, SHIFT_GROWTH, LARGEST_SHIFT = 1e-13, 1e-6, 100.0, 1e30
-# Rows beyond this do not exist.
-LARGEST_ROW = 1e8
 
 
 @dataclass(frozen=True)
@@ -179,24 +154,28 @@ def split(values: np.ndarray, barrier: np.ndarray, prices: np.ndarray) -> tuple[
 
 
 def solve_shifted(
-    matrix: Sequence[Sequence[np.ndarray]], right: np.ndarray, shift: np.ndarray, wanted: np.ndarray
+    matrix: Sequence[Sequence[np.ndarray]],
+    right: np.ndarray,
+    shift: np.ndarray,
+    wanted: np.ndarray,
+    method: InteriorPointSettings,
 ) -> np.ndarray:
     """Solve symmetric systems (lower triangles), with the diagonal shifted until they are positive definite."""
     n = len(right)
-    factor, pivots, good = factorised(matrix, shift)
+    factor, pivots, good = factorised(matrix, shift, method.least_pivot)
     good |= ~wanted
     while not good.all():
         again = np.flatnonzero(~good)
-        grown = np.where(shift[again] > 0, SHIFT_GROWTH * shift[again], FIRST_SHIFT)
+        grown = np.where(shift[again] > 0, method.shift_growth * shift[again], method.first_shift)
         shift = shift.copy()
         shift[again] = grown
         part = [[entry[again] for entry in line] for line in matrix]
-        new_factor, new_pivots, new_good = factorised(part, grown)
+        new_factor, new_pivots, new_good = factorised(part, grown, method.least_pivot)
         for a in range(n):
             pivots[a][again] = new_pivots[a]
             for b in range(a):
                 factor[a][b][again] = new_factor[a][b]
-        good[again] = new_good | (grown > LARGEST_SHIFT)
+        good[again] = new_good | (grown > method.largest_shift)
     result = np.empty_like(right)
     for a in range(n):
         result[a] = right[a]
@@ -210,7 +189,7 @@ def solve_shifted(
 
 
 def factorised(
-    matrix: Sequence[Sequence[np.ndarray]], shift: np.ndarray
+    matrix: Sequence[Sequence[np.ndarray]], shift: np.ndarray, least_pivot: float
 ) -> tuple[list[list[np.ndarray]], list[np.ndarray], np.ndarray]:
     """Return the factors L and D of shifted matrices, and which of them are positive definite."""
     n = len(matrix)
@@ -226,7 +205,7 @@ def factorised(
             scaled.append(entry)
             factor[a].append(entry / pivots[b])
         pivot = matrix[a][a] + shift
-        least = LEAST_PIVOT * np.abs(pivot)
+        least = least_pivot * np.abs(pivot)
         for b in range(a):
             pivot = pivot - scaled[b] * factor[a][b]
         good &= pivot > least

@@ -14,48 +14,17 @@ import numpy as np
 from synth import deadline
 from synth.derivatives import RowFunctions
 from synth.interior_point import (
-    ARMIJO,
-    BARRIER_ERROR,
-    BARRIER_FACTOR,
     CONVERGED,
-    DUAL_TOLERANCE,
-    FIRST_BARRIER,
-    FIRST_PENALTY,
-    FIRST_ROOM,
-    GAP_TOLERANCE,
-    HOPELESS_BARRIER,
-    HOPELESS_DUAL,
-    HOPELESS_RATIO,
     INFEASIBLE,
-    INSIDE,
-    LARGEST_ROW,
-    LAST_PENALTY,
-    LATE_BARRIER,
-    LEAST_BARRIER,
-    MAX_EVALUATIONS,
-    MAX_LATE,
-    MAX_REJECTED,
-    MET,
-    MULTIPLIER_SPREAD,
-    PENALTY_BARRIER,
-    PENALTY_FACTOR,
-    PINNED_WIDTH,
-    ROUNDING,
-    ROW_TOLERANCE,
     STOPPED,
     STUCK,
-    STUCK_BARRIER,
-    TO_BOUNDARY,
     Ends,
     Layout,
     Problems,
     solve_shifted,
     split,
 )
-
-# So many lanes keep the arrays in the cache and the calls rare; new problems come in when a quarter is done.
-LANES = 2048
-REFILL = 0.75
+from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 
 
 class InteriorPoint:
@@ -64,6 +33,7 @@ class InteriorPoint:
     Parameters
     ----------
     functions : RowFunctions
+    settings : NlpSettings
 
     Attributes
     ----------
@@ -71,8 +41,8 @@ class InteriorPoint:
         How often all lanes went one step: what the solver has cost.
     """
 
-    def __init__(self, functions: RowFunctions) -> None:
-        self.functions = functions
+    def __init__(self, functions: RowFunctions, settings: NlpSettings = TUNING.nlp) -> None:
+        self.functions, self.settings = functions, settings
         self.steps = 0
         self.point = functions.compile_point()
         self.layout = Layout(functions)
@@ -84,13 +54,13 @@ class InteriorPoint:
             np.empty((n, count)), np.empty(count), np.empty((rows, count)), np.empty((rows, count)),
             np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64),
         )  # fmt: skip
-        waiting = 0
+        waiting, most, refill = 0, self.settings.lanes, self.settings.refill
         lanes: Lanes | None = None
         with np.errstate(all="ignore"):
             while lanes is not None or waiting < count:
-                if waiting < count and (lanes is None or len(lanes) < REFILL * LANES):
-                    upto = min(count, waiting + LANES - (0 if lanes is None else len(lanes)))
-                    fresh = Lanes.of(self.layout, problems, np.arange(waiting, upto))
+                if waiting < count and (lanes is None or len(lanes) < refill * most):
+                    upto = min(count, waiting + most - (0 if lanes is None else len(lanes)))
+                    fresh = Lanes.of(self.layout, self.settings.method, problems, np.arange(waiting, upto))
                     lanes = fresh if lanes is None else lanes.joined(fresh)
                     waiting = upto
                 assert lanes is not None
@@ -110,6 +80,7 @@ class Lanes:
     """
 
     layout: Layout
+    method: InteriorPointSettings
     stored: list[Any]
     number: np.ndarray
     # the problem
@@ -153,13 +124,13 @@ class Lanes:
     status: np.ndarray
 
     @staticmethod
-    def of(layout: Layout, problems: Problems, number: np.ndarray) -> Lanes:
+    def of(layout: Layout, method: InteriorPointSettings, problems: Problems, number: np.ndarray) -> Lanes:
         """Return lanes for some of the problems, at their starts."""
         n, rows, count = layout.n, layout.rows, len(number)
         low, high = problems.low[:, number], problems.high[:, number]
         width = high - low
-        free = width > PINNED_WIDTH
-        inside = np.clip(problems.start[:, number], low + INSIDE * width, high - INSIDE * width)
+        free = width > method.pinned_width
+        inside = np.clip(problems.start[:, number], low + method.inside * width, high - method.inside * width)
         counts, slopes = problems.counts[:, number], problems.slopes[:, number]
         t_weight = problems.t_weight[number]
         t_free = (t_weight != 0) & np.any((slopes != 0) & counts, axis=0)
@@ -167,6 +138,7 @@ class Lanes:
         none = np.zeros(count, dtype=np.int64)
         return Lanes(
             layout=layout,
+            method=method,
             stored=[x if np.ndim(x) == 0 else x[number] for x in problems.stored],
             number=number, low=low, high=high, free=free, counts=counts,
             slopes=np.where(counts & t_free, slopes, 0.0), rights=problems.rights[:, number],
@@ -175,7 +147,8 @@ class Lanes:
             y=np.where(free, inside, 0.5 * (low + high)), t=zero, form=per_row, values=per_row,
             absent=np.ones((rows, count), dtype=bool), missing=none + rows + 2,
             multipliers=per_row, low_dual=per_variable, high_dual=per_variable,
-            barrier=zero + FIRST_BARRIER, penalty=zero + FIRST_PENALTY, next_penalty=zero + FIRST_PENALTY,
+            barrier=zero + method.first_barrier,
+            penalty=zero + method.first_penalty, next_penalty=zero + method.first_penalty,
             restoring=np.zeros(count, dtype=bool), merit=zero,
             direction=np.zeros((n + 1, count)), uncorrected=np.zeros((n + 1, count)), forecast=per_row,
             change=per_row, low_change=per_variable, high_change=per_variable,
@@ -192,10 +165,10 @@ class Lanes:
         stored = [
             x if np.ndim(x) == 0 else np.concatenate([x, y]) for x, y in zip(self.stored, other.stored, strict=True)
         ]
-        return Lanes(self.layout, stored, **{k: np.concatenate([mine[k], its[k]], axis=-1) for k in mine})
+        return Lanes(self.layout, self.method, stored, **{k: np.concatenate([mine[k], its[k]], axis=-1) for k in mine})
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        return {field.name: getattr(self, field.name) for field in fields(self)[2:]}
+        return {field.name: getattr(self, field.name) for field in fields(self)[3:]}
 
     def without_finished(self, ends: Ends) -> Lanes | None:
         """Write finished lanes to their places and return those that go on."""
@@ -211,19 +184,20 @@ class Lanes:
             return None
         keep = np.flatnonzero(~done)
         stored = [x if np.ndim(x) == 0 else x[keep] for x in self.stored]
-        return Lanes(self.layout, stored, **{k: v[..., keep] for k, v in self._arrays().items()})
+        return Lanes(self.layout, self.method, stored, **{k: v[..., keep] for k, v in self._arrays().items()})
 
     # -- one step ------------------------------------------------------------------------------
 
     def advance(self, point: Callable[..., list[Any]]) -> None:
         """Evaluate all trial points, take those that are good enough, and find the next ones."""
+        method = self.method
         y, t = self.y + self.step * self.direction[:-1], self.t + self.step * self.direction[-1]
         multipliers = self.multipliers + self.dual_step * self.change
         form, jacobian, hessian = self._evaluate(point, y, multipliers)
         absent, missing = self._absent(form, jacobian)
         values = self._values(form, t, absent, missing)
         merit = self._merit(y, t, form, values, missing)
-        enough = self.merit + ARMIJO * self.step * self.slope + ROUNDING * (1 + np.abs(self.merit))
+        enough = self.merit + method.armijo * self.step * self.slope + method.rounding * (1 + np.abs(self.merit))
         fresh = missing < self.missing
         taken = fresh | ((missing == self.missing) & (merit <= enough))
         self._set(
@@ -232,7 +206,7 @@ class Lanes:
             high_dual=self.high_dual + self.dual_step * self.high_change,
         )  # fmt: skip
         self.evaluations = self.evaluations + 1
-        self.late = self.late + (self.barrier <= LATE_BARRIER)
+        self.late = self.late + (self.barrier <= method.late_barrier)
         self.rejected = np.where(taken, 0, self.rejected + 1)
         if fresh.any():
             self._begin(fresh)
@@ -275,7 +249,7 @@ class Lanes:
         layout = self.layout
         wanted = self.counts.copy()
         wanted[layout.cuts :] |= self.weights != 0
-        absent = ~(np.abs(form) < LARGEST_ROW)
+        absent = ~(np.abs(form) < self.method.largest_row)
         strange = ~np.isfinite(jacobian)
         if strange.any():
             np.logical_or.at(absent, layout.row, strange)
@@ -334,16 +308,17 @@ class Lanes:
 
     def _begin(self, fresh: np.ndarray) -> None:
         """Set multipliers, barrier and t where the rows that count have just changed."""
+        method = self.method
         soft = self.counts & (self.slopes > 0) & ~self.layout.equal & ~self.absent
         needed = np.where(soft, (self.form - self.rights) / np.where(soft, self.slopes, 1.0), -np.inf)
-        first = needed.max(axis=0, initial=-np.inf) + FIRST_ROOM
+        first = needed.max(axis=0, initial=-np.inf) + method.first_room
         held = ~self.t_free | self._first(self.missing) | ~np.isfinite(first)
         self._set(fresh, t=np.where(held, 0.0, first))
         self._set(
             fresh,
             values=self._values(self.form, self.t, self.absent, self.missing),
-            barrier=np.full(len(self), FIRST_BARRIER),
-            penalty=np.where(self._first(self.missing), FIRST_PENALTY, self.next_penalty),
+            barrier=np.full(len(self), method.first_barrier),
+            penalty=np.where(self._first(self.missing), method.first_penalty, self.next_penalty),
         )
         below, above = self._room(self.y)
         _, _, own = split(self.values, self.barrier, self._prices())
@@ -351,12 +326,13 @@ class Lanes:
 
     def _bring_in(self, own: np.ndarray, below: np.ndarray, above: np.ndarray) -> None:
         """Keep multipliers within reach of those that the point itself implies."""
+        method = self.method
         prices = self._prices()
-        top = np.minimum(own * MULTIPLIER_SPREAD, prices - (prices - own) / MULTIPLIER_SPREAD)
-        self.multipliers = np.clip(self.multipliers, own / MULTIPLIER_SPREAD, top)
+        top = np.minimum(own * method.multiplier_spread, prices - (prices - own) / method.multiplier_spread)
+        self.multipliers = np.clip(self.multipliers, own / method.multiplier_spread, top)
         for name, room in (("low_dual", below), ("high_dual", above)):
             own = self.barrier / room
-            kept = np.clip(getattr(self, name), own / MULTIPLIER_SPREAD, own * MULTIPLIER_SPREAD)
+            kept = np.clip(getattr(self, name), own / method.multiplier_spread, own * method.multiplier_spread)
             setattr(self, name, kept)
 
     def _judge(self, taken: np.ndarray, jacobian: np.ndarray, slopes: np.ndarray) -> np.ndarray:
@@ -364,7 +340,7 @@ class Lanes:
 
         Returns which lanes must start again where they are, because what they look for has changed.
         """
-        layout = self.layout
+        layout, method = self.layout, self.method
         first = self._first(self.missing)
         below, above = self._room(self.y)
         slack, excess, own = split(self.values, self.barrier, self._prices())
@@ -385,29 +361,32 @@ class Lanes:
         largest, least = products.max(axis=0), products.min(axis=0)
         over = np.where(layout.equal, np.abs(self.values), self.values).max(axis=0, initial=0.0)
         over = np.where(self.missing > 0, np.inf, over)
-        good = (dual < DUAL_TOLERANCE) & (largest < GAP_TOLERANCE) & (over < ROW_TOLERANCE)
+        good = (dual < method.dual_tolerance) & (largest < method.gap_tolerance) & (over < method.row_tolerance)
         hopeless = (
-            first & (dual < HOPELESS_DUAL) & (self.barrier < HOPELESS_BARRIER) & (over > HOPELESS_RATIO * self.barrier)
+            first
+            & (dual < method.hopeless_dual)
+            & (self.barrier < method.hopeless_barrier)
+            & (over > method.hopeless_ratio * self.barrier)
         )
         self._set(taken & good & ~first, status=np.full(len(self), CONVERGED))
         self._set(taken & hopeless, status=np.full(len(self), INFEASIBLE))
         # Along a flat and bent valley the last steps are tiny: what they could still gain is not worth them.
-        tired = (self.evaluations >= MAX_EVALUATIONS) | (self.late >= MAX_LATE)
+        tired = (self.evaluations >= method.max_evaluations) | (self.late >= method.max_late)
         self._set((self.status == 0) & tired, status=np.full(len(self), STOPPED))
         # Where rows press against the penalty the objective is put aside until they are met.
-        pressed = np.any(self.multipliers > 0.5 * self._prices(), axis=0) & (self.barrier <= PENALTY_BARRIER)
+        pressed = np.any(self.multipliers > 0.5 * self._prices(), axis=0) & (self.barrier <= method.penalty_barrier)
         leaves = taken & ~first & pressed & (over > 10 * self.barrier)
-        comes = taken & self.restoring & (over <= MET)
+        comes = taken & self.restoring & (over <= method.met)
         again: np.ndarray = (leaves | comes) & (self.status == 0)
         if again.any():
-            self._set(leaves, next_penalty=np.minimum(PENALTY_FACTOR * self.penalty, LAST_PENALTY))
+            self._set(leaves, next_penalty=np.minimum(method.penalty_factor * self.penalty, method.last_penalty))
             self.restoring = (self.restoring | leaves) & ~comes
             self._begin(again)
         for _ in range(3):
             error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
-            smaller = np.minimum(BARRIER_FACTOR * self.barrier, self.barrier * np.sqrt(self.barrier))
-            lower = taken & ~again & (error < BARRIER_ERROR * self.barrier)
-            self._set(lower, barrier=np.maximum(LEAST_BARRIER, smaller))
+            smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
+            lower = taken & ~again & (error < method.barrier_error * self.barrier)
+            self._set(lower, barrier=np.maximum(method.least_barrier, smaller))
         return again
 
     def _direct(
@@ -451,13 +430,13 @@ class Lanes:
         for a in range(n):
             matrix[a][a] = matrix[a][a] + self.low_dual[a] / below[a] + self.high_dual[a] / above[a]
         matrix[n][n] = matrix[n][n] + held
-        direction = -solve_shifted(matrix, right, shift, taken | bent)
+        direction = -solve_shifted(matrix, right, shift, taken | bent, self.method)
         moved = layout.times(jacobian, slopes, direction)
         change = own - self.multipliers + stiffness * moved
         low_change = self.barrier / below - self.low_dual * (1 + direction[:n] / below)
         high_change = self.barrier / above - self.high_dual * (1 - direction[:n] / above)
         # The largest share of the step that keeps everything positive; each row is a rate of decrease.
-        nearly = np.maximum(TO_BOUNDARY, 1 - self.barrier)
+        nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
         primal = np.concatenate([
             1 + (change - own) * rest / both, -direction[:n] / below, direction[:n] / above,
         ])  # fmt: skip
@@ -490,10 +469,10 @@ class Lanes:
 
     def _stuck(self, refused: np.ndarray) -> np.ndarray:
         """End lanes where no step along their direction helps; return those that may go on with a smaller barrier."""
-        stuck = refused & (self.rejected > MAX_REJECTED) & (self.status == 0)
-        self._set(stuck & (self.barrier <= STUCK_BARRIER), status=np.full(len(self), STUCK))
+        stuck = refused & (self.rejected > self.method.max_rejected) & (self.status == 0)
+        self._set(stuck & (self.barrier <= self.method.stuck_barrier), status=np.full(len(self), STUCK))
         again: np.ndarray = stuck & (self.status == 0)
-        self._set(again, barrier=np.maximum(LEAST_BARRIER, 0.01 * self.barrier))
+        self._set(again, barrier=np.maximum(self.method.least_barrier, 0.01 * self.barrier))
         return again
 
     def _restart(self, again: np.ndarray) -> None:

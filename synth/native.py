@@ -23,11 +23,9 @@ from synth.derivatives import RowFunctions
 from synth.interior_point import Ends, Problems
 from synth.native_source import source
 from synth.native_switch import c_compiler
+from synth.tuning import InteriorPointSettings
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
-# Compiling takes seconds, so that it pays for large questions only. What decides is the question, never what happens
-# to be compiled already: the last digits of the two ways differ, and the same question must go the same way.
-COMPILED_FROM = 5000  # combinations
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 INTEGERS = ctypes.POINTER(ctypes.c_longlong)
 
@@ -92,11 +90,11 @@ class Solver:
         return ends
 
 
-def native(functions: RowFunctions) -> Solver | None:
+def native(functions: RowFunctions, method: InteriorPointSettings) -> Solver | None:
     """Return the compiled solver; None where code cannot be compiled, kept or loaded."""
     if not switched_on() or functions.n == 0:
         return None
-    loaded = library("nlp", source(functions))
+    loaded = library("nlp", source(functions, method))
     return None if loaded is None else Solver(functions, loaded)
 
 

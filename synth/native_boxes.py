@@ -25,11 +25,11 @@ from synth.native import FLAGS, library
 from synth.native_tree import CapTables, Grown, Halves, bind, grow
 from synth.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
 from synth.special import SpecialFunction
+from synth.tuning import CodeSizes
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
 BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
 # Threads take the next so many boxes when they are free: a core that is busy with something else holds nobody up.
-PART = 512
 SCORE_WIDTH = 16
 
 NUMBERS = {
@@ -84,6 +84,7 @@ class Question:
         Makeable values per variable; empty where it is continuous.
     margins : (float, float)
         By how much a value may miss the grid, relative and absolute.
+    sizes : CodeSizes
     """
 
     tables: Sequence[tuple[int, np.ndarray, np.ndarray]]
@@ -97,6 +98,7 @@ class Question:
     spreads: Sequence[np.ndarray]
     grids: Sequence[np.ndarray]
     margins: tuple[float, float]
+    sizes: CodeSizes
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ class Prepared:
     """
 
     def __init__(self, contractor: Contractor, question: Question) -> None:
-        self.n, self.factors = len(question.lower), len(question.spreads)
+        self.n, self.factors, self.sizes = len(question.lower), len(question.spreads), question.sizes
         width = -(-question.steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)
@@ -212,7 +214,7 @@ class BoxCode:
         moving, still = given | taken, dict[str, np.ndarray]()
         (moving if step else still)["caps"] = most
         part = _batches(prepared, weights, passes, moving, still, caps_step=step)
-        parts = max(1, count // PART) if workers > 1 else 1
+        parts = max(1, count // prepared.sizes.part) if workers > 1 else 1
         ends = [count * k // parts for k in range(parts + 1)]
         kept = self._run([part(first, last) for first, last in pairwise(ends)], workers)
         rows = [slice(first, first + number) for first, number in zip(ends[:-1], kept, strict=True)]
@@ -256,7 +258,17 @@ class BoxCode:
         """
         batch = _batches(prepared, weights, passes, _rows(cell, low, high, bounds, tag))
         widths = (prepared.factors, prepared.n, bounds.shape[1])
-        return grow(self._grow, batch, len(cell), widths, halves, caps, levels, lambda work: _all_done(work, workers))
+        return grow(
+            self._grow,
+            batch,
+            len(cell),
+            widths,
+            halves,
+            caps,
+            levels,
+            prepared.sizes,
+            lambda work: _all_done(work, workers),
+        )
 
     def _run(self, batches: Sequence[_Batch], workers: int) -> list[int]:
         kept = [0] * len(batches)

@@ -20,6 +20,7 @@ from synth.interior_point import Ends, Layout, Problems
 from synth.native import Solver, library
 from synth.native_source import settings, translation_unit
 from synth.program import COMPARISONS, OP_SELECT
+from synth.tuning import InteriorPointSettings
 
 # Sizes that the code has room for; what is larger is solved without it.
 MOST = {"N": 24, "ROWS": 96, "GOALS": 16, "NONZEROS": 1024, "CURVATURES": 300}
@@ -39,12 +40,12 @@ class _Shape(ctypes.Structure):
     )
 
 
-def source() -> str:
+def source(method: InteriorPointSettings) -> str:
     """Return the translation unit."""
     sizes = [f"#define MOST_{name} {most}" for name, most in MOST.items()]
     formulas, parts = bodies(template("nlp", "interpreter"))
     parts |= {
-        "SIZES": "\n".join([*settings(), *sizes, f"#define WIDTH {WIDTH}"]),
+        "SIZES": "\n".join([*settings(method), *sizes, f"#define WIDTH {WIDTH}"]),
         "STORED_IN_STATE": "vd *stored;",
         "FORMULAS": formulas,
         "POINT": filled(parts["POINT"], {"CASES": "\n".join(_cases())}),
@@ -161,14 +162,14 @@ def fits(functions: RowFunctions) -> bool:
     return functions.n > 0 and all(size <= MOST[name] for name, size in sizes.items())
 
 
-def general(functions: RowFunctions) -> General | None:
+def general(functions: RowFunctions, method: InteriorPointSettings) -> General | None:
     """Return the solver; None where row functions are too large, or code cannot be compiled, kept or loaded."""
     if not switched_on() or not fits(functions):
         return None
-    loaded = library("nlp", _text())
+    loaded = library("nlp", _text(method))
     return None if loaded is None else General(functions, loaded)
 
 
 @cache
-def _text() -> str:
-    return source()
+def _text(method: InteriorPointSettings) -> str:
+    return source(method)

@@ -7,6 +7,7 @@ one element of a register, and a lane that is done takes the next problem.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 
 import casadi as ca
 import numpy as np
@@ -15,13 +16,14 @@ from synth import interior_point as method
 from synth.c_text import EXPRESSIONS, filled, template
 from synth.derivatives import RowFunctions
 from synth.program import COMPARISONS, OP_SELECT, Node
+from synth.tuning import InteriorPointSettings
 
 
-def source(functions: RowFunctions) -> str:
+def source(functions: RowFunctions, own: InteriorPointSettings) -> str:
     """Return the translation unit of one set of row functions."""
     layout = method.Layout(functions)
     parts = {
-        "SIZES": _sizes(functions),
+        "SIZES": _sizes(functions, own),
         "STORED_IN_STATE": "vd stored[AT_LEAST_ONE(STORED)];",
         "POINT": _point(functions),
         "TRANSPOSED": _transposed(layout),
@@ -40,32 +42,21 @@ def translation_unit(parts: Mapping[str, str]) -> str:
     return template("compiled", "vectors") + filled(template("nlp", "solver"), parts)
 
 
-def settings() -> list[str]:
-    """Return definitions of the settings of the method."""
-    numbers = {
-        "MAX_EVALUATIONS": method.MAX_EVALUATIONS, "MAX_LATE": method.MAX_LATE, "MAX_REJECTED": method.MAX_REJECTED,
-        "CONVERGED": method.CONVERGED, "INFEASIBLE": method.INFEASIBLE, "STUCK": method.STUCK,
-        "STOPPED": method.STOPPED,
-    }  # fmt: skip
-    names = (
-        "FIRST_BARRIER", "LEAST_BARRIER", "BARRIER_FACTOR", "BARRIER_ERROR", "FIRST_PENALTY",
-        "LAST_PENALTY", "PENALTY_FACTOR", "PENALTY_BARRIER", "DUAL_TOLERANCE", "GAP_TOLERANCE", "ROW_TOLERANCE",
-        "HOPELESS_BARRIER", "HOPELESS_DUAL", "HOPELESS_RATIO", "MET", "STUCK_BARRIER", "LATE_BARRIER", "TO_BOUNDARY",
-        "ARMIJO", "ROUNDING",
-        "MULTIPLIER_SPREAD", "INSIDE", "PINNED_WIDTH", "FIRST_ROOM", "LEAST_PIVOT", "FIRST_SHIFT", "SHIFT_GROWTH",
-        "LARGEST_SHIFT", "LARGEST_ROW",
-    )  # fmt: skip
-    lines = [f"#define {name} {value}" for name, value in numbers.items()]
-    return lines + [f"#define {name} {_number(float(getattr(method, name)))}" for name in names]
+def settings(own: InteriorPointSettings) -> list[str]:
+    """Return definitions of the settings of the method, each under its name in capitals, and of how lanes end."""
+    ends = ("CONVERGED", "INFEASIBLE", "STUCK", "STOPPED")
+    lines = [f"#define {name} {getattr(method, name)}" for name in ends]
+    numbers = {field.name.upper(): getattr(own, field.name) for field in fields(own)}
+    return lines + [f"#define {name} {_number(x) if isinstance(x, float) else x}" for name, x in numbers.items()]
 
 
-def _sizes(functions: RowFunctions) -> str:
+def _sizes(functions: RowFunctions, own: InteriorPointSettings) -> str:
     layout = method.Layout(functions)
     numbers = {
         "N": layout.n, "ROWS": layout.rows, "CUTS": layout.cuts, "GOALS": layout.goals, "NONZEROS": len(layout.row),
         "CURVATURES": len(layout.hessian), "STORED": len(functions.stored),
     }  # fmt: skip
-    lines = settings() + [f"#define {name} {value}" for name, value in numbers.items()]
+    lines = settings(own) + [f"#define {name} {value}" for name, value in numbers.items()]
     lines += [f"#define MOST_{name} {name}" for name in ("N", "ROWS", "GOALS")]
     lines += [f"#define MOST_{name} AT_LEAST_ONE({name})" for name in ("NONZEROS", "CURVATURES")]
     for name, flags in (("EQUAL", layout.equal.ravel()), ("GUARD", layout.guard)):

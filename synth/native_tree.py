@@ -14,11 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from synth.tuning import CodeSizes
+
 # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
 # must not depend on it.
-PART = 512
-ROOM = 4  # boxes that may come back, per box and beside
-LEAST_ROOM = 4096
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
@@ -119,6 +118,7 @@ def grow(
     halves: Halves,
     caps: CapTables,
     levels: int,
+    sizes: CodeSizes,
     run: Callable[[Sequence[Callable[[], None]]], None],
 ) -> Grown:
     """Grow the subtrees of boxes.
@@ -137,6 +137,7 @@ def grow(
     caps : CapTables
     levels : int
         Generations.
+    sizes : CodeSizes
     run : callable
         Does all of some work, which may be shared among threads.
 
@@ -160,12 +161,12 @@ def grow(
         "known": len(caps.known[0][0]) if caps.known else 0,
         "steps": -1 if caps.steps is None else len(caps.steps[0]),
     }  # fmt: skip
-    found: list[Grown | None] = [None] * -(-count // PART)
+    found: list[Grown | None] = [None] * -(-count // sizes.tree_part)
 
     def part(k: int) -> Callable[[], None]:
         def work() -> None:
-            first, last = k * PART, min((k + 1) * PART, count)
-            capacity = ROOM * (last - first) + LEAST_ROOM
+            first, last = k * sizes.tree_part, min((k + 1) * sizes.tree_part, count)
+            capacity = sizes.tree_room * (last - first) + sizes.tree_beside
             taken: dict[str, np.ndarray] = {
                 "out_cell": np.empty((capacity, factors), dtype=np.int32),
                 "out_low": np.empty((capacity, n)),

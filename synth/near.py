@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.analysis import make_design, part_row, with_ties
-from synth.batch_nlp import MISSED, Tasks
+from synth.batch_nlp import Tasks
 from synth.clock import Clock, Stopped
 from synth.cover import cover
 from synth.deadline import until
@@ -35,19 +35,13 @@ from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.search_settings import Progress, SearchSettings, check_progress
 from synth.seeker import Seeker, roundings
 from synth.settle import settle_discrete, settle_variables
+from synth.study_limits import NEAR, NearLimits
 from synth.units import parse_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
 
-BATCH = 2048
-EFFORT = 2_000_000  # boxes
-MOST = 20_000  # combinations told apart; more are only said to be more
 WIDEST = 0.5
-PROBLEMS = 1024  # continuous problems solved at once
-MOST_ROUNDED = 256  # makeable points around one continuous optimum
-SETTLE_EFFORT = 20_000
-SETTLE_GAP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -261,8 +255,9 @@ class _Enumeration:
         share: float,
         settings: SearchSettings,
         progress: Progress | None,
+        limits: NearLimits = NEAR,
     ) -> None:
-        self.started = time.monotonic()
+        self.started, self.limits = time.monotonic(), limits
         self.instance, self.reference, self.share = instance, reference, share
         self.chosen = dict(front.frame.objectives)
         self.m = len(self.chosen)
@@ -328,16 +323,16 @@ class _Enumeration:
 
     def _enumerate(self) -> bool:
         """Look at everything; tell whether every combination is decided."""
-        form, near = self.form, self.near
+        form, near, batch_size = self.form, self.near, self.limits.batch
         seeker = Seeker(form, near, self.rng, every=False)
         caps = near.plain[: form.bounded] + near.tie
         stack = [form.lean(form.root())]
         while stack:
             boxes = stack.pop()
-            batch, rest = boxes.take(slice(0, BATCH)), boxes.take(slice(BATCH, None))
+            batch, rest = boxes.take(slice(0, batch_size)), boxes.take(slice(batch_size, None))
             stack += [rest] if len(rest) else []
             self.clock.check([batch, *stack])
-            if self.looked > EFFORT or len(near.found) > MOST:
+            if self.looked > self.limits.boxes or len(near.found) > self.limits.most:
                 return False
             self.looked += len(batch)
             batch = form.contract(batch, caps)
@@ -349,7 +344,7 @@ class _Enumeration:
             batch, small = form.split(batch)
             if len(small):
                 left = self._open(seeker.settle(small))
-                self.undecided.update(form.cells.all_members(left.cell, MOST).tolist())
+                self.undecided.update(form.cells.all_members(left.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
         return not self.undecided - set(near.found)
@@ -370,8 +365,8 @@ class _Enumeration:
         _, first = np.unique(numbers[rows], return_index=True)
         rows = [rows[int(k)] for k in np.sort(first)]
         self.tried.update(int(numbers[k]) for k in rows)
-        for start in range(0, len(rows), PROBLEMS):
-            some = np.array(rows[start : start + PROBLEMS], dtype=np.int64)
+        for start in range(0, len(rows), self.limits.problems):
+            some = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
             self._solve(numbers[some], form.inside(boxes.take(some), 0.5))
         # Boxes of combinations tried before have become smaller since.
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
@@ -392,7 +387,8 @@ class _Enumeration:
             self._offer(answer.variables, combinations)
             return
         phi = answer.phi[:, :m]
-        good = np.flatnonzero((answer.violation <= MISSED) & np.all(phi <= near.plain[:m] + near.tie, axis=1))
+        within = np.all(phi <= near.plain[:m] + near.tie, axis=1)
+        good = np.flatnonzero((answer.violation <= form.tuning.nlp.missed) & within)
         for k in good:
             self._round(int(combinations[k]), answer.variables[[k]])
 
@@ -400,8 +396,8 @@ class _Enumeration:
         """Try makeable points around a continuous optimum."""
         form, near = self.form, self.near
         low, high, _ = roundings(form, variables)
-        if len(low) > MOST_ROUNDED:
-            chosen = self.rng.choice(len(low), MOST_ROUNDED, replace=False)
+        if len(low) > self.limits.rounded:
+            chosen = self.rng.choice(len(low), self.limits.rounded, replace=False)
             low, high = low[chosen], high[chosen]
         cell = form.whole(combination).cell
         whole = form.leaves(np.full(len(low), combination), low, high)
@@ -421,7 +417,7 @@ class _Enumeration:
         """Return all combinations that belong, without the chosen one: rows that are equal in all that counts too."""
         form, result = self.form, dict[int, tuple[float, Candidate]]()
         for combination, (worse, candidate) in self.near.found.items():
-            for other in form.cells.members(form.whole(combination).cell[0], MOST):
+            for other in form.cells.members(form.whole(combination).cell[0], self.limits.most):
                 result[int(other)] = worse, replace(candidate, combination=int(other))
         result.pop(self.own, None)
         return dict(sorted(result.items()))
@@ -450,12 +446,13 @@ class _Enumeration:
         form, near, m = self.form, self.near, self.m
         if hurried:
             return known
-        slack = np.where(form.log_goals[:m], -np.log1p(-SETTLE_GAP), SETTLE_GAP / self.share * near.slack)
+        gap = self.limits.settling_gap
+        slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.slack)
         caps = near.plain.copy()
         caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
         purpose = Cover(range(m), slack, caps, form.new_archive(range(m)))
         purpose.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
-        cover(form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, SETTLE_EFFORT)
+        cover(form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, self.limits.settling_boxes)
         worst = near.worse(purpose.known.phi)
         best = purpose.known[int(np.lexsort((*purpose.known.phi.T[::-1], np.round(worst, 9)))[0])]
         (better,) = settle_discrete(form, [best], m, range(len(form.goals)), parts=False)
@@ -480,7 +477,9 @@ class _Enumeration:
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})
             differences.append(self._differences(c.combination))
         left = (
-            None if self.looked > EFFORT or found > MOST or interrupted else len(self.undecided - set(self.near.found))
+            None
+            if self.looked > self.limits.boxes or found > self.limits.most or interrupted
+            else len(self.undecided - set(self.near.found))
         )
         statistics = {
             "combinations": self.instance.combinations.count,

@@ -27,40 +27,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.batch_nlp import MISSED, BatchNlp, Code, Solutions, Tasks, worth_of
+from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks, worth_of
 from synth.intervals import Cut
 from synth.nlp_rows import Rows
 from synth.program import OP_SELECT, Program
+from synth.tuning import TUNING, NlpSettings
 
 DECISIONS = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How the pieces of a problem are gone through.
-
-    Parameters
-    ----------
-    tie : float
-        Both sides of a decision count as equal if they differ by less than this share of their size.
-    press : float
-        Multipliers below it, in the units of the solver, say nothing.
-    gain : float
-        What is better by less is not, in the units of the solver.
-    margin : float
-        By which a comparison holds: on its border, the formulas of the other side may be the true ones.
-    jump : float
-        Rows that differ by more between two pieces where they meet do not meet.
-    turns : int
-        How often pieces are exchanged, at most.
-    """
-
-    tie: float = 1e-6
-    press: float = 1e-5
-    gain: float = 1e-10
-    margin: float = 1e-9
-    jump: float = 1e-6
-    turns: int = 12
 
 
 def decisions(program: Program, n_variables: int, rows: Rows) -> list[int]:
@@ -288,17 +261,19 @@ class PiecedNlp:
     pieces : Pieces
     code : {"arrays", "general", "own"}
         How problems are solved, as of :class:`synth.batch_nlp.BatchNlp`.
-    settings : Settings, optional
+    settings : NlpSettings
     """
 
-    def __init__(self, pieces: Pieces, code: Code = "own", settings: Settings | None = None) -> None:
-        self.pieces, self.code, self.settings = pieces, code, settings or Settings()
+    def __init__(self, pieces: Pieces, code: Code = "own", settings: NlpSettings = TUNING.nlp) -> None:
+        self.pieces, self.code, self.settings, self.nlp_settings = pieces, code, settings.pieces, settings
 
     @cached_property
     def nlp(self) -> BatchNlp:
         """The solver of the pieces; made when the first problem needs it."""
         program, rows = self.pieces.written()
-        return BatchNlp(program, self.pieces.n, rows, self.code, conditions=len(self.pieces))
+        return BatchNlp(
+            program, self.pieces.n, rows, self.code, conditions=len(self.pieces), settings=self.nlp_settings
+        )
 
     @property
     def evaluations(self) -> int:
@@ -399,8 +374,8 @@ class _Question:
         tasks = self.tasks.take(rows)
         least = self.solver.settings.gain / worth_of(tasks)
         cost, known = _cost(tasks, new), _cost(tasks, old.take(rows))
-        violation, before = new.violation, old.violation[rows]
-        holds, held = violation <= MISSED, before <= MISSED
+        violation, before, missed = new.violation, old.violation[rows], self.solver.nlp_settings.missed
+        holds, held = violation <= missed, before <= missed
         better: np.ndarray = np.where(
             holds & held, cost < known - least, holds | (~held & (violation < before - self.solver.settings.gain))
         )
@@ -542,14 +517,14 @@ class KinkedNlp:
             low[doubtful], high[doubtful], bounds, void[doubtful], workers,
         )  # fmt: skip
         # An answer to other formulas is none, but may be a design; one to the same formulas may be better.
-        known = found.take(doubtful)
-        lost = (known.violation <= MISSED) & (sharp.violation > MISSED)
+        known, missed = found.take(doubtful), self.pieced.nlp_settings.missed
+        lost = (known.violation <= missed) & (sharp.violation > missed)
         if self.rounded:
             found.converged[doubtful] = False
         else:
             cost, before = _cost(tasks.take(doubtful), sharp), _cost(tasks.take(doubtful), known)
             least = self.pieced.settings.gain / worth_of(tasks.take(doubtful))
-            held = (known.violation <= MISSED) & known.converged
+            held = (known.violation <= missed) & known.converged
             lost |= held & (before < cost - least)
         found.put(doubtful[~lost], sharp.take(~lost))
         return found

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.batch_nlp import MISSED, Solutions, Tasks
+from synth.batch_nlp import Solutions, Tasks
 from synth.deadline import Stopped, until
 from synth.elasticity import NOISE, Optima, optima
 from synth.errors import InputError
@@ -28,19 +28,13 @@ from synth.instance import Instance
 from synth.output_folder import claimed
 from synth.price_list import CHANGE, CONFIRMED, FIXED, FORMAT, NOTHING, WITHHELD, Price, Prices, Store, percent, told
 from synth.question import question_of
-from synth.resolve import ALL, FINE, Move, Resolver
+from synth.resolve import Move, Resolver
 from synth.results import Design, ParetoFront
 from synth.search_settings import Progress, SearchSettings, check_progress
+from synth.study_limits import PRICES, PriceLimits
 from synth.units import parse_quantity
 
 LEAST_STEP, WIDEST_STEP = 1e-4, 0.1
-# By how much a price and a re-solve may differ: a share of the price, and per cent per per cent.
-SHARE, ROOM = 0.03, 0.003
-PARENTS = 8  # of those tried, the best, of which again one part is exchanged
-REACH = 10.0  # combinations worse by more than this times the step are not tried again
-LOOSER = 5.0  # ... nor those that need limits looser by more than this times the step
-EVEN = 1e-6  # relative; what is better by more is better without a step
-BINDS = 1e-4  # multiplier
 
 
 def prices(
@@ -130,11 +124,12 @@ class _Pricing:
         step: float,
         settings: SearchSettings,
         progress: Progress | None,
+        limits: PriceLimits = PRICES,
     ) -> None:
         self.started = time.monotonic()
         self.deadline = math.inf if settings.time_limit is None else self.started + settings.time_limit
         self.instance, self.frame, self.step, self.progress = instance, front.frame, step, progress
-        self.again = Resolver(instance, front, step)
+        self.again = Resolver(instance, front, step, limits)
 
     # -- the run -------------------------------------------------------------------------------
 
@@ -241,7 +236,7 @@ class _Case:
         if not len(self.others):
             return best
         values, start, near = self._without_a_step(self.others)
-        whole, parents = total <= ALL, np.argsort(values, kind="stable")[:PARENTS]
+        whole, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]
         if not whole:
             further = self.again.beside(self.others[parents[near[parents]]], np.append(self.others, self.own))
             more = self._without_a_step(further)
@@ -258,7 +253,7 @@ class _Case:
         found, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
         reached = np.full(tried.shape, np.inf)
         reached[rows[kept], moves[kept]] = found.phi[kept, self.k]
-        ahead = (values - self.base) * self.unit < -EVEN
+        ahead = (values - self.base) * self.unit < -self.again.limits.even
         self.already = {int(self.others[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
         reached[ahead] = np.inf
         for number in range(self.again.count):
@@ -269,7 +264,7 @@ class _Case:
             if own[1][number]:
                 mine = float(own[0].phi[number, self.k])
                 room = (mine - reached[c, number]) * self.unit / self.again.step
-                room -= SHARE * abs(self._price(mine, number)) + ROOM
+                room -= self.again.limits.share * abs(self._price(mine, number)) + self.again.limits.room
             if room > 0:
                 best[number] = float(reached[c, number]), int(self.others[c])
         return best
@@ -281,12 +276,13 @@ class _Case:
         start = np.repeat(self.best.variables, count, axis=0)
         found, kept, _ = self.again.solved(others, start, still, self.phi, k)
         values, start = np.where(kept, found.phi[:, k], np.inf), found.variables.copy()
-        reach = self.again.step * REACH / self.unit
+        reach = self.again.step * self.again.limits.reach / self.unit
         near = values - self.base <= reach
         lost = np.flatnonzero(~kept)
         if len(lost) and form.n:
             looser = self._looser(others[lost], start[lost], reach)
-            near[lost] = (looser.violation <= MISSED) & (looser.t <= LOOSER * self.again.step)
+            met = looser.violation <= form.tuning.nlp.missed
+            near[lost] = met & (looser.t <= self.again.limits.looser * self.again.step)
             start[lost] = looser.variables
         elif len(lost):
             near[lost] = True
@@ -391,7 +387,11 @@ class _Case:
         fine = number + self.again.count
         again = self._trouble(fine, slope, own)
         if not again:
-            return _Side(slope, f"holds for {percent(FINE * self.again.step)}; {why}", share=FINE)
+            return _Side(
+                slope,
+                f"holds for {percent(self.again.limits.fine * self.again.step)}; {why}",
+                share=self.again.limits.fine,
+            )
         told = f"the multipliers say {slope:.3g}, but " if own[1][number] else ""
         return _Side(None, f"{told}{why}" if again == why else f"{told}{why}, {again}")
 
@@ -414,16 +414,17 @@ class _Case:
             return ""
         return f"solving again with {way} gives {again:.3g}{self._what_binds(found, number)}"
 
-    @staticmethod
-    def _agree(again: float, slope: float) -> bool:
-        return abs(again - slope) <= SHARE * max(abs(again), abs(slope)) + ROOM
+    def _agree(self, again: float, slope: float) -> bool:
+        limits = self.again.limits
+        return abs(again - slope) <= limits.share * max(abs(again), abs(slope)) + limits.room
 
     def _what_binds(self, found: Solutions, number: int) -> str:
         """Return which limits begin or end to bind on the way, as what explains a bend."""
         before, after = self.best.multipliers[0], found.cut_multipliers[number]
         names = self.again.limit_names
-        begins = [names[j] for j in np.flatnonzero((np.abs(after) > BINDS) & (np.abs(before) <= BINDS))]
-        ends = [names[j] for j in np.flatnonzero((np.abs(before) > BINDS) & (np.abs(after) <= BINDS))]
+        binds = self.again.limits.binds
+        begins = [names[j] for j in np.flatnonzero((np.abs(after) > binds) & (np.abs(before) <= binds))]
+        ends = [names[j] for j in np.flatnonzero((np.abs(before) > binds) & (np.abs(after) <= binds))]
         form = self.again.form
         old, new = (self._at_end(form, x) for x in (self.best.variables[0], found.variables[number]))
         begins += [f"the range of {form.model.variables[j].name}" for j in sorted(new - old)]

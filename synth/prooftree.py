@@ -26,29 +26,16 @@ import casadi as ca
 import numpy as np
 
 from synth.enclosure import INF, LOOSE, Cut, Enclosed, Encloser, Pair, Slopes
-from synth.feasibility import TOLERANCE
 from synth.instance import Instance
 from synth.model import Model
 from synth.program import Program
+from synth.proof_limits import PROOF, ProofLimits
 from synth.special import expanded
 from synth.tape import Expr, Ref, Tape, sign_of
 
-CHUNK = 4096
-FIRST = 1024  # boxes to begin with, and below which boxes are split twice: a smaller batch costs as much
-FEW = 2048  # below this many boxes are split twice at once
-SWEEPS = 6
-PAD = 1e-10  # relative; rounding is far below
-SNAP = 1e-9  # relative distance within which a makeable value or a row counts as inside
-THIN = 1e-9  # relative width below which a variable is not split any more
-ROW_TOLERANCE = 1.01 * TOLERANCE
-GUARD_TOLERANCE = 1e-12  # for rounding alone: a guard has no tolerance
 NO_SCALE = 1e-9  # of limits that the user added
-FAR = 1e3
-TINY = 1e-100
-TRIES = 4  # designs in the middle of boxes that are looked at in each round
-MOST_STUCK = 64
-MOST_OPEN = 2_000_000
-MOST_NODES = 50_000_000
+FAR = 1e3  # in place of a width or a spread without a bound
+TINY = 1e-100  # in place of a zero that is divided by
 
 
 @dataclass(frozen=True)
@@ -240,10 +227,11 @@ class ProofTree:
     instance : Instance
     objectives : mapping
         Names and senses.
+    limits : ProofLimits
     """
 
-    def __init__(self, instance: Instance, objectives: Mapping[str, str]) -> None:
-        self.instance = instance
+    def __init__(self, instance: Instance, objectives: Mapping[str, str], limits: ProofLimits = PROOF) -> None:
+        self.instance, self.limits = instance, limits
         self._senses = [1 if sense == "min" else -1 for sense in objectives.values()]
         model = instance.model
         sides: list[Any] = [model.quantity_sx[name] for name in objectives]
@@ -379,7 +367,8 @@ class ProofTree:
     def _tighten_root(self) -> bool:
         """Cut the ranges of all inputs to what the limits leave; tell whether anything is left."""
         nodes, cuts = self.program.nodes, self._cuts()
-        for _ in range(SWEEPS):
+        pad = self.limits.pad
+        for _ in range(self.limits.sweeps):
             encloser = Encloser(Tape(), self.program, slopes=False)
             found = encloser.run(nodes, self._order, self._root(), cuts)
             self._certain = encloser.carried_back(nodes, self._order, found)
@@ -387,7 +376,7 @@ class ProofTree:
                 if isinstance(given, int):
                     c = self._coordinates[given]
                     low, high = self._certain[self.program.input_nodes[k]]
-                    low, high = np.fmax(c.low, low - PAD * abs(low)), np.fmin(c.high, high + PAD * abs(high))
+                    low, high = np.fmax(c.low, low - pad * abs(low)), np.fmin(c.high, high + pad * abs(high))
                     if low > high:
                         return False
                     self._coordinates[given] = replace(c, low=float(low), high=float(high))
@@ -395,18 +384,18 @@ class ProofTree:
 
     def _keep_inside(self) -> bool:
         """Leave out values of ladders and rows that the root box does not reach; tell whether any are left."""
-        self._rows = [np.arange(len(table)) for table in self._tables]
+        self._rows, snap = [np.arange(len(table)) for table in self._tables], self.limits.snap
         for k, c in enumerate(self._coordinates):
             if c.kind == "ladder":
                 values = self._ladders[c.group]
-                values = values[_between(values, c.low, c.high)]
+                values = values[_between(values, c.low, c.high, snap)]
                 if not len(values):
                     return False
                 self._ladders[c.group] = values
                 self._coordinates[k] = replace(c, low=float(values[0]), high=float(values[-1]))
             elif c.kind == "column":
                 values = self._tables[c.group][self._rows[c.group], c.column]
-                self._rows[c.group] = self._rows[c.group][_between(values, c.low, c.high) | np.isnan(values)]
+                self._rows[c.group] = self._rows[c.group][_between(values, c.low, c.high, snap) | np.isnan(values)]
         if not all(len(rows) for rows in self._rows):
             return False
         for k, c in enumerate(self._coordinates):
@@ -458,7 +447,9 @@ class ProofTree:
             surely = encloser.do("subtract", found[k].narrow[0], 0.5)
             rows.append(Row(surely, surely, surely, {}))
 
-        step = _Step(encloser, ends, halves, self._coordinates, [self._group_of(c) for c in self._coordinates])
+        step = _Step(
+            encloser, ends, halves, self._coordinates, [self._group_of(c) for c in self._coordinates], self.limits.pad
+        )
         handed = [x for pair in ends for x in pair] + levels + caps + list(masks.values())
         back = encloser.carried_back(self.program.nodes, self._order, found)
         place = {x: self.program.input_nodes[k] for k, x in enumerate(self._inputs) if isinstance(x, int)}
@@ -502,7 +493,8 @@ class ProofTree:
 
     def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> Row:
         """Return small <= large as a row: log(small/large), or their difference over their size."""
-        do, scale, share = e.do, x.scale, GUARD_TOLERANCE if x.guard else ROW_TOLERANCE
+        do, scale, limits = e.do, x.scale, self.limits
+        share = limits.guard_tolerance if x.guard else limits.row_tolerance
         if small.sign > 0 and large.sign > 0 and scale <= max(small.least, large.least):
             ends = []
             for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
@@ -522,13 +514,7 @@ class ProofTree:
 
     # -- the tree ------------------------------------------------------------------------------
 
-    def prove(
-        self,
-        ends: np.ndarray,
-        confirm: Callable[[Point], bool],
-        deadline: float = INF,
-        most_nodes: int = MOST_NODES,
-    ) -> Outcome:
+    def prove(self, ends: np.ndarray, confirm: Callable[[Point], bool], deadline: float = INF) -> Outcome:
         """Prove that no feasible design lies in any region: below an end in every objective.
 
         Parameters
@@ -539,7 +525,6 @@ class ProofTree:
             Takes a design that may refute the claim and tells whether it does.
         deadline : float
             On the clock of ``time.monotonic``.
-        most_nodes : int
         """
         if self.empty:
             return Outcome(True, 0)
@@ -550,14 +535,15 @@ class ProofTree:
             spread = [np.ptp(x[~np.isnan(x)]) if not np.isnan(x).all() else 0.0 for x in finite.T]
             scale = np.array([x if x > 0 else 1.0 for x in spread])
             regions = Clusters(levels, np.zeros(levels.shape[1], dtype=bool), scale)
-            return self._grow(regions, confirm, deadline, most_nodes)
+            return self._grow(regions, confirm, deadline)
 
-    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float, most_nodes: int) -> Outcome:
+    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float) -> Outcome:
+        limits, tries = self.limits, self.limits.tries
         pool, nodes, stuck = [self._begin(regions)], 0, 0
         while pool:
-            if time.monotonic() > deadline or nodes > most_nodes or sum(map(len, pool)) > MOST_OPEN:
+            if time.monotonic() > deadline or nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
                 return Outcome(False, nodes)
-            batch = _batch(pool)
+            batch = _batch(pool, limits.chunk)
             nodes += len(batch)
             boxes, scores, middle = self._tightened(batch, regions)
             if not len(boxes):
@@ -567,14 +553,14 @@ class ProofTree:
             # Once more: what is too small to be split has been tightened only now.
             left = self._tightened(boxes.take(small), regions)[0] if small.any() else boxes.take(small)
             single = self._single(left)
-            hopeful = np.argsort(middle)[:TRIES]
-            few = [left.take(np.flatnonzero(~single)[:TRIES]), boxes.take(hopeful[middle[hopeful] <= 0])]
+            hopeful = np.argsort(middle)[:tries]
+            few = [left.take(np.flatnonzero(~single)[:tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
             # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
             for point in map(self._point, Boxes.joined([left.take(single), *few]).each()):
                 if confirm(point):
                     return Outcome(False, nodes, point)
             stuck += int(np.count_nonzero(~single))
-            if stuck > MOST_STUCK:
+            if stuck > limits.most_stuck:
                 return Outcome(False, nodes)
             if not small.all():
                 pool.append(self._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
@@ -586,7 +572,7 @@ class ProofTree:
         real += [c.high for c in self._coordinates if c.kind == "variable"]
         whole = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
         boxes = Boxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
-        while len(boxes) < FIRST:
+        while len(boxes) < self.limits.first:
             widths = self._widths(boxes, regions)
             if not np.any(widths > 0):
                 break
@@ -661,7 +647,7 @@ class ProofTree:
                 real[c.group], real[v + c.group] = low[k], high[k]
             elif c.kind == "ladder":
                 values = self._ladders[c.group]
-                reach = SNAP * np.maximum(np.abs(low[k]), np.abs(high[k]))
+                reach = self.limits.snap * np.maximum(np.abs(low[k]), np.abs(high[k]))
                 first = np.maximum(np.searchsorted(values, low[k] - reach), whole[c.group])
                 last = np.minimum(np.searchsorted(values, high[k] + reach, side="right") - 1, whole[m + c.group])
                 kept &= first <= last
@@ -669,7 +655,7 @@ class ProofTree:
         for group, slot in enumerate(self._slots):
             own = [k for k, c in enumerate(self._coordinates) if c.kind == "column" and c.group == group]
             least, most = np.array([low[k] for k in own]), np.array([high[k] for k in own])
-            reach = SNAP * np.maximum(np.abs(least), np.abs(most))
+            reach = self.limits.snap * np.maximum(np.abs(least), np.abs(most))
             whole[2 * m + group] = slot.narrowed(whole[2 * m + group], least - reach, most + reach)
             kept &= whole[2 * m + group] >= 0
         floor = np.where(np.isnan(floor), -INF, floor)
@@ -690,7 +676,7 @@ class ProofTree:
                 values = self._ladders[c.group]
                 low, high = values[boxes.whole[c.group]], values[boxes.whole[m + c.group]]
             width = np.log(high / low) if c.log else (high - low) / max(c.high - c.low, 1e-300)
-            thin = THIN if c.kind == "variable" else 0.0
+            thin = self.limits.thin if c.kind == "variable" else 0.0
             result[self._group_of(c)] = np.where(width > thin, width, 0.0)
         for group, slot in enumerate(self._slots):
             result[v + m + group] = slot.spread[boxes.whole[2 * m + group]]
@@ -714,7 +700,7 @@ class ProofTree:
             fixed = score.max(axis=0) < 0
             scores[group, np.arange(len(boxes))] *= 0.5
             boxes = Boxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
-            if len(boxes) >= FEW or fixed.any():
+            if len(boxes) >= self.limits.few or fixed.any():
                 return boxes
             scores, widths = np.concatenate([scores, scores], axis=1), self._widths(boxes, regions)
 
@@ -783,7 +769,9 @@ class _Step:
         halves: Sequence[Ref],
         coordinates: Sequence[Coordinate],
         groups: Sequence[int],
+        pad: float,
     ) -> None:
+        self._pad = pad
         self._e, self._do, self._where = encloser, encloser.do, encloser.tape.where
         self._ends, self._halves, self._coordinates, self._groups = ends, halves, coordinates, groups
 
@@ -849,7 +837,7 @@ class _Step:
     def _within(self, k: int, pair: Pair) -> Pair:
         """Return the ends of a coordinate met with others, which are given some room for rounding."""
         do, (low, high) = self._do, self._ends[k]
-        pad = do("multiply", PAD, do("maximum", do("absolute", low), do("absolute", high)))
+        pad = do("multiply", self._pad, do("maximum", do("absolute", low), do("absolute", high)))
         new_low = low if pair[0] is low else do("fmax", low, do("subtract", pair[0], pad))
         return new_low, high if pair[1] is high else do("fmin", high, do("add", pair[1], pad))
 
@@ -864,19 +852,19 @@ class _Step:
         return low if not isinstance(down, Ref) else new[0], high if not isinstance(up, Ref) else new[1]
 
 
-def _between(values: np.ndarray, low: float, high: float) -> np.ndarray:
-    reach = SNAP * max(abs(low), abs(high))
+def _between(values: np.ndarray, low: float, high: float, snap: float) -> np.ndarray:
+    reach = snap * max(abs(low), abs(high))
     return (values >= low - reach) & (values <= high + reach)
 
 
-def _batch(pool: list[Boxes]) -> Boxes:
+def _batch(pool: list[Boxes], chunk: int) -> Boxes:
     """Take boxes from the end of the pool: one chunk, or less where there are fewer."""
     taken, count = [], 0
-    while pool and count < CHUNK:
+    while pool and count < chunk:
         taken.append(pool.pop())
         count += len(taken[-1])
     boxes = Boxes.joined(taken)
-    if len(boxes) > CHUNK:
-        pool.append(boxes.take(slice(CHUNK, None)))
-        boxes = boxes.take(slice(0, CHUNK))
+    if len(boxes) > chunk:
+        pool.append(boxes.take(slice(chunk, None)))
+        boxes = boxes.take(slice(0, chunk))
     return boxes

@@ -548,6 +548,7 @@ class Propagation:
             spreads=self._spreads,
             grids=self.grids,
             margins=margins,
+            sizes=self.compiling.sizes,
         )
 
     def scores(

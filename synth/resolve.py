@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from synth.analysis import with_ties
-from synth.batch_nlp import MISSED, Solutions
+from synth.batch_nlp import Solutions
 from synth.constraint import Constraint
 from synth.elasticity import held, requirement_positions, sides
 from synth.errors import InputError
@@ -17,9 +17,7 @@ from synth.feasibility import holds, residual
 from synth.formulation import Formulation
 from synth.instance import Instance
 from synth.results import ParetoFront
-
-ALL = 512  # combinations that are all tried; of more, those that differ in one part and those on the front
-FINE = 0.1  # of the step: for prices that bend within it
+from synth.study_limits import PRICES, PriceLimits
 
 
 @dataclass(frozen=True)
@@ -44,10 +42,11 @@ class Resolver:
         Its objectives, and its designs as parts to try.
     step : float
         Share by which each requirement and limit is moved.
+    limits : PriceLimits
     """
 
-    def __init__(self, instance: Instance, front: ParetoFront, step: float) -> None:
-        self.instance, self.step = instance, step
+    def __init__(self, instance: Instance, front: ParetoFront, step: float, limits: PriceLimits = PRICES) -> None:
+        self.instance, self.step, self.limits = instance, step, limits
         chosen = dict(front.frame.objectives)
         self.m = len(chosen)
         self.form = Formulation(instance, with_ties(instance.model, chosen), self.m)
@@ -59,7 +58,7 @@ class Resolver:
         self.positions = requirement_positions(self.form)
         self.known = np.unique([instance.combinations.number(d) for d in front.designs])
         # All that is moved by the step, then all by a fine step.
-        self.moves = [*self._moves(step), *self._moves(FINE * step)]
+        self.moves = [*self._moves(step), *self._moves(limits.fine * step)]
         self.count = len(self.moves) // 2
         names = list(self.positions)
         self.requirements = np.array([[m.instance.requirements[n] for n in names] for m in self.moves])
@@ -116,7 +115,7 @@ class Resolver:
     def others(self, own: int) -> np.ndarray:
         """Return the combinations that are tried beside that of a design."""
         total = self.instance.combinations.count
-        if total <= ALL:
+        if total <= self.limits.all:
             tried = np.arange(total, dtype=np.int64)
         else:
             tried = np.concatenate([self.instance.combinations.neighbours(own), self.known])
@@ -153,7 +152,7 @@ class Resolver:
                 data[position] = column
         shifts = self._shifts(moves, start, data)
         tasks = held(form, np.tile(phi, (count, 1)), self.m, k, shifts)
-        possible = np.ones(count, dtype=bool)
+        possible, missed = np.ones(count, dtype=bool), form.tuning.nlp.missed
         if form.n:
             low, high = self._ends(moves)
             possible = np.all(low <= high, axis=1)
@@ -165,9 +164,9 @@ class Resolver:
             reached = form.phi_of(signed)
             over = np.max(np.where(np.isfinite(tasks.caps), reached - tasks.caps, 0.0), axis=1, initial=0.0)
             none = np.zeros((count, len(form.cuts)))
-            found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= MISSED)
+            found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= missed)
         broken = self._broken(found.variables, moves, data)
-        kept = (found.violation <= MISSED) & np.isfinite(found.phi[:, k]) & (broken < 0) & possible
+        kept = (found.violation <= missed) & np.isfinite(found.phi[:, k]) & (broken < 0) & possible
         kept[kept] &= self._allowed(combinations[kept], moves[kept])
         return found, kept, broken
 

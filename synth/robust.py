@@ -24,13 +24,12 @@ from synth.request import Request
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.scatter import check_rows
 from synth.search_settings import Progress, SearchSettings, check_progress
+from synth.tuning import RobustLimits, Tuning
 from synth.uncertainty import LIMITS, Uncertainty, read_block
 
 if TYPE_CHECKING:
     import pandas as pd
 
-SEARCHES = 5  # at most so many, each with more points at which limits are posed
-SCENARIOS = 4  # new points per limit
 SHORTEST, GRACE = 1e-3, 2.0  # seconds
 NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
 
@@ -184,6 +183,11 @@ class Asks(Protocol):
         """The model with its requirements and restrictions."""
         ...
 
+    @property
+    def tuning(self) -> Tuning:
+        """What its search goes by."""
+        ...
+
     def within(self, seconds: float | None) -> Asks:
         """Return the same with another time limit; None: without any."""
         ...
@@ -231,10 +235,10 @@ def robust_front(
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         more = len(question.instance.model.limits) - len(rater.model.limits)
-        return _Answer(asked, front, ratings, front.interrupted or stopped, more)
+        return _Answer(asked, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
 
     got, searches = ask(rater.asked, known, first), 1
-    while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < SEARCHES:
+    while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
         try:
             better = ask(got.asked.with_scenarios(got.scenarios()), got.front.designs)
         except KeyboardInterrupt:
@@ -255,6 +259,7 @@ class _Answer:
     ratings: list[dict[str, Any]]
     stopped: str
     posed: int  # limits beside those of the problem
+    limits: RobustLimits
 
     @property
     def failing(self) -> list[int]:
@@ -274,7 +279,7 @@ class _Answer:
                 if not limit["holds"]:
                     worst = math.inf if limit["residual"] is None else limit["residual"]
                     found.setdefault(name, []).append((worst, tuple(limit["position"])))
-        few = {name: sorted(points, key=lambda x: -x[0])[:SCENARIOS] for name, points in found.items()}
+        few = {name: sorted(points, key=lambda x: -x[0])[: self.limits.scenarios] for name, points in found.items()}
         return {name: [point for _, point in points] for name, points in few.items()}
 
     def told(self, searches: int) -> ParetoFront:

@@ -43,6 +43,7 @@ from synth.seeker import Seeker
 from synth.settle import polish_extremes, settle_ties, settle_variables, solve_everywhere
 from synth.steps import cover_by_steps, prove_by_steps
 from synth.tuning import TUNING, TreeLimits, Tuning
+from synth.uncertainty import Uncertainty
 
 
 def synthesize(
@@ -120,8 +121,12 @@ def synthesize(
     return find_front(request, settings.since(begun), progress)
 
 
-def find_front(request: Request, settings: SearchSettings, progress: Progress | None = None) -> ParetoFront:
+def find_front(
+    request: Request, settings: SearchSettings, progress: Progress | None = None, tuning: Tuning = TUNING
+) -> ParetoFront:
     """Find the ranked Pareto designs for a request; where something scatters, those that stand it, or all rated.
+
+    ``tuning``: what its searches go by.
 
     Raises
     ------
@@ -130,11 +135,15 @@ def find_front(request: Request, settings: SearchSettings, progress: Progress | 
     """
     begun = time.monotonic()
     if request.robust is None:
-        question = pose(request, settings)
+        question = pose(request, settings, tuning=tuning)
         return question.within(settings.since(begun).time_limit).answer(progress)
     rater = Rater(request, request.robust)
     left = settings.since(begun).time_limit
-    return robust_front(lambda wanted: pose(replace(request, robust=wanted), settings), rater, progress, left)
+
+    def posed_for(wanted: Uncertainty) -> Question:
+        return pose(replace(request, robust=wanted), settings, tuning=tuning)
+
+    return robust_front(posed_for, rater, progress, left)
 
 
 @dataclass(frozen=True, kw_only=True)

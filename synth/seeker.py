@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth.batch_nlp import MISSED, Solutions, Tasks
+from synth.batch_nlp import Solutions, Tasks
 from synth.clock import Clock
 from synth.formulation import Boxes, Candidate, Formulation, rows_of
 from synth.margins import below
@@ -329,7 +329,7 @@ class Seeker:
         if not form.gridded.any():
             return self.offer(found.variables, combinations)
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
-        good = np.flatnonzero((found.violation <= MISSED) & np.all(np.isfinite(phi), axis=1))
+        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
         cell = form.cell_of(combinations[good])
         space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]

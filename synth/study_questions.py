@@ -20,6 +20,7 @@ from synth.results import Design
 from synth.scatter import check_rows
 from synth.search import Question, pose
 from synth.search_settings import SearchSettings
+from synth.tuning import TUNING, Tuning
 from synth.uncertainty import RATE, Uncertainty, name_in_block, read_remaining
 from synth.user_limits import SENSES
 from synth.vary import Value, Varied, read_vary
@@ -111,6 +112,7 @@ class Steps:
         How every step is searched; the time limit is that of the whole study.
     vary : mapping
         What does not.
+    tuning : Tuning
 
     Raises
     ------
@@ -118,8 +120,8 @@ class Steps:
         For whatever is wrong at any step, before anything is searched.
     """
 
-    def __init__(self, request: Request, settings: SearchSettings, vary: Any) -> None:
-        self.request, self.settings = request, settings
+    def __init__(self, request: Request, settings: SearchSettings, vary: Any, tuning: Tuning = TUNING) -> None:
+        self.request, self.settings, self.tuning = request, settings, tuning
         d = _declared(request)
         keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
         given = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
@@ -193,7 +195,7 @@ class Steps:
         key = asked.problem, repr((asked.robust, asked.limits))
         if key not in self._with_limits:
             self._with_limits[key] = posed(asked.problem, asked.robust, asked.limits)
-        return pose(asked, settings.within(None), self._with_limits[key])
+        return pose(asked, settings.within(None), self._with_limits[key], self.tuning)
 
     def stated(self, values: Sequence[Value]) -> str:
         """Return the values of a step for people."""

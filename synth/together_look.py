@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.batch_nlp import MISSED, Tasks
+from synth.batch_nlp import Tasks
 from synth.clock import Clock
 from synth.cover import cover
 from synth.formulation import Boxes
@@ -146,7 +146,7 @@ class Lookout:
         found = form.solve_many(tasks, combinations, start, low, high)
         form.learn(tasks, found, np.ones(len(combinations)))
         better = found.phi[:, k] < purpose.needed()[questions]
-        good = np.flatnonzero((found.violation <= MISSED) & better)
+        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & better)
         order = good[np.lexsort((found.phi[good, k], questions[good]))]
         question = questions[order]
         best = order[np.arange(len(order)) - np.searchsorted(question, question) < self.limits.rounded_off]

@@ -36,6 +36,7 @@ from synth.front_record import changed
 from synth.inputs import inputs_of_design
 from synth.instance import Instance
 from synth.problem import DesignProblem
+from synth.proof_limits import PROOF, ProofLimits
 from synth.prooftree import NO_SCALE, Outcome, Point, ProofTree, void_without
 from synth.question import asked_again, problem_of
 from synth.special import expanded
@@ -47,8 +48,6 @@ if TYPE_CHECKING:
 
 SAME = 1e-9  # relative; numbers that agree so far are the same
 NOISE = 1e-15  # absolute; below it nothing is compared
-WIDEST_GAP = 0.5
-NARROWINGS = 3
 
 
 def verify(
@@ -94,9 +93,9 @@ def verify(
     )
 
 
-def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float) -> Check:
+def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float, limits: ProofLimits = PROOF) -> Check:
     """Return the check of a front, done; see ``verify``."""
-    check = Check(front, deadline)
+    check = Check(front, deadline, limits)
     if not check.read():
         return check
     if front.question is not None and problem is None and catalogs is None:
@@ -139,8 +138,8 @@ class _Reading:
 class Check:
     """One verification in progress."""
 
-    def __init__(self, front: ParetoFront, deadline: float) -> None:
-        self.front, self.deadline = front, deadline
+    def __init__(self, front: ParetoFront, deadline: float, limits: ProofLimits = PROOF) -> None:
+        self.front, self.deadline, self.limits = front, deadline, limits
         self.readable = True
         self.findings: list[str] = []
         self.open: list[str] = []
@@ -445,7 +444,7 @@ class Check:
         self.signed = np.stack([values[name] for name in self.front.frame.objectives], axis=1) * self.senses
         if not self._measured(resolution, gap):
             return
-        self.tree = ProofTree(self.instance, self.front.frame.objectives)
+        self.tree = ProofTree(self.instance, self.front.frame.objectives, self.limits)
         outcome = self._prove(self._thresholds(gap))
         self._judge(outcome, f"no design improves one listed by more than {percent(gap)}", "feasible")
 
@@ -454,7 +453,7 @@ class Check:
     def claim(self) -> None:
         """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
         front = self.front
-        self.tree = ProofTree(self.instance, front.frame.objectives)
+        self.tree = ProofTree(self.instance, front.frame.objectives, self.limits)
         if not front.designs:
             everywhere = np.full((1, len(self.senses)), math.inf)
             self._judge(self._prove(everywhere), "no design is feasible", "feasible")
@@ -524,13 +523,13 @@ class Check:
             if outcome.witness is not None:
                 refuted = max(refuted, self._improvement(outcome.witness)[0])
             gap = 2 * refuted
-            if gap > WIDEST_GAP or time.monotonic() > self.deadline:
+            if gap > self.limits.widest_gap or time.monotonic() > self.deadline:
                 return None, decisive
             outcome = self._prove(self._thresholds(gap))
             if outcome.closed:
                 break
             decisive, refuted = (outcome if decisive.witness is None else decisive), max(refuted, gap)
-        for _ in range(NARROWINGS):
+        for _ in range(self.limits.narrowings):
             between = math.sqrt(refuted * gap)
             outcome = self._prove(self._thresholds(between))
             if outcome.closed:

@@ -29,6 +29,7 @@ from synth.study import Break, Step, Study
 from synth.study_questions import Steps
 from synth.study_store import FORMAT, RECORD, StudyStore
 from synth.together_fronts import joint_answers, joint_groups
+from synth.tuning import TUNING, Tuning
 from synth.uncertainty import read_block
 
 INTERRUPTED = "interrupted"
@@ -107,15 +108,18 @@ def study_of(
     progress: Progress | None = None,
     breaks: bool = True,
     folder: Path | None = None,
+    tuning: Tuning = TUNING,
 ) -> Study:
     """Answer a request at many values of what is varied; the arguments are those of :func:`whatif`.
+
+    ``tuning``: what its searches go by.
 
     Raises
     ------
     InputError
         For everything that is wrong at any step, before the first is searched.
     """
-    steps = Steps(request, settings, vary)
+    steps = Steps(request, settings, vary, tuning)
     with nullcontext() if folder is None else claimed(folder):
         return _Run(steps, progress, settings.time_limit, folder).study(breaks)
 

@@ -7,8 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import synth
+from synth import search
+from synth.request import Request
+from synth.search_settings import SearchSettings
+from synth.spec_keys import SEARCHED
 from synth.tuning import TUNING, Tuning
-from tests.asking import pose
 
 
 def tuned(**changes: Mapping[str, Any]) -> Tuning:
@@ -16,6 +19,11 @@ def tuned(**changes: Mapping[str, Any]) -> Tuning:
     return replace(TUNING, **{name: replace(getattr(TUNING, name), **own) for name, own in changes.items()})
 
 
-def synthesize(tuning: Tuning, *question: Any, progress: Any = None, **more: Any) -> synth.ParetoFront:
+def synthesize(
+    tuning: Tuning, p: Any, requirements: Mapping[str, Any], objectives: Any = None, points: int = 30,
+    catalogs: Any = None, robust: Any = None, progress: Any = None, **more: Any,
+) -> synth.ParetoFront:  # fmt: skip
     """Do what ``synth.synthesize`` does, with these numbers."""
-    return pose(*question, **more, tuning=tuning).answer(progress)
+    how = {name: more.pop(name) for name in SEARCHED if name in more}
+    request = Request.of(p, requirements, catalogs, robust, objectives=objectives, **more)
+    return search.find_front(request, SearchSettings(points=points, **how), progress, tuning)

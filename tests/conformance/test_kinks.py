@@ -11,10 +11,11 @@ import pytest
 
 import synth
 from synth.analysis import chosen_objectives, with_ties
-from synth.batch_nlp import MISSED, Tasks
+from synth.batch_nlp import Tasks
 from synth.formulation import Formulation
 from synth.instance import as_catalogs
 from synth.nlp import Task
+from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, Case, answer
 from tests.regimes import best_in_any_regime, referee
@@ -98,7 +99,7 @@ class Question:
         wide = [np.tile(x, (STARTS, 1)) for x in (task.weights, task.slopes, task.caps)]
         tasks = Tasks(wide[0], wide[1], wide[2], task.goal_scales, task.t_weight)
         found = self.form.solve_many(tasks, self.own, self.starts)
-        called = np.flatnonzero(found.converged & (found.violation <= MISSED))
+        called = np.flatnonzero(found.converged & (found.violation <= TUNING.nlp.missed))
         return [(self.cost_of(task, x), x) for x in found.variables[called]]
 
     def referee(self, task: Task, starts: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:

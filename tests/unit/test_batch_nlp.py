@@ -21,6 +21,7 @@ from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Task
 from synth.nlp_rows import GUARD_MARGIN, Rows
 from synth.program import Program
+from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 from tests.asking import instance_of
 
 HAS_COMPILER = shutil.which("cc") is not None
@@ -63,6 +64,7 @@ class Small:
         logs: bool = True,
         guards: tuple[int, ...] = (),
         code: Code = "arrays",
+        settings: NlpSettings = TUNING.nlp,
     ) -> None:
         x, d = [ca.SX.sym(f"x{k}") for k in range(n)], [ca.SX.sym(f"d{k}") for k in range(n_data)]
         limits, goals = write(x, d)
@@ -82,7 +84,7 @@ class Small:
             log_goals=(logs,) * len(goals),
             log_variables=(logs,) * n,
         )
-        self.solver = BatchNlp(self.program, n, self.rows, code)
+        self.solver = BatchNlp(self.program, n, self.rows, code, settings=settings)
         assert self.solver.compiled == (code != "arrays")
 
     def solve(
@@ -117,6 +119,17 @@ def box(x: Sequence[Any], d: Sequence[Any]) -> tuple[list[Row], list[Any]]:
     """Sides of a box of least surface around a volume, not higher than a limit."""
     volume, surface = x[0] * x[1] * x[2], 2 * (x[0] * x[1] + x[1] * x[2] + x[2] * x[0])
     return [("at_least", volume, d[0]), ("at_most", x[2], d[1])], [surface, x[2]]
+
+
+@EVERY
+def test_the_method_has_the_numbers_that_it_is_given(code):
+    converged = {}
+    for most in (4, TUNING.nlp.method.max_evaluations):
+        method = InteriorPointSettings(max_evaluations=most)
+        small = Small(3, 2, box, code=code, settings=NlpSettings(method=method, other_starts=()))
+        found = small.solve([4.0, 50.0], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), caps=(np.inf, np.inf))
+        converged[most] = bool(found.converged[0])
+    assert list(converged.values()) == [False, True]
 
 
 @EVERY
@@ -571,7 +584,7 @@ def small_functions() -> Any:
 def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     functions = small_functions()
-    assert native.native(functions) is not None
+    assert native.native(functions, TUNING.nlp.method) is not None
     (kept,) = (tmp_path / "clutchsynth").iterdir()
     assert kept.suffix == ".so"
     written = kept.stat().st_mtime_ns
@@ -580,7 +593,7 @@ def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
         raise AssertionError("compiled again")
 
     monkeypatch.setattr(subprocess, "run", fail)
-    assert native.native(functions) is not None
+    assert native.native(functions, TUNING.nlp.method) is not None
     assert kept.stat().st_mtime_ns == written
 
 
@@ -608,9 +621,9 @@ def test_what_is_too_large_for_general_code_is_solved_over_arrays():
 def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    assert native.native(small_functions()) is None
+    assert native.native(small_functions(), TUNING.nlp.method) is None
     assert not list(tmp_path.iterdir())
-    assert native_general.general(small_functions()) is None
+    assert native_general.general(small_functions(), TUNING.nlp.method) is None
     for code in ("general", "own"):
         solver = BatchNlp((s := Small(3, 2, box)).program, 3, s.rows, code)
         assert not solver.compiled
@@ -619,7 +632,7 @@ def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
     (tmp_path / "clutchsynth").write_text("a file in the way")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert native.native(small_functions()) is None
+    assert native.native(small_functions(), TUNING.nlp.method) is None
 
 
 def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
@@ -628,5 +641,5 @@ def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
     broken.chmod(0o755)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(native, "_compiler", lambda: (str(broken), "broken"))
-    assert native.native(small_functions()) is None
+    assert native.native(small_functions(), TUNING.nlp.method) is None
     assert not list((tmp_path / "clutchsynth").iterdir())

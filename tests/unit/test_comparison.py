@@ -13,9 +13,12 @@ from synth import DesignProblem
 from synth.comparing import compare
 from synth.results import Status
 from synth.search import FrontSearch
+from synth.search_settings import SearchSettings
 from synth.sheet import applicants, common_objectives, sheet_of
 from synth.tables import Catalogs
+from synth.tuning import TUNING
 from synth.units import format_quantity
+from tests.tuned import tuned
 from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 
 METALS = pd.DataFrame(
@@ -439,9 +442,14 @@ class OtherBrake(Brake):
 WIDE = {"speed": "+-30 %", "samples": 512}
 
 
-def brakes(**more):
-    settings = {"fix": {"force": "3 kN"}, "limits": {"size": ">= 200 mm"}, "points": 3, "robust": WIDE, **more}
-    return compare([Brake, OtherBrake], NEEDED, {"size": "min", "worth": "min"}, catalogs=CATALOGS, **settings)
+def brakes(limits=None, tuning=TUNING):
+    limits = {"size": ">= 200 mm"} if limits is None else limits
+    sheet = sheet_of(requirements=NEEDED, limits=limits, fix={"force": "3 kN"}, robust=WIDE)
+    tables = Catalogs(CATALOGS)
+    found = applicants([Brake, OtherBrake], sheet, tables)
+    ranked = {"objectives": common_objectives(found, {"size": "min", "worth": "min"}), "weights": None, "grid": True}
+    settings = SearchSettings(points=3)
+    return synth.comparing._Comparing(found, sheet, ranked, tables, settings, None, tuning).run(None)
 
 
 def test_limits_that_fail_between_corners_are_posed_for_every_family():
@@ -452,12 +460,13 @@ def test_limits_that_fail_between_corners_are_posed_for_every_family():
     assert min(d.values["size"] for d in found.designs) == pytest.approx(2 * 0.11 / 0.7, rel=1e-6)
 
 
-def test_nothing_is_proven_of_all_where_designs_were_taken_off(monkeypatch):
-    monkeypatch.setattr(synth.robust, "SEARCHES", 1)
-    found = brakes()
+def test_nothing_is_proven_of_all_where_designs_were_taken_off():
+    one_search = tuned(robust={"searches": 1})
+    found = brakes(tuning=one_search)
+    assert all(x.front.statistics["robust"]["searches"] == 1 for x in found.outcomes)
     assert any(x.front.statistics["robust"]["taken_off"] for x in found.outcomes)
     assert found.certificate.kind == "heuristic"
-    none = brakes(limits={"size": "200 mm .. 250 mm"})
+    none = brakes({"size": "200 mm .. 250 mm"}, one_search)
     assert none.designs == []
     assert none.certificate.kind == "heuristic"
     assert {x.sentence for x in none.outcomes} == {"no design was found that keeps its limits over the whole range"}

@@ -20,7 +20,7 @@ from synth.intervals import BACKWARD, FORWARD, Cut, Goal
 from synth.margins import above
 from synth.program import OP_SELECT, Program
 from synth.special import TABLE, recorded
-from synth.tuning import TUNING
+from synth.tuning import TUNING, CodeSizes
 from tests.asking import instance_of
 from tests.tuned import tuned
 
@@ -120,7 +120,7 @@ class Case:
         alive &= ~np.any(low > above(high, *TUNING.tolerances.margins), axis=1)
         return alive, low, np.maximum(low, high), goals, opens
 
-    def compiled(self, code, capped, passes, workers=1):
+    def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes()):  # noqa: B008 - it is frozen
         unbounded = np.full(self.n, np.inf)
         question = native_boxes.Question(
             self.tables,
@@ -134,6 +134,7 @@ class Case:
             self.spreads,
             [np.empty(0)] * self.n,
             TUNING.tolerances.margins,
+            sizes,
         )
         prepared = native_boxes.Prepared(self.contractor, question)
         return loaded(code).contract(
@@ -314,13 +315,13 @@ def test_random_programs_agree(seed, passes, capped):
     random_case(seed, SMOOTH).agree(capped, passes, 1e-12, 1e-12)
 
 
-def test_the_result_is_the_same_for_any_number_of_threads(monkeypatch):
-    monkeypatch.setattr(native_boxes, "PART", 5)
+def test_the_result_is_the_same_for_any_number_of_threads():
+    small = CodeSizes(part=5)
     case = random_case(11, ARITHMETIC, boxes=83)
     code = case.contractor.code(case.root, False)
     alone = case.compiled(code, False, 2)
     for workers in (2, 3, 8):
-        shared = case.compiled(code, False, 2, workers)
+        shared = case.compiled(code, False, 2, workers, small)
         for name in ("alive", "cell", "low", "high", "bounds", "scores", "tag"):
             np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name))
 

@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from synth import native, native_tree
+from synth import native
 from synth.formulation import Archive, Boxes
 from synth.purposes import Cover, Staircase
-from synth.tuning import TUNING
+from synth.tuning import TUNING, CodeSizes
 from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
 
@@ -17,7 +17,13 @@ TIE = TUNING.tolerances.tie
 HERE = native.cache_folder() is not None and native._compiler() is not None
 pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
 
-AT_ONCE = tuned(compiling={"boxes": 0})  # code is compiled from the first box on
+
+def at_once(sizes=None):
+    """Return numbers with which code is compiled from the first box on."""
+    return tuned(compiling={"boxes": 0, "sizes": sizes or CodeSizes()})
+
+
+AT_ONCE = at_once()
 SLACK = np.array([0.02, 0.05])
 KINDS = ("front", "front with a cap", "one objective", "staircase")
 
@@ -116,12 +122,11 @@ def lost(boxes, points, combinations, form):
     return ~held
 
 
-@pytest.mark.parametrize("room", [native_tree.LEAST_ROOM, 40])
+@pytest.mark.parametrize("room", [CodeSizes().tree_beside, 40])
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room, monkeypatch):
-    monkeypatch.setattr(native_tree, "LEAST_ROOM", room)
-    monkeypatch.setattr(native_tree, "ROOM", 4 if room > 40 else 1)
-    form, rng = strut_form(tuning=AT_ONCE), np.random.default_rng(3)
+def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room):
+    sizes = CodeSizes(tree_beside=room, tree_room=4 if room > 40 else 1)
+    form, rng = strut_form(tuning=at_once(sizes)), np.random.default_rng(3)
     purpose = purpose_of(kind, form, rng)
     boxes = after(form, purpose, 4)
     grown = form.grow(boxes, purpose.tables(form), 6)
@@ -132,12 +137,11 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     assert len(points) > 20
     assert not lost(boxes, points, combinations, form).any()
     assert not lost(Boxes.joined([grown.halves, grown.small]), points, combinations, form).any()
-    assert len(grown.halves) + len(grown.small) <= len(boxes) * native_tree.ROOM + room
+    assert len(grown.halves) + len(grown.small) <= len(boxes) * sizes.tree_room + room
 
 
-def test_threads_change_nothing(monkeypatch):
-    monkeypatch.setattr(native_tree, "PART", 16)
-    form = strut_form(tuning=AT_ONCE)
+def test_threads_change_nothing():
+    form = strut_form(tuning=at_once(CodeSizes(tree_part=16)))
     purpose = purpose_of("front", form, np.random.default_rng(5))
     boxes = after(form, purpose, 9)
     assert len(boxes) > 64

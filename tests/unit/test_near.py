@@ -9,6 +9,8 @@ import pytest
 import synth
 from synth import near
 from synth.near import near_equals
+from synth.search_settings import SearchSettings
+from synth.study_limits import NearLimits
 
 METALS = pd.DataFrame(
     {
@@ -167,11 +169,12 @@ def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
     assert found.found == len(members) - 1
 
 
-def test_an_enumeration_that_is_cut_short_says_at_least(front, monkeypatch):
-    monkeypatch.setattr(near, "MOST", 3)
-    monkeypatch.setattr(near, "BATCH", 4)
-    found = near_equals(front, 8, "30 %", 2)
+def test_an_enumeration_that_is_cut_short_says_at_least(front):
+    chosen = next(d for d in front.designs if d.rank == 8)
+    few = NearLimits(most=3, batch=4)
+    found = near._Enumeration(front.question, chosen, front, 0.3, SearchSettings(), None, few).run(2)
     assert not found.complete
+    assert found.found < near_equals(front, 8, "30 %", 2).found
     assert found.undecided is None
     assert "at least" in found.sentence()
 

@@ -14,14 +14,15 @@ import yaml
 
 import synth
 from synth import formulation
-from synth.batch_nlp import MISSED, BatchNlp, Code, Solutions, Tasks
+from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.feasibility import residual
-from synth.formulation import EDGE, Formulation
+from synth.formulation import Formulation
 from synth.intervals import Cut, Goal
 from synth.nlp import ParametricNlp, Task
 from synth.nlp_rows import Rows
 from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.program import Program
+from synth.tuning import TUNING
 from tests.regimes import best_in_any_regime, referee
 
 ROOT = Path(__file__).parents[2]
@@ -63,7 +64,7 @@ class Kinked:
         moving, nodes = self.program.dependence(range(n)), self.program.nodes
         edges = [nodes[k] for k in kinks if nodes[k].op in (ca.OP_FMAX, ca.OP_FMIN)]
         edged = any(moving[list(node.args)].all() for node in edges)
-        first = BatchNlp(self.program, n, self.rows, code, EDGE if edged else 0.0)
+        first = BatchNlp(self.program, n, self.rows, code, TUNING.nlp.edge if edged else 0.0)
         self.solver = KinkedNlp(first, PiecedNlp(self.pieces, code))
         self.referee = ParametricNlp(self.program, n, self.rows)
         self._sides = self.program.compile()
@@ -219,7 +220,7 @@ def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(ki
             found = problem.solve(start)
             cost, worst = problem.judged(found.variables)
             # What is called an optimum keeps the limits as they were written ...
-            assert np.all(worst[found.converged & (found.violation <= MISSED)] <= 1e-7)
+            assert np.all(worst[found.converged & (found.violation <= TUNING.nlp.missed)] <= 1e-7)
             holds = found.converged & (worst <= 1e-7)
             np.testing.assert_allclose(found.phi[holds, 0], cost[holds], atol=1e-7)
             # ... and in none of the regimes around it there is a better one.

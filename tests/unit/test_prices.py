@@ -10,7 +10,10 @@ import pytest
 from scipy.optimize import minimize
 
 import synth
-from synth import pricing, resolve
+from synth import pricing
+from synth.price_list import Store
+from synth.search_settings import SearchSettings
+from synth.study_limits import PriceLimits
 from tests.unit.strut import RODS, Strut
 from tests.unit.test_elasticity import Followed, Hung
 
@@ -371,12 +374,13 @@ def test_a_question_without_sizes():
 # -- many combinations, interruptions, files -----------------------------------------------------------
 
 
-def test_of_many_combinations_some_are_tried_and_it_is_said(monkeypatch):
-    monkeypatch.setattr(resolve, "ALL", 1)
-    monkeypatch.setattr(pricing, "ALL", 1)
-    monkeypatch.setattr(pricing, "PARENTS", 1)
-    metals = ("weak", "strong", "heavy")
-    price = synth.prices(rod(0.997 * EVEN / 1e3, metals)).of(1, "mass", "load")
+def test_of_many_combinations_some_are_tried_and_it_is_said():
+    front = rod(0.997 * EVEN / 1e3, ("weak", "strong", "heavy"))
+    few = PriceLimits(all=1, parents=1)
+    found = pricing._Pricing(front.question, front, 0.01, SearchSettings(), None, few).run(
+        front.designs[:1], Store.of(None, "")
+    )
+    price = found.of(1, "mass", "load")
     assert price.compared == "over the 3 combinations tried, of 3"
     assert "weak -> strong" in price.sentence
 

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 import synth
-from synth import prooftree
 from synth.instance import as_catalogs
+from synth.proof_limits import PROOF, ProofLimits
 from synth.prooftree import Clusters, Point, ProofTree
 from synth.tables import Catalogs
 from tests.asking import instance_of
@@ -92,9 +92,11 @@ def holding(tree, boxes, point):
     return found
 
 
-def is_kept(tree, point, signed, monkeypatch, rounds):
+ONE_SPLIT = ProofLimits(few=1)  # each box is split once at a time, however few there are
+
+
+def is_kept(tree, point, signed, rounds):
     """Tell whether a feasible design stays in some box, round by round, where it lies just inside of the region."""
-    monkeypatch.setattr(prooftree, "FEW", 1)
     ends = (signed + 1e-6 * np.maximum(np.abs(signed), 1e-3))[None]
     with np.errstate(all="ignore"):
         levels = np.where(tree.positive, np.log(ends), ends)
@@ -110,7 +112,9 @@ def is_kept(tree, point, signed, monkeypatch, rounds):
             widths = tree._widths(boxes, regions)
             if not np.any(widths > 0):
                 break
-            boxes = tree._split(boxes, scores, widths, regions)
+            halves = tree._split(boxes, scores, widths, regions)
+            assert len(halves) <= 2 * len(boxes)
+            boxes = halves
     return True
 
 
@@ -124,7 +128,7 @@ def sample(instance, variables, combinations):
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_no_feasible_design_of_a_random_problem_is_lost(seed, monkeypatch):
+def test_no_feasible_design_of_a_random_problem_is_lost(seed):
     problem = Anything(seed)
     instance = instance_of(problem, {}, THINGS_CATALOG)
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values()}
@@ -135,15 +139,15 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed, monkeypatch):
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
     good = np.flatnonzero(feasible & np.isfinite(signed).all(axis=1))
-    tree = ProofTree(instance, senses)
+    tree = ProofTree(instance, senses, ONE_SPLIT)
     assert not (tree.empty and len(good))
     for k in good[np.argsort(signed[good].sum(axis=1))][:8]:
         point = Point(x[k], [float(column[k]) for column in data], {})
-        assert is_kept(tree, point, signed[k], monkeypatch, 9), k
+        assert is_kept(tree, point, signed[k], 9), k
 
 
 @pytest.mark.parametrize("family", CASES)
-def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
+def test_no_feasible_design_of_a_family_is_lost(family):
     case = CASES[family]
     instance = instance_of(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
     rng = np.random.default_rng(1)
@@ -159,14 +163,14 @@ def test_no_feasible_design_of_a_family_is_lost(family, monkeypatch):
         result = instance.model.evaluate(x, data)
         values, feasible = result.values, result.feasible
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values() if o.default}
-    tree = ProofTree(instance, senses)
+    tree = ProofTree(instance, senses, ONE_SPLIT)
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
     good = np.flatnonzero(feasible)
     assert len(good) > 20
     for k in [*good[np.argsort(signed[good, 0])][:6], *good[np.argsort(signed[good, 1])][:6]]:
         point = Point(x[k], [float(column[k]) for column in data], {})
-        assert is_kept(tree, point, signed[k], monkeypatch, 25), k
+        assert is_kept(tree, point, signed[k], 25), k
 
 
 BORDERS = {
@@ -178,7 +182,7 @@ BORDERS = {
 
 
 @pytest.mark.parametrize("border", BORDERS)
-def test_no_design_is_lost_where_a_function_ends_within_a_box(border, monkeypatch):
+def test_no_design_is_lost_where_a_function_ends_within_a_box(border):
     class Border(synth.DesignProblem):
         name = "border"
 
@@ -188,14 +192,14 @@ def test_no_design_is_lost_where_a_function_ends_within_a_box(border, monkeypatc
             d.derive("total", "-", x + y)
             d.objective("total")
 
-    instance, tree = tree_of(Border(), {"total": "min"})
+    instance, tree = tree_of(Border(), {"total": "min"}, proof=ONE_SPLIT)
     x = 1 + 9 * np.random.default_rng(0).random((3000, 2))
     data, values, feasible = sample(instance, x, np.zeros(len(x), dtype=int))
     signed = values["total"][:, None]
     good = np.flatnonzero(feasible)
     assert len(good) > 20
     for k in good[np.argsort(signed[good, 0])][:12]:
-        assert is_kept(tree, Point(x[k], [float(column[k]) for column in data], {}), signed[k], monkeypatch, 9), k
+        assert is_kept(tree, Point(x[k], [float(column[k]) for column in data], {}), signed[k], 9), k
 
 
 # -- what is proven and refuted ----------------------------------------------------------------------
@@ -217,9 +221,9 @@ class Box(synth.DesignProblem):
         d.objective("difference", default=False)
 
 
-def tree_of(problem, objectives, requirements=None, catalogs=None, **more):
+def tree_of(problem, objectives, requirements=None, catalogs=None, proof=PROOF, **more):
     instance = instance_of(problem, requirements or {}, as_catalogs(catalogs), **more)
-    return instance, ProofTree(instance, objectives)
+    return instance, ProofTree(instance, objectives, proof)
 
 
 def confirmed(instance, names, ends, found):
@@ -253,7 +257,8 @@ def test_a_proof_that_is_given_up_is_not_closed():
     _, tree = tree_of(Box(), {"total": "min"})
     ends = np.array([[2 * math.sqrt(2) * (1 - 1e-5)]])
     assert not tree.prove(ends, lambda point: False, deadline=0.0).closed
-    assert not tree.prove(ends, lambda point: False, most_nodes=0).closed
+    _, tree = tree_of(Box(), {"total": "min"}, proof=ProofLimits(most_nodes=0))
+    assert not tree.prove(ends, lambda point: False).closed
 
 
 def test_only_objectives_that_are_surely_positive_count_by_logarithm():

@@ -9,17 +9,22 @@ import synth.question
 import synth.robust
 from synth.instance import as_catalogs
 from synth.posed import RobustProblem, posed
+from synth.tuning import TUNING
 from synth.uncertainty import read_block
 from tests.asking import rater_of
+from tests.tuned import synthesize, tuned
 from tests.unit.shaft_brake import CATALOGS, FACE, NEEDED, PAIRS, ShaftBrake
 
 RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "tolerance": {"radius": "+-1 mm"}}
 DUTY = {**NEEDED, "torque_limit": "400 N*m"}
 
 
-def synthesized(robust=None, requirements=DUTY, problem=ShaftBrake, **settings):
+ONE_SEARCH = tuned(robust={"searches": 1})
+
+
+def synthesized(robust=None, requirements=DUTY, problem=ShaftBrake, tuning=TUNING, **settings):
     settings = {"points": 4, "catalogs": CATALOGS, **settings}
-    return synth.synthesize(problem(), requirements, robust=robust, **settings)
+    return synthesize(tuning, problem(), requirements, robust=robust, **settings)
 
 
 def worst(design, block, count=4000, limits=None):
@@ -113,15 +118,16 @@ def test_a_range_that_leaves_nothing_is_told_as_infeasible():
     assert "hum" in [c["limit"].split(" (")[0] for c in front.explanation["conflicts"]]
 
 
-def test_what_still_fails_in_the_last_search_is_taken_off(monkeypatch):
-    monkeypatch.setattr(synth.robust, "SEARCHES", 1)
-    front = synthesized(WIDE, requirements=NEEDED, limits={"size": ">= 200 mm"}, **SIZE)
+def test_what_still_fails_in_the_last_search_is_taken_off():
+    front = synthesized(WIDE, requirements=NEEDED, tuning=ONE_SEARCH, limits={"size": ">= 200 mm"}, **SIZE)
     assert front.designs == []
     assert front.statistics["robust"]["taken_off"] == 1
     assert (front.status.value, front.certificate.kind) == ("not_solved", "heuristic")
+    assert front.statistics["robust"]["searches"] == 1
     front = synthesized(
         WIDE,
         requirements=NEEDED,
+        tuning=ONE_SEARCH,
         limits={"size": ">= 200 mm"},
         points=3,
         fix={"force": "3 kN"},

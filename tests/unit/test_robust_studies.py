@@ -12,10 +12,14 @@ import synth
 import synth.robust
 from synth.breaks import NOT_ROBUST
 from synth.rated import COLUMNS
+from synth.request import Request
 from synth.results import ParetoFront
+from synth.search_settings import SearchSettings
 from synth.study import Study
 from synth.study_questions import Steps
+from synth.what_if import study_of
 from tests.asking import steps_of
+from tests.tuned import tuned
 from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake
 
 RANGES = {"friction": "catalogue range", "torque": "+-10 %", "wear": "new and worn", "tolerance": {"radius": "+-1 mm"}}
@@ -119,9 +123,11 @@ def test_limits_that_fail_between_corners_are_posed_at_all_steps_and_between() -
     assert all(b.proven for b in found.breaks)
 
 
-def test_a_break_between_designs_that_do_not_stand_the_range_is_not_proven(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(synth.robust, "SEARCHES", 1)
-    found = study({"torque": "90, 190 N*m"}, WIDE, NEEDED, breaks=True, **HUMMING)
+def test_a_break_between_designs_that_do_not_stand_the_range_is_not_proven() -> None:
+    asked = {key: given for key, given in HUMMING.items() if key != "points"}
+    request = Request.of(PROBLEM, NEEDED, CATALOGS, WIDE, **asked)
+    one_search = tuned(robust={"searches": 1})
+    found = study_of(request, SearchSettings(points=1), {"torque": "90, 190 N*m"}, tuning=one_search)
     assert found.steps[0].reason == "no design was found that keeps its limits over the whole range"
     assert found.steps[0].front is not None
     assert found.steps[0].front.statistics["robust"]["taken_off"] == 1

@@ -29,7 +29,7 @@ FEW_PLATES = {"plate": ["core 1", "core 2", "core 4"]}
 
 
 def test_nothing_is_shared_with_the_search():
-    own = {"verify", "verification", "contradictions", "prooftree", "enclosure", "tape"}
+    own = {"verify", "verification", "contradictions", "prooftree", "proof_limits", "enclosure", "tape"}
     allowed = own | {
         "errors",
         "feasibility",

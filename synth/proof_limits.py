@@ -1,0 +1,65 @@
+"""How far a saved claim is proven again: the numbers of verification, none of which the search knows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from synth.feasibility import TOLERANCE
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProofLimits:
+    """How far the tree of a proof goes, and what it takes for rounding.
+
+    Parameters
+    ----------
+    most_nodes : int
+        Boxes in all, after which a proof is given up.
+    most_open : int
+        Boxes that may wait at a time: what memory allows.
+    most_stuck : int
+        Boxes that are open but too small to be split, after which it is given up: it would only find more of them.
+    chunk : int
+        Boxes that are looked into at a time: enough for arrays to pay.
+    first : int
+        Boxes to begin with.
+    few : int
+        Below this many boxes are split more than once at a time: a smaller batch costs as much as a larger one.
+    sweeps : int
+        In which the ranges of all inputs are cut to what the limits leave, before anything is split.
+    tries : int
+        Designs in the middle of boxes that are looked at in each round, those that most likely refute the claim.
+    row_tolerance : float
+        Relative. By which a design may miss a limit and still refute a claim: a little more than feasibility allows.
+    guard_tolerance : float
+        The same of a guard, which has no tolerance: for rounding alone.
+    pad : float
+        Relative. By which ends are moved outward that limits have moved inward; rounding is far below.
+    snap : float
+        Relative. How far a makeable value or a row may lie outside and still count as inside.
+    thin : float
+        Relative width below which a variable is not split any more.
+    widest_gap : float
+        The largest gap that is looked for where the one claimed cannot be proven.
+    narrowings : int
+        Of the gap that is found instead.
+    """
+
+    most_nodes: int = 50_000_000
+    most_open: int = 2_000_000
+    most_stuck: int = 64
+    chunk: int = 4096
+    first: int = 1024
+    few: int = 2048
+    sweeps: int = 6
+    tries: int = 4
+    row_tolerance: float = 1.01 * TOLERANCE
+    guard_tolerance: float = 1e-12
+    pad: float = 1e-10
+    snap: float = 1e-9
+    thin: float = 1e-9
+    widest_gap: float = 0.5
+    narrowings: int = 3
+
+
+PROOF = ProofLimits()

@@ -1,0 +1,149 @@
+"""The numbers of what is asked about a front afterwards: how much it tries, and when it gives up.
+
+As in ``synth.tuning`` none of them is part of an answer: with other numbers less is told, or later.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class NearLimits:
+    """How far designs that are nearly as good as a chosen one are enumerated.
+
+    Parameters
+    ----------
+    batch : int
+        Boxes that are looked into at a time.
+    boxes : int
+        That are looked into in all.
+    most : int
+        Combinations that are told apart; more are only said to be more.
+    problems : int
+        Continuous problems that are solved at a time.
+    rounded : int
+        Makeable points around one continuous optimum that are tried.
+    settling_boxes : int
+        Boxes for making one design as good as its parts allow.
+    settling_gap : float
+        The gap of that.
+    """
+
+    batch: int = 2048
+    boxes: int = 2_000_000
+    most: int = 20_000
+    problems: int = 1024
+    rounded: int = 256
+    settling_boxes: int = 20_000
+    settling_gap: float = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class PriceLimits:
+    """How prices are found, and when they count as confirmed.
+
+    Parameters
+    ----------
+    all : int
+        Combinations that are all tried; of more, those that differ in one part and those on the front.
+    fine : float
+        Share of the step: for prices that bend within it.
+    share, room : float
+        By how much a price and a re-solve may differ: a share of the price, and per cent per per cent.
+    parents : int
+        Of the combinations tried, the best, of which again one part is exchanged.
+    reach : float
+        In steps: combinations that are worse by more are not tried again.
+    looser : float
+        In steps: nor those that need limits looser by more.
+    even : float
+        Relative: what is better by more is better without a step.
+    binds : float
+        Multiplier from which a limit binds.
+    """
+
+    all: int = 512
+    fine: float = 0.1
+    share: float = 0.03
+    room: float = 0.003
+    parents: int = 8
+    reach: float = 10.0
+    looser: float = 5.0
+    even: float = 1e-6
+    binds: float = 1e-4
+
+
+@dataclass(frozen=True, kw_only=True)
+class BreakLimits:
+    """How closely is told where the best parts change between two steps.
+
+    Parameters
+    ----------
+    width : float
+        Of a value: a break is known to be within this.
+    finest : float
+        Of the step: how narrow the range of a break at zero gets.
+    gap : float
+        Of the searches that compare parts.
+    same : float
+        Relative: values that differ by less count as equal, so that parts that tie do not change at random. At least
+        twice the gap.
+    most : int
+        Breaks of one objective between two steps.
+    at_once : int
+        Intervals that are looked into together; what is found of them is kept together.
+    parts : int
+        Into which an interval is divided at a time.
+    guesses : int
+        Where a break lies, before its interval is simply halved.
+    seconds : float
+        Of one search.
+    """
+
+    width: float = 1e-3
+    finest: float = 1e-6
+    gap: float = 1e-5
+    same: float = 2e-5
+    most: int = 20
+    at_once: int = 16
+    parts: int = 6
+    guesses: int = 4
+    seconds: float = 60.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class WayOutLimits:
+    """How ways out of a question without a design are looked for.
+
+    Parameters
+    ----------
+    gap : float
+        Of the amount by which something must give way.
+    boxes : int
+        For each way out.
+    nothing : float
+        An amount as small as this is none, as the logarithm of a factor.
+    first : int
+        Limits that are looked at first.
+    flat : float
+        An elasticity as small as this is none.
+    slack : float
+        Relative, of bounds, for rounding.
+    further : int
+        Roundings of an amount that are tried, each further on the side where it does.
+    """
+
+    gap: float = 8e-3
+    boxes: int = 100_000
+    nothing: float = 1e-7
+    first: int = 4
+    flat: float = 1e-12
+    slack: float = 1e-12
+    further: int = 5
+
+
+NEAR = NearLimits()
+PRICES = PriceLimits()
+BREAKS = BreakLimits()
+WAYS_OUT = WayOutLimits()
