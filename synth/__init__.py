@@ -12,26 +12,28 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 
 if TYPE_CHECKING:
-    from synth.analysis import evaluate
-    from synth.comparing import compare
-    from synth.comparison import Comparison, FamilyOutcome
-    from synth.description import describe
-    from synth.explanation import Explanation, Relaxation, explain
-    from synth.hooks import curves, second_opinion, simulate
-    from synth.improvement import improve
-    from synth.jobs.run import BatchResult, batch
-    from synth.loading import load_front
-    from synth.near import NearEquals, near_equals
-    from synth.operating_state import state
-    from synth.price_list import Price, Prices
-    from synth.pricing import prices
-    from synth.problem import DesignProblem, families, load
+    from synth.analysis.describe import describe
+    from synth.analysis.evaluate import evaluate
+    from synth.analysis.hooks import curves, second_opinion, simulate
+    from synth.analysis.operating_state import state
+    from synth.jobs.batch import BatchResult, batch
+    from synth.model.problem import DesignProblem
+    from synth.model.registry import families, load
     from synth.results import Design, ParetoFront
-    from synth.robust import Ratings, rate
-    from synth.search import synthesize
-    from synth.study import Study
-    from synth.variants.run import SizeRange, size_range
-    from synth.what_if import whatif
+    from synth.results.loading import load_front
+    from synth.robust.rate import Ratings, rate
+    from synth.search.improvement import improve
+    from synth.search.synthesize import synthesize
+    from synth.studies.families.compare import compare
+    from synth.studies.families.comparison import Comparison, FamilyOutcome
+    from synth.studies.infeasibility.explain import Explanation, Relaxation, explain
+    from synth.studies.near_optimal import NearEquals, near_equals
+    from synth.studies.prices.price_list import Price, Prices
+    from synth.studies.prices.run import prices
+    from synth.studies.whatif.run import whatif
+    from synth.studies.whatif.study import Study
+    from synth.variants.size_range import SizeRange, size_range
+    from synth.verification.verify import verify
 
 __all__ = [
     "BatchResult",
@@ -67,44 +69,46 @@ __all__ = [
     "size_range",
     "state",
     "synthesize",
+    "verify",
     "whatif",
 ]
 
 # CasADi and pandas are costly to import; the command line must answer --help without them.
 _HOME = {
-    "BatchResult": "synth.jobs.run",
-    "Comparison": "synth.comparison",
+    "BatchResult": "synth.jobs.batch",
+    "Comparison": "synth.studies.families.comparison",
     "Design": "synth.results",
-    "DesignProblem": "synth.problem",
-    "Explanation": "synth.explanation",
-    "FamilyOutcome": "synth.comparison",
-    "NearEquals": "synth.near",
+    "DesignProblem": "synth.model.problem",
+    "Explanation": "synth.studies.infeasibility.explain",
+    "FamilyOutcome": "synth.studies.families.comparison",
+    "NearEquals": "synth.studies.near_optimal",
     "ParetoFront": "synth.results",
-    "Price": "synth.price_list",
-    "Prices": "synth.price_list",
-    "Ratings": "synth.robust",
-    "Relaxation": "synth.explanation",
-    "SizeRange": "synth.variants.run",
-    "Study": "synth.study",
-    "batch": "synth.jobs.run",
-    "compare": "synth.comparing",
-    "curves": "synth.hooks",
-    "describe": "synth.description",
-    "evaluate": "synth.analysis",
-    "explain": "synth.explanation",
-    "families": "synth.problem",
-    "improve": "synth.improvement",
-    "load": "synth.problem",
-    "load_front": "synth.loading",
-    "near_equals": "synth.near",
-    "prices": "synth.pricing",
-    "rate": "synth.robust",
-    "second_opinion": "synth.hooks",
-    "simulate": "synth.hooks",
-    "size_range": "synth.variants.run",
-    "state": "synth.operating_state",
-    "synthesize": "synth.search",
-    "whatif": "synth.what_if",
+    "Price": "synth.studies.prices.price_list",
+    "Prices": "synth.studies.prices.price_list",
+    "Ratings": "synth.robust.rate",
+    "Relaxation": "synth.studies.infeasibility.explain",
+    "SizeRange": "synth.variants.size_range",
+    "Study": "synth.studies.whatif.study",
+    "batch": "synth.jobs.batch",
+    "compare": "synth.studies.families.compare",
+    "curves": "synth.analysis.hooks",
+    "describe": "synth.analysis.describe",
+    "evaluate": "synth.analysis.evaluate",
+    "explain": "synth.studies.infeasibility.explain",
+    "families": "synth.model.registry",
+    "improve": "synth.search.improvement",
+    "load": "synth.model.registry",
+    "load_front": "synth.results.loading",
+    "near_equals": "synth.studies.near_optimal",
+    "prices": "synth.studies.prices.run",
+    "rate": "synth.robust.rate",
+    "second_opinion": "synth.analysis.hooks",
+    "simulate": "synth.analysis.hooks",
+    "size_range": "synth.variants.size_range",
+    "state": "synth.analysis.operating_state",
+    "synthesize": "synth.search.synthesize",
+    "verify": "synth.verification.verify",
+    "whatif": "synth.studies.whatif.run",
 }
 
 

@@ -1,8 +1,8 @@
 """The numbers that steer a search: how much it tries, when it gives up, and what it takes for equal.
 
 None of them is part of an answer: with other numbers a search takes longer, or leaves more open and says so. They are
-handed down from where a question is posed (``synth.search.pose``, ``Formulation``), so that whoever wants others makes
-a record of them with ``dataclasses.replace`` and passes it in. ``TUNING`` are those that everybody gets.
+handed down from where a question is posed (``synth.search.question.pose``, ``Formulation``), so that whoever wants
+others makes a record of them with ``dataclasses.replace`` and passes it in. ``TUNING`` are those that everybody gets.
 
 Counts of boxes and of problems decide wherever they can, never seconds, so that the same question goes the same way on
 every machine. What verification takes is not here: it shares nothing with the search, see ``synth.proof_limits``.

@@ -5,27 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from synth import search
-from synth.instance import Instance
-from synth.problem import DesignProblem
-from synth.rating import Rater
-from synth.request import Request
-from synth.search_settings import SearchSettings
-from synth.spec_keys import SEARCHED
-from synth.study_questions import Steps
-from synth.tables import Catalogs
+from synth.model.problem import DesignProblem
+from synth.question.instance import Instance
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.question.spec_keys import SEARCHED
+from synth.question.uncertainty import Uncertainty
+from synth.robust.rating import Rater
+from synth.search.question import Question
+from synth.search.question import pose as posed
+from synth.studies.whatif.steps import Steps
+from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING, Tuning
-from synth.uncertainty import Uncertainty
 
 
 def pose(
     p: Any, requirements: Mapping[str, Any], objectives: Any = None, points: int = 30, catalogs: Any = None,
     parts: Any = None, tuning: Tuning = TUNING, **more: Any,
-) -> search.Question:  # fmt: skip
+) -> Question:  # fmt: skip
     """Return a question that has been checked."""
     how = {name: more.pop(name) for name in SEARCHED if name in more}
     request = Request.of(p, requirements, catalogs, objectives=objectives, parts=parts, **more)
-    return search.pose(request, SearchSettings(points=points, **how), tuning=tuning)
+    return posed(request, SearchSettings(points=points, **how), tuning=tuning)
 
 
 def instance_of(

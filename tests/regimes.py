@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from synth.formulation import Formulation
-from synth.nlp import ParametricNlp, Solution, Task
+from synth.nlp.ipopt import ParametricNlp, Solution, Task
+from synth.search.formulation import Formulation
 
 
 def referee(form: Formulation) -> ParametricNlp:

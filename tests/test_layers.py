@@ -35,131 +35,6 @@ LAYERS = (
 )
 LEVELS = {place: level for level, places in enumerate(LAYERS) for place in places}
 
-# Where modules belong that still lie side by side.
-FLAT: dict[str, str] = {
-    "assembly": "results",
-    "batch_nlp": "nlp",
-    "best_first": "search",
-    "breaks": "studies",
-    "choice_commands": "terminal",
-    "choice_console": "terminal",
-    "cli": "terminal",
-    "clock": "search",
-    "clusters": "bounds",
-    "combinations": "question",
-    "comparing": "studies",
-    "comparison": "studies",
-    "compilation": "compiled",
-    "conditions": "tables",
-    "conflicts": "search",
-    "console": "terminal",
-    "contractor": "bounds",
-    "count_domain": "question",
-    "cover": "search",
-    "derivatives": "nlp",
-    "description": "analysis",
-    "dives": "search",
-    "elasticity": "search",
-    "enclosure": "proof",
-    "explanation": "studies",
-    "fingerprint": "results",
-    "fired_guards": "analysis",
-    "formulation": "search",
-    "front_record": "results",
-    "given": "terminal",
-    "hooks": "analysis",
-    "improvement": "search",
-    "inputs": "question",
-    "instance": "question",
-    "interior_point": "nlp",
-    "intervals": "bounds",
-    "lanes": "nlp",
-    "loading": "results",
-    "native": "nlp",
-    "native_boxes": "bounds",
-    "native_general": "nlp",
-    "native_rules": "bounds",
-    "native_source": "nlp",
-    "native_templates": "nlp",
-    "native_tree": "bounds",
-    "near": "studies",
-    "operating_state": "analysis",
-    "outer": "search",
-    "pieces": "nlp",
-    "posed": "robust",
-    "price_list": "studies",
-    "pricing": "studies",
-    "problem": "model",
-    "program": "model",
-    "prooftree": "proof",
-    "propagation": "bounds",
-    "proven_gap": "search",
-    "purposes": "search",
-    "question": "analysis",
-    "rated": "results",
-    "rating": "robust",
-    "recall": "search",
-    "refused_cells": "search",
-    "request": "question",
-    "relaxation": "studies",
-    "resolution": "search",
-    "resolve": "studies",
-    "robust_commands": "terminal",
-    "robust_console": "terminal",
-    "scatter": "robust",
-    "search_range": "question",
-    "search_settings": "question",
-    "seeker": "search",
-    "settle": "search",
-    "sheet": "studies",
-    "slot_comparison": "model",
-    "spec": "question",
-    "spec_keys": "question",
-    "spec_patch": "question",
-    "statistics": "results",
-    "steps": "search",
-    "structure": "bounds",
-    "study": "studies",
-    "study_commands": "terminal",
-    "study_console": "terminal",
-    "study_questions": "studies",
-    "study_store": "studies",
-    "sweeps": "nlp",
-    "tape": "proof",
-    "terminal_options": "terminal",
-    "told": "results",
-    "together": "parametric",
-    "together_fronts": "parametric",
-    "together_look": "parametric",
-    "together_search": "parametric",
-    "uncertainty": "question",
-    "vary": "studies",
-    "verification": "results",
-    "verify": "verification",
-    "verify_comparison": "verification",
-    "what_if": "studies",
-}
-# What may not be and is nevertheless.
-EXCEPTIONS: set[tuple[str, str]] = {
-    ("synth.analysis", "synth.formulation"),
-    ("synth.jobs.commands", "synth.terminal"),
-    ("synth.jobs.commands", "synth.terminal_options"),
-    ("synth.jobs.console", "synth.console"),
-    ("synth.jobs.console", "synth.terminal"),
-    ("synth.native_boxes", "synth.native"),
-    ("synth.native_boxes", "synth.native_source"),
-    ("synth.nlp", "synth.intervals"),
-    ("synth.pieces", "synth.intervals"),
-    ("synth.posed", "synth.description"),
-    ("synth.propagation", "synth.native"),
-    ("synth.results", "synth.resolution"),
-    ("synth.results", "synth.verify"),
-    ("synth.study", "synth.terminal"),
-    ("synth.variants.commands", "synth.terminal"),
-    ("synth.variants.commands", "synth.terminal_options"),
-    ("synth.variants.console", "synth.console"),
-}
-
 
 @cache
 def modules() -> dict[str, Path]:
@@ -190,7 +65,7 @@ def imports(text: str, known: set[str]) -> set[str]:
 def place_of(module: str) -> str:
     """Return the place that a module belongs to."""
     steps = module.split(".")
-    return FLAT.get(steps[1], steps[1]) if len(steps) == 2 else steps[1]
+    return steps[1]
 
 
 @cache
@@ -232,4 +107,4 @@ def test_only_results_ask_the_facade() -> None:
 
 def test_imports_point_one_way() -> None:
     wrong = {pair for ends, pairs in arrows().items() if LEVELS[ends[1]] >= LEVELS[ends[0]] for pair in pairs}
-    assert wrong == EXCEPTIONS
+    assert wrong == set()

@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 import synth
-from synth import search
-from synth.request import Request
-from synth.search_settings import SearchSettings
-from synth.spec_keys import SEARCHED
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.question.spec_keys import SEARCHED
+from synth.search.synthesize import find_front
 from synth.tuning import TUNING, Tuning
 
 
@@ -26,4 +26,4 @@ def synthesize(
     """Do what ``synth.synthesize`` does, with these numbers."""
     how = {name: more.pop(name) for name in SEARCHED if name in more}
     request = Request.of(p, requirements, catalogs, robust, objectives=objectives, **more)
-    return search.find_front(request, SearchSettings(points=points, **how), progress, tuning)
+    return find_front(request, SearchSettings(points=points, **how), progress, tuning)

@@ -13,10 +13,10 @@ from typing import Any, TypeVar
 from sqlalchemy.exc import OperationalError
 
 from synth.errors import InputError
-from synth.fingerprint import code_digest
 from synth.jobs.executors import Cluster, is_lost
 from synth.jobs.solve import OtherCodeError, solve_unit
 from synth.jobs.store import CANCELLED, LEASE, Account, Claim, Outcome, Store, new_owner
+from synth.results.provenance import code_digest
 
 ATTEMPTS = 3  # of a question that fails, before it is answered by its error
 TICK = 0.5  # seconds between looks at what is going on

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 
 if TYPE_CHECKING:
-    from synth.problem import DesignProblem
-    from synth.propagation import Lessons
+    from synth.bounds.propagation import Lessons
+    from synth.model.problem import DesignProblem
     from synth.results import Design, ParetoFront
-    from synth.search import Question
-    from synth.tables import Catalogs
+    from synth.search.question import Question
+    from synth.tables.catalogs import Catalogs
 
 LIKE = "like"  # where a question names the one whose experience helps
 LONGEST_ERROR = 2000
@@ -49,7 +49,7 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     OtherCodeError
         When this process has other code than the one that asks.
     """
-    from synth.fingerprint import code_digest  # this module must be light: workers import it first
+    from synth.results.provenance import code_digest  # this module must be light: workers import it first
 
     if work["code"] != code_digest():
         raise OtherCodeError("the worker has another version of clutchsynth, or of a package that decides its numbers")
@@ -102,9 +102,9 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 
 def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> Question:
     """Check a question as a whole."""
-    from synth.request import Request
-    from synth.search import pose
-    from synth.search_settings import SearchSettings
+    from synth.question.request import Request
+    from synth.question.settings import SearchSettings
+    from synth.search.question import pose
 
     problem = _problem(shared, question["family"], tuple(sorted(question["options"].items())))
     content = {**{key: value for key, value in question.items() if key != LIKE}, **settings}
@@ -218,7 +218,7 @@ class Shared:
 @lru_cache(maxsize=2)
 def _catalogs(shared: Shared) -> Catalogs:
     """Return the tables; made once per process, so that problems are traced once."""
-    from synth.instance import as_catalogs
+    from synth.question.catalogs import as_catalogs
 
     return as_catalogs(shared.catalogs)
 
@@ -226,7 +226,7 @@ def _catalogs(shared: Shared) -> Catalogs:
 @lru_cache(maxsize=64)
 def _problem(shared: Shared, family: str, options: tuple[tuple[str, str], ...]) -> DesignProblem:
     """Return a problem that is ready to use; it keeps its traces, so it is made once per process."""
-    from synth.problem import load
+    from synth.model.registry import load
 
     own = shared.own
     return load(own if own is not None and own.name == family else family, **dict(options))

@@ -8,10 +8,11 @@ from typing import Any
 
 from synth.declaration import Declaration
 from synth.errors import InputError
-from synth.instance import as_catalogs
-from synth.problem import DesignProblem, families, load
+from synth.model.problem import DesignProblem
+from synth.model.registry import families, load
+from synth.question.catalogs import as_catalogs
 from synth.special import recorded
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 from synth.units import Unit, parse_unit
 
 FAMILY, OPTIONS, LIMITS, FIX, PARTS = "family", "options", "limits", "fix", "parts"

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.feasibility import TOLERANCE
-from synth.inputs import inputs_of, part_value
-from synth.instance import Instance, numeric
-from synth.model import DataInput, Evaluation, Model
-from synth.problem import DesignProblem
-from synth.request import Request
+from synth.model.model import DataInput, Evaluation, Model
+from synth.model.numbers import numeric
+from synth.model.problem import DesignProblem
+from synth.question.inputs import inputs_of, part_value
+from synth.question.instance import Instance
+from synth.question.request import Request
 from synth.special import expanded
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 
 FloatArray = NDArray[np.float64]
 PAIRS = 40_000  # evaluated at a time

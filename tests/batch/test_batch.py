@@ -19,10 +19,11 @@ import pytest
 import synth
 from synth.errors import InputError
 from synth.jobs import runner
+from synth.jobs.batch import BatchJob, resume, work_off
 from synth.jobs.executors import Inline, Processes
-from synth.jobs.run import BatchJob, Shares, resume, work_off
+from synth.jobs.runner import Shares
 from synth.jobs.store import CANCELLED, Store, file_url
-from synth.search_settings import SearchSettings
+from synth.question.settings import SearchSettings
 from tests.batch.deadly import deadly_unit, faulty_unit
 from tests.batch.rod import Rod
 

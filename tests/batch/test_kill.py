@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 import sqlalchemy as sa
 
-from synth.jobs.run import DATABASE
+from synth.jobs.batch import DATABASE
 from synth.jobs.store import Store, file_url
 
 ROOT = Path(__file__).parents[2]
-COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
 ROWS = """id,family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits
 {}"""
 ROW = "{},multi_plate_clutch,{},254,30,cz,2,friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2,friction_surfaces == 10"  # noqa: E501

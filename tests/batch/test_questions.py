@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from synth.errors import InputError
-from synth.jobs.questions import Asked, Questioner, canonical_position, read_mapping
-from synth.jobs.table import read_table
+from synth.jobs.row_questions import Asked, Questioner, canonical_position, read_mapping
+from synth.jobs.row_table import read_table
 from synth.jobs.vocabulary import edit_distance
-from synth.problem import families
+from synth.model.registry import families
 from synth.units import split_header
 from tests.batch.rod import Rod
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth.jobs import school
-from synth.jobs.school import School, place
+from synth.jobs import warm_starts as school
 from synth.jobs.solve import LIKE
 from synth.jobs.store import Store, digest
+from synth.jobs.warm_starts import School, place
 from tests.batch.rod import Rod
 
 Question = tuple[str, tuple[float, ...], dict[str, int]]

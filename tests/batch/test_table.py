@@ -10,7 +10,7 @@ import pytest
 
 from synth.errors import InputError
 from synth.jobs.cells import read_fix, read_limits, read_options, read_parts
-from synth.jobs.table import RowTable, read_table, text_of
+from synth.jobs.row_table import RowTable, read_table, text_of
 
 
 def written(folder: Path, text: str | bytes) -> RowTable:

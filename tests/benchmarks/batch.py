@@ -22,11 +22,11 @@ import numpy as np
 import sqlalchemy as sa
 
 from synth.jobs import runner
+from synth.jobs.batch import BatchJob
 from synth.jobs.models import Job
 from synth.jobs.outputs import write_outputs
-from synth.jobs.run import BatchJob
-from synth.search_settings import SearchSettings
-from synth.variants.choose import Chooser
+from synth.question.settings import SearchSettings
+from synth.variants.p_median import Chooser
 from tests.benchmarks import cases
 from tests.benchmarks.tables import Report
 

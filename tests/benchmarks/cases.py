@@ -18,7 +18,7 @@ import pandas as pd
 
 from problems.multi_plate.model import MultiPlateClutch
 from synth.declaration import Declaration
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 
 # The hoist of examples/hoist_multi_plate.yaml; the ramp time is free here.

@@ -35,7 +35,15 @@ def peak_bytes() -> int:
 
 def import_all() -> None:
     """Import what any search imports, also what it imports late."""
-    late = ("casadi", "moocore", "pandas", "scipy.optimize", "scipy.special", "synth.search", "tests.benchmarks.cases")
+    late = (
+        "casadi",
+        "moocore",
+        "pandas",
+        "scipy.optimize",
+        "scipy.special",
+        "synth.search.front_search",
+        "tests.benchmarks.cases",
+    )
     for name in late:
         import_module(name)
 

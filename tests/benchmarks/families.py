@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import synth
-from synth.spec import read_spec
+from synth.question.spec import read_spec
 from tests.benchmarks.tables import Report
 
 POINTS = 30

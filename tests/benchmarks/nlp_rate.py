@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 import synth
-from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
-from synth.instance import as_catalogs
-from synth.intervals import Cut, Goal
-from synth.nlp import ParametricNlp, Task
-from synth.nlp_rows import Rows
+from synth.model.constraints import Cut, Goal
+from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.ipopt import ParametricNlp, Task
+from synth.nlp.rows import Rows
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 REQUIREMENTS = {

@@ -15,9 +15,9 @@ import casadi as ca
 import moocore
 import numpy as np
 
-from synth.instance import Instance
+from synth.question.instance import Instance
 from synth.special import expanded
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.benchmarks import cases
 

@@ -16,12 +16,12 @@ from collections.abc import Sequence
 import numpy as np
 
 import synth
-from synth.batch_nlp import BatchNlp, Tasks
-from synth.instance import Instance
-from synth.intervals import Cut, Goal
-from synth.model import Evaluation
-from synth.nlp_rows import Rows
-from synth.tables import Catalogs
+from synth.model.constraints import Cut, Goal
+from synth.model.model import Evaluation
+from synth.nlp.batch import BatchNlp, Tasks
+from synth.nlp.rows import Rows
+from synth.question.instance import Instance
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.benchmarks import cases, hypervolume
 

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from synth.search import synthesize
-from synth.study import Study
-from synth.what_if import whatif
+from synth.search.synthesize import synthesize
+from synth.studies.whatif.run import whatif
+from synth.studies.whatif.study import Study
 from tests.benchmarks import cases
 from tests.benchmarks.tables import Report
 

@@ -12,7 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.tables import Table, load_schema, load_table
+from synth.tables.reading import load_table
+from synth.tables.schema import load_schema
+from synth.tables.table import Table
 from synth.units import from_si, parse_unit
 
 FOLDER = Path(__file__).parents[2] / "catalogs"

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 import synth
-from synth import search
 from synth.effort import SearchEffort
-from synth.steps import cover_by_steps
-from synth.tables import Catalogs
-from synth.together import alike
-from synth.together_fronts import FrontsSearch
+from synth.parametric.joint_fronts import FrontsSearch
+from synth.parametric.joint_question import alike
+from synth.search import front_search as search
+from synth.search.epsilon_constraint import cover_by_steps
+from synth.tables.catalogs import Catalogs
 from tests.asking import pose
 from tests.certificates.__main__ import tried
 from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference

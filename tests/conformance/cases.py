@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 import synth
-from synth.instance import Instance, as_catalogs
+from synth.question.catalogs import as_catalogs
+from synth.question.instance import Instance
 from tests.asking import instance_of
 from tests.conformance.cases_magnetic import magnetic
 

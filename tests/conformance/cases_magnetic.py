@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.instance import Instance
+from synth.question.instance import Instance
 
 WINDER = {"required_torque": "30 N*m"}
 SPINDLE = {"load_torque": "8 N*m", "driver_speed": "960 1/min", "driven_inertia": "0.05 kg*m2"}

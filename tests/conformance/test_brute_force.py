@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 GAP = 1e-3

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from synth.special import expanded
 from synth.units import format_quantity
 from tests.asking import instance_of

@@ -13,12 +13,12 @@ import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.heat import peak_rise_per_work
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
+from synth.bounds.structure import Structure, classify
 from synth.declaration import Declaration
-from synth.description import declared_ranges
-from synth.instance import as_catalogs
-from synth.model import Model
-from synth.program import OP_SELECT, OP_SPECIAL
-from synth.structure import Structure, classify
+from synth.model.model import Model
+from synth.model.program import OP_SELECT, OP_SPECIAL
+from synth.question.catalogs import as_catalogs
+from synth.question.ranges import declared_ranges
 
 pytestmark = pytest.mark.slow
 

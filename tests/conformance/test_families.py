@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import synth
-from synth.formulation import Formulation
-from synth.instance import as_catalogs
-from synth.nlp import Task
+from synth.nlp.ipopt import Task
+from synth.question.catalogs import as_catalogs
+from synth.search.formulation import Formulation
 from synth.special import expanded
 from synth.units import parse_unit
 from tests.asking import instance_of

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import as_catalogs
-from synth.posed import posed
-from synth.scatter import CATALOGUE, LEAST, MOST, SLIDING
-from synth.uncertainty import read_block
+from synth.question.catalogs import as_catalogs
+from synth.question.uncertainty import read_block
+from synth.robust.counterpart import posed
+from synth.robust.uncertainty import CATALOGUE, LEAST, MOST, SLIDING
 from synth.units import format_quantity
 from tests.asking import instance_of, rater_of
 from tests.conformance.cases import CASES

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.analysis import _chosen_rows, _data, make_design, make_frame, part_row
-from synth.inputs import first_value, inputs_of_design
-from synth.instance import Instance
-from synth.model import DataInput
+from synth.analysis.designs import make_design, make_frame, part_row
+from synth.analysis.evaluate import _chosen_rows, _data
+from synth.model.model import DataInput
+from synth.question.inputs import first_value, inputs_of_design
+from synth.question.instance import Instance
 from synth.results import Design
 from synth.variants.coverage import Structure, Variant, _inputs, _VariantColumns
 from tests.conformance.cases import CASES, question

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import synth
-from synth.analysis import chosen_objectives, with_ties
-from synth.batch_nlp import Tasks
-from synth.formulation import Formulation
-from synth.instance import as_catalogs
-from synth.nlp import Task
+from synth.nlp.batch import Tasks
+from synth.nlp.ipopt import Task
+from synth.question.catalogs import as_catalogs
+from synth.question.objectives import chosen_objectives, with_ties
+from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, Case, answer

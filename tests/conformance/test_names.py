@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from synth.units import from_si, parse_unit
 from tests.conformance.cases import CASES, question
 

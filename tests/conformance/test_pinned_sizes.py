@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import synth
-from synth.analysis import chosen_objectives, with_ties
-from synth.formulation import Formulation
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
+from synth.question.objectives import chosen_objectives, with_ties
+from synth.search.formulation import Formulation
 from tests.asking import instance_of
 from tests.tuned import tuned
 

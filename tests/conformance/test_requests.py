@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 import synth
 from synth.errors import InputError
-from synth.instance import as_catalogs
-from synth.request import Request
-from synth.search import Question, pose
-from synth.search_settings import SearchSettings
+from synth.question.catalogs import as_catalogs
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
+from synth.search.question import Question, pose
 from synth.units import Quantity, format_quantity, from_si
 from tests.conformance.cases import CASES
 

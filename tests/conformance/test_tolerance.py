@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from synth.feasibility import TOLERANCE
-from synth.formulation import Formulation
-from synth.nlp import Task
+from synth.nlp.ipopt import Task
+from synth.search.formulation import Formulation
 from synth.special import expanded
 from tests.conformance.cases import CASES, answer
 from tests.regimes import refereed

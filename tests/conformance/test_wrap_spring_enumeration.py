@@ -15,7 +15,7 @@ import pytest
 
 import synth
 from synth.results import ParetoFront
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 
 GAP = 1e-3
 LADDER = Catalogs().table("hub_diameters").number("diameter")

@@ -26,10 +26,11 @@ from pathlib import Path
 import pytest
 
 import synth
-import synth.results
-from synth import cli, terminal
-from synth.description import describe
-from synth.spec_keys import FIELDS
+import synth.results.front
+from synth.analysis.describe import describe
+from synth.question.spec_keys import FIELDS
+from synth.terminal import cli
+from synth.terminal import session as terminal
 from tests.endtoend.entry import at_once
 
 ROOT = Path(__file__).parents[2]
@@ -260,7 +261,7 @@ def test_every_column_of_the_results_is_documented() -> None:
     page = text_of("docs/results.md")
     for column in ("rank", "score", "status", "gap", "note", "alternatives", "utilisation"):
         assert f"`{column}" in page
-    for status in synth.results.Status:
+    for status in synth.feasibility.Status:
         assert f"`{status.value}`" in page
     for kind in ("global", "exhaustive", "heuristic"):
         assert f"`{kind}`" in page
@@ -311,7 +312,7 @@ def test_the_own_problem_is_short_and_reaches_the_known_optimum() -> None:
     front = module["front"]
     assert isinstance(front, synth.ParetoFront)
     (best,) = front.designs
-    assert best.status == synth.results.Status.OPTIMAL
+    assert best.status == synth.feasibility.Status.OPTIMAL
     assert front.certificate.kind == "global"
     # J. Golinski; best known 2994.471066 with 7.3 <= l1, l2 <= 8.3 (many later authors).
     assert best.values["weight"] == pytest.approx(2994.471066, rel=1e-6)

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from synth.cli import main
+from synth.terminal.cli import main
 
 ROOT = Path(__file__).parents[2]
-COMMAND = [sys.executable, "-c", "from synth.cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
 
 
 def clutchsynth(*words: object, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import synth
-from synth.jobs import commands
+from synth.terminal import batch_commands as commands
 from tests.endtoend.entry import at_once
 
 RULES = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
@@ -123,7 +123,7 @@ def test_an_empty_folder_has_no_jobs(tmp_path: Path) -> None:
 
 
 def test_a_job_that_is_cancelled_is_resumed_without_its_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from synth.jobs import run
+    from synth.jobs import batch as run
 
     write(tmp_path, GOOD)
     with monkeypatch.context() as patch:
@@ -188,7 +188,7 @@ def test_a_size_range_from_a_table_and_again_from_its_folder(tmp_path: Path) -> 
 
 
 def test_progress_is_told_in_words() -> None:
-    from synth.jobs.console import figures
+    from synth.terminal.batch_console import figures
 
     state = {"rows": 200, "done": 50, "failed": 2, "infeasible": 0, "bad": 0, "rate": 0.5, "left": 300.0}
     assert figures(state) == "50 of 200 rows, 0.5 rows/s, 5 min left, 2 failed"

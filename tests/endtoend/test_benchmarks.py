@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.benchmarks import batch, cases
 from tests.benchmarks.__main__ import main

@@ -65,7 +65,7 @@ def test_help_and_version_import_nothing_heavy(flag: str) -> None:
     program = (
         "import sys\n"
         f"sys.argv = ['clutchsynth', {flag!r}]\n"
-        "from synth.cli import main\n"
+        "from synth.terminal.cli import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
         f"print(code or 0, [m for m in {HEAVY!r} if m in sys.modules])\n"
     )
@@ -242,7 +242,11 @@ def test_wrong_usage_ends_with_two(words: list[str], tmp_path: Path) -> None:
 
 
 def test_a_fault_of_the_program_is_short_unless_debugging(tmp_path: Path) -> None:
-    program = "import synth.spec, synth.cli\nsynth.spec.read_spec = lambda path: 1 / 0\nsynth.cli.main()"
+    program = (
+        "import synth.question.spec, synth.terminal.cli\n"
+        "synth.question.spec.read_spec = lambda path: 1 / 0\n"
+        "synth.terminal.cli.main()"
+    )
     for debug, traceback in (("", False), ("1", True)):
         done = subprocess.run(
             [sys.executable, "-c", program, "check", "x.yaml"],

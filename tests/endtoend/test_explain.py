@@ -5,8 +5,8 @@ import json
 import pytest
 
 import synth
-from synth.explanation import _rounded
-from synth.search import synthesize
+from synth.search.synthesize import synthesize
+from synth.studies.infeasibility.explain import _rounded
 from synth.units import parse_quantity
 from tests.conformance.cases import CASES
 from tests.endtoend.entry import at_once

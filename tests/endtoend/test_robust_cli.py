@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.robust_console import percent
+from synth.terminal.robust_console import percent
 from tests.endtoend.entry import at_once
 
 SPEC = """

@@ -13,7 +13,7 @@ import pytest
 import yaml
 from test_cli import HEAVY, HOIST, LECTURE, quantity, refused
 
-from synth import terminal
+from synth.results import drawings
 from tests.endtoend.entry import at_once, clutchsynth
 
 SIMULATED = ["second_opinion.csv", "startup.csv", "startup.svg", "temperature.csv", "temperature.svg"]
@@ -185,7 +185,7 @@ def test_a_folder_that_cannot_be_one_is_refused(tmp_path: Path) -> None:
 
 
 def test_tables_are_written_where_no_drawing_is_installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(terminal, "REPORTS", "clutchsynth.reports_of_nobody")
+    monkeypatch.setattr(drawings, "REPORTS", "clutchsynth.reports_of_nobody")
     assert at_once("curves", "multi_plate_clutch", LECTURE, "-o", tmp_path / "out").returncode == 0
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == {".csv"}
 
@@ -195,7 +195,7 @@ def test_help_of_a_command_imports_nothing_heavy(command: str) -> None:
     program = (
         "import sys\n"
         f"sys.argv = ['clutchsynth', {command!r}, '--help']\n"
-        "from synth.cli import main\n"
+        "from synth.terminal.cli import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
         f"print(code or 0, [m for m in {HEAVY!r} if m in sys.modules])\n"
     )

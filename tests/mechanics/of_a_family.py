@@ -1,6 +1,6 @@
 """What tests of families read from a question and from a design."""
 
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 

@@ -8,7 +8,7 @@ from of_a_family import remarks
 from scipy.optimize import brentq
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 FAMILY = "centrifugal_ball_ramp"

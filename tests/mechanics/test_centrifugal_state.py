@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import synth
 from problems.centrifugal import curves
 from problems.centrifugal.state import balance, of_path
-from synth.cli import app
+from synth.terminal.cli import app
 from tests.conformance.cases import CASES, answer
 
 RPM = 2 * math.pi / 60

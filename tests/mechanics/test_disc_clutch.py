@@ -8,7 +8,7 @@ from of_a_family import requirements_in_si
 from start_by_steps import start
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 BASE = {"load_torque": "100 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}

@@ -6,8 +6,8 @@ import pytest
 from start_by_steps import start
 
 import synth
-from synth.instance import as_catalogs
-from synth.tables import Catalogs
+from synth.question.catalogs import as_catalogs
+from synth.tables.catalogs import Catalogs
 from synth.units import parse_unit, to_si
 from tests.asking import instance_of
 

@@ -8,8 +8,8 @@ import pytest
 from of_a_family import requirements_in_si
 
 import synth
-from synth.instance import as_catalogs
-from synth.tables import Catalogs
+from synth.question.catalogs import as_catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 
 BASE = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}

@@ -8,7 +8,7 @@ import pytest
 from of_a_family import remarks, requirements_in_si
 
 import synth
-from synth.instance import as_catalogs
+from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
 PI = math.pi
@@ -512,7 +512,7 @@ def test_peak_torque_follows_the_required_torque():
 @pytest.mark.parametrize("torque", [0.05, 3.0, 900.0])
 @pytest.mark.parametrize("more", [{}, {"drag_torque_limit": 100, "spring_speed": 2000, "interference_ratio_max": 0.3}])
 def test_objectives_are_surely_positive_so_that_the_gap_is_relative(torque, more):
-    from synth.formulation import Formulation
+    from synth.search.formulation import Formulation
 
     given = {"required_torque": torque, "bore_diameter": "4 mm", **more}
     instance = instance_of(synth.load("wrap_spring"), given, as_catalogs(None))

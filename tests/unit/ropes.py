@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 import synth
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 
 KEEPS = 1000.0  # kN: a rope that carries every load
 

@@ -3,8 +3,9 @@
 import pandas as pd
 
 import synth
-from synth.formulation import Candidate, Formulation
-from synth.instance import catalogs_for
+from synth.question.catalogs import catalogs_for
+from synth.search.archive import Candidate
+from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of
 

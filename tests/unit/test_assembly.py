@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 import synth
-from synth.assembly import front_of, ranked
 from synth.pareto import rank
 from synth.results import ParetoFront
-from synth.statistics import SearchStatistics
-from synth.told import UNTOLD
+from synth.results.assembly import front_of, ranked
+from synth.results.statistics import SearchStatistics
+from synth.results.told import UNTOLD
 from tests.unit.strut import NEEDED, RODS, Strut
 
 

@@ -14,13 +14,15 @@ import numpy as np
 import pytest
 
 import synth
-from synth import native, native_general
-from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
-from synth.instance import as_catalogs
-from synth.intervals import Cut, Goal
-from synth.nlp import ParametricNlp, Task
-from synth.nlp_rows import GUARD_MARGIN, Rows
-from synth.program import Program
+from synth.compiled import compiler
+from synth.model.constraints import Cut, Goal
+from synth.model.program import Program
+from synth.nlp import interior_point_c as native
+from synth.nlp import interior_point_c_interpreted as native_general
+from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.ipopt import ParametricNlp, Task
+from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.question.catalogs import as_catalogs
 from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 from tests.asking import instance_of
 
@@ -640,6 +642,6 @@ def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
     broken.write_text('#!/bin/sh\n[ "$1" = --version ] && echo broken && exit 0\nexit 1\n')
     broken.chmod(0o755)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(native, "_compiler", lambda: (str(broken), "broken"))
+    monkeypatch.setattr(compiler, "_compiler", lambda: (str(broken), "broken"))
     assert native.native(small_functions(), TUNING.nlp.method) is None
     assert not list((tmp_path / "clutchsynth").iterdir())

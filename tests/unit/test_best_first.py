@@ -8,14 +8,16 @@ import numpy as np
 import pytest
 
 import synth
-from synth.best_first import OpenBoxes, Progress, best_first
-from synth.clock import Clock, Stopped
-from synth.cover import best, cover
+from synth.deadline import Stopped
 from synth.effort import SearchEffort
-from synth.formulation import Boxes, Formulation
-from synth.instance import catalogs_for
-from synth.proven_gap import Bound, least_gap
-from synth.purposes import Cover
+from synth.question.catalogs import catalogs_for
+from synth.search.best_first import OpenBoxes, Progress, best_first
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import best, cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.proven_gap import Bound, least_gap
+from synth.search.pruning import Cover
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned

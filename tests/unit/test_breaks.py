@@ -14,8 +14,8 @@ import pytest
 
 import synth
 from synth.pareto import rank
-from synth.study import Break, Study
-from synth.tables import Catalogs
+from synth.studies.whatif.study import Break, Study
+from synth.tables.catalogs import Catalogs
 from tests.unit.ropes import Ropes, best_ropes, ropes
 
 WIDTH = 1e-3  # of a value: so closely breaks are located

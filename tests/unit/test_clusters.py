@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.clusters import Cells, ClusterTree, Factor
+from synth.bounds.clusters import Cells, ClusterTree, Factor
 
 
 def random_columns(rng):

@@ -12,10 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.analysis import part_row
-from synth.combinations import Combinations, JointCombinations, MixedRadix
+from synth.analysis.designs import part_row
 from synth.errors import InputError
-from synth.instance import Instance, catalogs_for
+from synth.question.catalogs import catalogs_for
+from synth.question.combinations import Combinations, JointCombinations, MixedRadix
+from synth.question.instance import Instance
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, Strut
 

@@ -7,15 +7,15 @@ import pandas as pd
 import pytest
 
 import synth
-import synth.comparing
-import synth.robust
+import synth.robust.robust_front
+import synth.studies.families.compare
 from synth import DesignProblem
-from synth.comparing import compare
-from synth.results import Status
-from synth.search import FrontSearch
-from synth.search_settings import SearchSettings
-from synth.sheet import applicants, common_objectives, sheet_of
-from synth.tables import Catalogs
+from synth.feasibility import Status
+from synth.question.settings import SearchSettings
+from synth.search.front_search import FrontSearch
+from synth.studies.families.compare import compare
+from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
+from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
 from synth.units import format_quantity
 from tests.tuned import tuned
@@ -449,7 +449,7 @@ def brakes(limits=None, tuning=TUNING):
     found = applicants([Brake, OtherBrake], sheet, tables)
     ranked = {"objectives": common_objectives(found, {"size": "min", "worth": "min"}), "weights": None, "grid": True}
     settings = SearchSettings(points=3)
-    return synth.comparing._Comparing(found, sheet, ranked, tables, settings, None, tuning).run(None)
+    return synth.studies.families.compare._Comparing(found, sheet, ranked, tables, settings, None, tuning).run(None)
 
 
 def test_limits_that_fail_between_corners_are_posed_for_every_family():
@@ -474,18 +474,18 @@ def test_nothing_is_proven_of_all_where_designs_were_taken_off():
 
 def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
     # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well.
-    rated, own = [], synth.comparing._Member.standing
+    rated, own = [], synth.studies.families.compare._Member.standing
 
     def standing(self, designs, deadline):
         rated.extend(own(self, designs, deadline))
         return rated[len(rated) - len(designs) :]
 
-    monkeypatch.setattr(synth.comparing._Member, "standing", standing)
+    monkeypatch.setattr(synth.studies.families.compare._Member, "standing", standing)
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "global"
     assert [d.robust["holds"] for d in rated] == [True]
     # Where it fails nothing says that what is left cannot be beaten.
-    monkeypatch.setattr(synth.comparing._Member, "standing", lambda self, designs, deadline: [])
+    monkeypatch.setattr(synth.studies.families.compare._Member, "standing", lambda self, designs, deadline: [])
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "heuristic"
 

@@ -10,11 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth import compilation, deadline, native, search
-from synth.batch_nlp import BatchNlp, Tasks
-from synth.compilation import compile_shared, meanwhile, switched_off, switched_on
+from synth import deadline
+from synth.compiled import compilation, compiler
+from synth.compiled.compilation import compile_shared, meanwhile, switched_off, switched_on
 from synth.deadline import Stopped
 from synth.effort import CompilingEffort
+from synth.nlp import interior_point_c as native
+from synth.nlp.batch import BatchNlp, Tasks
+from synth.search import front_search as search
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut, strut_form
 
@@ -27,7 +30,7 @@ def always_worthwhile(monkeypatch):
     monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=0.0))
 
 
-def compiler(folder: Path, seconds: float) -> str:
+def slow_compiler(folder: Path, seconds: float) -> str:
     """Return a compiler that first starts a program of its own and then takes its time."""
     path = folder / "slow_cc"
     path.write_text(
@@ -60,7 +63,7 @@ def alive(pid: int) -> bool:
 def test_what_is_compiled_is_moved_to_its_place_at_once(tmp_path):
     place = tmp_path / "cache" / "code.so"
     place.parent.mkdir()
-    compile_shared(compiler(tmp_path, 0.1), SOURCE, place, [])
+    compile_shared(slow_compiler(tmp_path, 0.1), SOURCE, place, [])
     assert place.read_text() == "compiled"
     assert list(place.parent.iterdir()) == [place]
 
@@ -86,7 +89,7 @@ def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
 
     end = time.monotonic() + (0.5 if how == "time limit" else 60.0)
     with meanwhile(work), deadline.until(end), pytest.raises((Stopped, KeyboardInterrupt)):
-        compile_shared(compiler(tmp_path, 600), SOURCE, folder / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 600), SOURCE, folder / "code.so", [])
     assert children
     assert ended(children[0])
     assert not list(folder.iterdir())
@@ -103,7 +106,7 @@ def test_what_is_done_meanwhile_is_told_when_the_compiler_is_done(tmp_path):
         told.append(ready())
 
     with meanwhile(work):
-        compile_shared(compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [])
     assert told == [False, True]
 
 
@@ -112,7 +115,7 @@ def test_what_killed_programs_have_left_is_cleared_away(tmp_path):
     old.mkdir()
     new.mkdir()
     os.utime(old, (0, 0))
-    compile_shared(compiler(tmp_path, 0), SOURCE, tmp_path / "code.so", [])
+    compile_shared(slow_compiler(tmp_path, 0), SOURCE, tmp_path / "code.so", [])
     assert not old.exists()
     assert new.exists()
 
@@ -140,8 +143,8 @@ def never_done(tmp_path, monkeypatch):
     """Let everything be compiled by a compiler that is never done; its folder."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    path = compiler(tmp_path, 600)
-    monkeypatch.setattr(native, "_compiler", lambda: (path, "slow"))
+    path = slow_compiler(tmp_path, 600)
+    monkeypatch.setattr(compiler, "_compiler", lambda: (path, "slow"))
     return tmp_path / "home" / "clutchsynth"
 
 
@@ -180,7 +183,7 @@ def wanted(monkeypatch, tmp_path):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=3e7))
-    monkeypatch.setattr(native, "_compiler", lambda: ("cc", "a compiler"))
+    monkeypatch.setattr(compiler, "_compiler", lambda: ("cc", "a compiler"))
     begun = []
 
     def refuse(command, **_):
@@ -255,7 +258,7 @@ def test_ctrl_c_while_the_compiler_works_is_heard(never_done, monkeypatch):
     assert not list(never_done.glob("*"))
 
 
-@pytest.mark.skipif(native._compiler() is None, reason="no C compiler")
+@pytest.mark.skipif(compiler._compiler() is None, reason="no C compiler")
 def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatch):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -276,4 +279,4 @@ def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatc
 def test_a_compiler_that_takes_too_long_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(most=0.2))
     with pytest.raises(subprocess.TimeoutExpired):
-        compile_shared(compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [])

@@ -8,9 +8,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from synth.conditions import parse_condition
 from synth.errors import InputError
-from synth.tables import Column, Schema, Table, table_from_frame
+from synth.tables.conditions import parse_condition
+from synth.tables.reading import table_from_frame
+from synth.tables.schema import Column, Schema
+from synth.tables.table import Table
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=300)
 

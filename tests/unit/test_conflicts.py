@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.formulation import Formulation
-from synth.problem import load
+from synth.model.registry import load
+from synth.search.formulation import Formulation
 from tests.asking import pose
 
 DUTY = {

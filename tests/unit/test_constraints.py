@@ -7,21 +7,23 @@ import numpy as np
 import pytest
 
 import synth
-from synth.analysis import chosen_objectives
-from synth.batch_nlp import BatchNlp, Tasks
-from synth.constraint import SIGNS, Constraint
 from synth.declaration import Origin
 from synth.feasibility import SMALLEST, holds
-from synth.formulation import Formulation
-from synth.instance import Instance, as_catalogs, catalogs_for
-from synth.intervals import Cut
-from synth.nlp_rows import GUARD_MARGIN
-from synth.posed import posed
-from synth.prooftree import Point, void_without
-from synth.relaxation import AMOUNT, Relaxed
-from synth.uncertainty import read_block
+from synth.model.constraint import SIGNS, Constraint
+from synth.model.constraints import Cut
+from synth.nlp.batch import BatchNlp, Tasks
+from synth.nlp.rows import GUARD_MARGIN
+from synth.proof.questions import Point
+from synth.proof.tree import void_without
+from synth.question.catalogs import as_catalogs, catalogs_for
+from synth.question.instance import Instance
+from synth.question.objectives import chosen_objectives
+from synth.question.uncertainty import read_block
+from synth.robust.counterpart import posed
+from synth.search.formulation import Formulation
+from synth.studies.infeasibility.relaxation import AMOUNT, Relaxed
 from synth.units import format_quantity
-from synth.verify import Check
+from synth.verification.verify import Check
 from tests.asking import instance_of, rater_of
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
 from tests.conformance.cases import CASES

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 import synth
 from problems.mechanics.guide_friction import sum_geometric
-from synth import native
-from synth.clusters import ClusterTree, Factor
-from synth.contractor import Contractor, Layout
-from synth.formulation import Formulation
-from synth.instance import as_catalogs, catalogs_for
-from synth.intervals import Cut, Goal
-from synth.program import Program
+from synth.bounds.clusters import ClusterTree, Factor
+from synth.bounds.contractor import Contractor, Layout
+from synth.compiled import compiler
+from synth.model.constraints import Cut, Goal
+from synth.model.program import Program
+from synth.question.catalogs import as_catalogs, catalogs_for
+from synth.search.formulation import Formulation
 from synth.special import recorded
 from synth.tuning import TUNING
 from tests.asking import instance_of
@@ -456,7 +456,7 @@ def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
         for a, b in ((one.low, two.low), (one.high, two.high), (one.bounds, two.bounds)):
             np.testing.assert_allclose(a, b, rtol=1e-9)
     assert len(one) < len(boxes)
-    if native.cache_folder() is not None and native._compiler() is not None:
+    if compiler.cache_folder() is not None and compiler._compiler() is not None:
         codes = machine.propagation._codes.values()
         assert all(code.compiled is not None for code in codes)
 

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.count_domain import compares, entries
-from synth.instance import catalogs_for
-from synth.spec import spec_from_mapping
+from synth.question.catalogs import catalogs_for
+from synth.question.count_domain import compares, entries
+from synth.question.spec import spec_from_mapping
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 

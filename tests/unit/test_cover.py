@@ -9,13 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.clock import Clock, Stopped
-from synth.cover import best, cover
-from synth.formulation import Archive, Candidate, Formulation
-from synth.instance import catalogs_for
-from synth.purposes import Cover, Staircase
-from synth.search import distinct
-from synth.seeker import spread_choice
+from synth.deadline import Stopped
+from synth.question.catalogs import catalogs_for
+from synth.search.archive import Archive, Candidate, distinct
+from synth.search.branch_and_bound import best, cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.primal_heuristics import spread_choice
+from synth.search.pruning import Cover, Staircase
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut, feasible_candidates

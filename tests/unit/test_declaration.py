@@ -18,8 +18,8 @@ from synth.declaration import (
     Variable,
     grid_values,
 )
-from synth.instance import number
-from synth.tables import Catalogs
+from synth.model.numbers import number
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 
 RODS = pd.DataFrame(

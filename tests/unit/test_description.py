@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 import synth
-from synth.description import COLUMNS, declared_ranges, describe
-from synth.instance import as_catalogs
+from synth.analysis.describe import COLUMNS, describe
+from synth.question.catalogs import as_catalogs
+from synth.question.ranges import declared_ranges
 
 
 class Sample(synth.DesignProblem):

@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.clock import Clock
-from synth.dives import dive
-from synth.formulation import Formulation
-from synth.instance import catalogs_for
+from synth.question.catalogs import catalogs_for
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.large_neighbourhood import dive
 from tests.asking import instance_of
 
 WIDTHS = np.round(np.geomspace(1.0, 8.0, 25), 2)

@@ -5,8 +5,8 @@ import math
 import pytest
 
 import synth
-from synth.elasticity import elasticities
-from synth.together_search import TogetherSearch
+from synth.parametric.joint_search import TogetherSearch
+from synth.search.sensitivity import elasticities
 from tests.asking import pose
 from tests.unit.strut import RODS, Strut
 

@@ -7,10 +7,11 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.enclosure import ANYTHING, INF, Arithmetic, Cut, Enclosed, Encloser
-from synth.program import Program
+from synth.model.program import Program
+from synth.proof.enclosure import Cut, Enclosed, Encloser
+from synth.proof.interval_arithmetic import ANYTHING, INF, Arithmetic
+from synth.proof.tape import Ref, Tape, sign_of
 from synth.special import recorded
-from synth.tape import Ref, Tape, sign_of
 from tests.unit.formulas import grown
 
 ENDS = [-3.0, -1.0, 0.0, 1.0, 2.0]

@@ -13,9 +13,9 @@ import synth
 from synth.declaration import Declaration
 from synth.errors import InputError, UnknownOptionError, at, shortened, whole_number
 from synth.input_limits import INPUT_LIMITS
-from synth.instance import as_catalogs
-from synth.sheet import applicants, sheet_of
-from synth.spec import read_spec, spec_from_mapping
+from synth.question.catalogs import as_catalogs
+from synth.question.spec import read_spec, spec_from_mapping
+from synth.studies.families.requirement_sheet import applicants, sheet_of
 from tests.asking import instance_of, steps_of
 
 HUGE = ("x" * 1_000_000, "x " * 500_000, "5 " + "N" * 1_000_000)

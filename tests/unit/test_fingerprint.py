@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 
 import synth
-from synth import fingerprint
-from synth.fingerprint import code_digest, native_code, package_folder, processor
-from synth.instance import Instance, catalogs_for
-from synth.posed import posed
+from synth.question.catalogs import catalogs_for
+from synth.question.instance import Instance
+from synth.results import provenance as fingerprint
+from synth.results.provenance import code_digest, native_code, package_folder, processor
+from synth.robust.counterpart import posed
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
@@ -69,7 +70,7 @@ def test_whether_native_code_computes_is_known(monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.parametrize("what", ["code_digest", "problem_digest", "processor"])
 def test_what_computes_is_known(monkeypatch: pytest.MonkeyPatch, what: str) -> None:
     own = question().fingerprint()
-    monkeypatch.setattr(synth.instance, what, lambda *_: "another")
+    monkeypatch.setattr(synth.question.instance, what, lambda *_: "another")
     other = question().fingerprint()
     assert (other.question == own.question, other.computation == own.computation) == (True, False)
 

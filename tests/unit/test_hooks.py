@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import synth
+from synth.analysis.hooks import OPINION
 from synth.declaration import Setting
-from synth.hooks import OPINION
 
 
 class Rod(synth.DesignProblem):

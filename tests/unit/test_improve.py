@@ -9,9 +9,9 @@ import pytest
 
 import synth
 from synth.effort import SearchEffort
-from synth.improvement import go_on
-from synth.instance import catalogs_for
-from synth.loading import load_front
+from synth.question.catalogs import catalogs_for
+from synth.results.loading import load_front
+from synth.search.improvement import go_on
 from synth.tuning import TUNING, PartSampling
 from tests.asking import pose
 from tests.tuned import synthesize, tuned

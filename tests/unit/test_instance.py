@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.instance import as_catalogs
-from synth.tables import Catalogs
+from synth.question.catalogs import as_catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 

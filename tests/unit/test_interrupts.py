@@ -9,7 +9,7 @@ import pytest
 
 import synth
 from synth.interrupts import heard_again, held_back, taken_alike
-from synth.tables import Catalogs
+from synth.tables.catalogs import Catalogs
 
 
 def press_ctrl_c() -> None:

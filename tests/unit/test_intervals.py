@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from synth.intervals import BACKWARD, FORWARD, SLACK, loosened
-from synth.program import TEMPLATES
+from synth.bounds.intervals import BACKWARD, FORWARD, SLACK, loosened
+from synth.model.program import TEMPLATES
 
 RELATIVE, ABSOLUTE = 1e-12, 1e-13
 DOMAIN = {

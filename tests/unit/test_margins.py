@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 import synth
-from synth import native
-from synth.formulation import Formulation
-from synth.instance import catalogs_for
+from synth.compiled import compiler
 from synth.margins import above, below, within
-from synth.search import one_best
-from synth.search_settings import SearchSettings
+from synth.question.catalogs import catalogs_for
+from synth.question.settings import SearchSettings
+from synth.search.formulation import Formulation
+from synth.search.question import one_best
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 
 OVER_ARRAYS = tuned(compiling={"boxes": 1e9})
-HERE = native.cache_folder() is not None and native._compiler() is not None
+HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
 COMPILED = [False, pytest.param(True, marks=pytest.mark.skipif(not HERE, reason="no C compiler"))]
 
 

@@ -11,20 +11,23 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
-from synth import native, native_boxes
-from synth.c_text import template
-from synth.contractor import Contractor, Layout
-from synth.formulation import Formulation
-from synth.instance import as_catalogs
-from synth.intervals import BACKWARD, FORWARD, Cut, Goal
+from synth.bounds import compiled_boxes as native_boxes
+from synth.bounds.contractor import Contractor, Layout
+from synth.bounds.intervals import BACKWARD, FORWARD
+from synth.compiled import compiler
+from synth.compiled.c_text import template
 from synth.margins import above
-from synth.program import OP_SELECT, Program
+from synth.model.constraints import Cut, Goal
+from synth.model.program import OP_SELECT, Program
+from synth.nlp import interior_point_c as native
+from synth.question.catalogs import as_catalogs
+from synth.search.formulation import Formulation
 from synth.special import TABLE, recorded
 from synth.tuning import TUNING, CodeSizes
 from tests.asking import instance_of
 from tests.tuned import tuned
 
-HERE = native.cache_folder() is not None and native._compiler() is not None
+HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
 pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
 
 ROWS, CLUSTERS = 7, 12

@@ -5,16 +5,17 @@ from functools import partial
 import numpy as np
 import pytest
 
-from synth import native
-from synth.formulation import Archive, Boxes
-from synth.purposes import Cover, Staircase
+from synth.compiled import compiler
+from synth.search.archive import Archive
+from synth.search.boxes import Boxes
+from synth.search.pruning import Cover, Staircase
 from synth.tuning import TUNING, CodeSizes
 from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
 
 TIE = TUNING.tolerances.tie
 
-HERE = native.cache_folder() is not None and native._compiler() is not None
+HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
 pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
 
 

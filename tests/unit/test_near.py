@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import synth
-from synth import near
-from synth.near import near_equals
-from synth.search_settings import SearchSettings
+from synth.question.settings import SearchSettings
+from synth.studies import near_optimal as near
+from synth.studies.near_optimal import near_equals
 from synth.study_limits import NearLimits
 
 METALS = pd.DataFrame(

@@ -6,15 +6,17 @@ import sys
 import numpy as np
 import pytest
 
-import synth.instance
-from synth import outer
-from synth.clock import Clock, Stopped
+import synth.question.instance
+from synth.deadline import Stopped
 from synth.effort import SearchEffort
 from synth.file_locks import alone
-from synth.formulation import Archive, Formulation
-from synth.instance import catalogs_for
-from synth.outer import BEGUN_ANEW, passed_over, search_parts, study_file
-from synth.purposes import Cover
+from synth.question.catalogs import catalogs_for
+from synth.search import part_sampling as outer
+from synth.search.archive import Archive
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.part_sampling import BEGUN_ANEW, passed_over, search_parts, study_file
+from synth.search.pruning import Cover
 from synth.tuning import PartSampling
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
@@ -213,7 +215,7 @@ def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeyp
     assert not passed_over(before)
     before.touch()
     assert not passed_over(before)
-    monkeypatch.setattr(synth.instance, what, lambda *_: "another")
+    monkeypatch.setattr(synth.question.instance, what, lambda *_: "another")
     assert file() != before
     assert passed_over(file())
     file().touch()
@@ -228,6 +230,6 @@ def test_a_study_that_begins_anew_is_told(monkeypatch, tmp_path):
         ask(progress=lambda state: told.append(state["message"]))
     assert BEGUN_ANEW not in told
     assert len(journals(tmp_path)) == 1
-    monkeypatch.setattr(synth.instance, "processor", lambda: "another")
+    monkeypatch.setattr(synth.question.instance, "processor", lambda: "another")
     assert ask(progress=lambda state: told.append(state["message"])).statistics["outer_trials"] == TRIALS
     assert BEGUN_ANEW in told

@@ -13,15 +13,15 @@ import pytest
 import yaml
 
 import synth
-from synth import formulation
-from synth.batch_nlp import BatchNlp, Code, Solutions, Tasks
 from synth.feasibility import residual
-from synth.formulation import Formulation
-from synth.intervals import Cut, Goal
-from synth.nlp import ParametricNlp, Task
-from synth.nlp_rows import Rows
-from synth.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
-from synth.program import Program
+from synth.model.constraints import Cut, Goal
+from synth.model.program import Program
+from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.ipopt import ParametricNlp, Task
+from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
+from synth.nlp.rows import Rows
+from synth.search import formulation
+from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.regimes import best_in_any_regime, referee
 

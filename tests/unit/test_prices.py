@@ -10,9 +10,9 @@ import pytest
 from scipy.optimize import minimize
 
 import synth
-from synth import pricing
-from synth.price_list import Store
-from synth.search_settings import SearchSettings
+from synth.question.settings import SearchSettings
+from synth.studies.prices import run as pricing
+from synth.studies.prices.price_list import Store
 from synth.study_limits import PriceLimits
 from tests.unit.strut import RODS, Strut
 from tests.unit.test_elasticity import Followed, Hung

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import as_catalogs
-from synth.program import ARITY_ONE, ARITY_TWO, OP_SELECT, OP_SPECIAL, TEMPLATES, Program, UnsupportedOperation
+from synth.model.program import ARITY_ONE, ARITY_TWO, OP_SELECT, OP_SPECIAL, TEMPLATES, Program, UnsupportedOperation
+from synth.question.catalogs import as_catalogs
 from synth.special import TABLE, expanded, recorded, special
 from tests.asking import instance_of
 

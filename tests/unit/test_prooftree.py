@@ -7,10 +7,12 @@ import pandas as pd
 import pytest
 
 import synth
-from synth.instance import as_catalogs
+from synth.proof.clusters import Clusters
+from synth.proof.questions import Point
+from synth.proof.tree import ProofTree
 from synth.proof_limits import PROOF, ProofLimits
-from synth.prooftree import Clusters, Point, ProofTree
-from synth.tables import Catalogs
+from synth.question.catalogs import as_catalogs
+from synth.tables.catalogs import Catalogs
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, known_design
 from tests.unit.formulas import BINARY, UNARY

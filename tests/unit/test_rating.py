@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth.instance import as_catalogs
-from synth.robust_console import percent
-from synth.scatter import scattered
-from synth.uncertainty import Uncertainty, read_block
+from synth.question.catalogs import as_catalogs
+from synth.question.uncertainty import Uncertainty, read_block
+from synth.robust.uncertainty import scattered
+from synth.terminal.robust_console import percent
 from tests.asking import rater_of
 from tests.unit.shaft_brake import CATALOGS, NEEDED, PAIRS, ShaftBrake
 

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth import resolution
 from synth.declaration import DeclarationError
-from synth.resolution import FINEST, goal_scales, in_words, ranges, rounded_up, slack
+from synth.results.certificate import in_words
+from synth.search import resolution
+from synth.search.resolution import FINEST, goal_scales, ranges, rounded_up, slack
 
 
 class Fit(synth.DesignProblem):

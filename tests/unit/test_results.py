@@ -11,8 +11,8 @@ import yaml
 
 import synth
 from synth.files import write_atomically
-from synth.front_record import FORMAT
 from synth.results import Certificate
+from synth.results.front_record import FORMAT
 from synth.units import from_si
 from tests.unit.strut import NEEDED, RODS, Strut
 

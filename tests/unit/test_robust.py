@@ -5,12 +5,12 @@ import pytest
 from scipy.optimize import brentq
 
 import synth
-import synth.question
-import synth.robust
-from synth.instance import as_catalogs
-from synth.posed import RobustProblem, posed
+import synth.analysis.restate
+import synth.robust.robust_front
+from synth.question.catalogs import as_catalogs
+from synth.question.uncertainty import read_block
+from synth.robust.counterpart import RobustProblem, posed
 from synth.tuning import TUNING
-from synth.uncertainty import read_block
 from tests.asking import rater_of
 from tests.tuned import synthesize, tuned
 from tests.unit.shaft_brake import CATALOGS, FACE, NEEDED, PAIRS, ShaftBrake
@@ -81,7 +81,9 @@ def test_a_robust_front_is_verified_and_read_back(fronts, tmp_path):
     assert {"designs.csv", "front.json", "robust.csv"} <= set(again.files())
     header = again.files()["designs.csv"].splitlines()[0]
     assert header.endswith("robust,proof,yield,yield low,yield high,worst limit,worst utilisation,worst at")
-    instance = synth.question.question_of(again, posed(ShaftBrake(), again.frame.restated["robust"], None), CATALOGS)
+    instance = synth.analysis.restate.question_of(
+        again, posed(ShaftBrake(), again.frame.restated["robust"], None), CATALOGS
+    )
     assert [x.name for x in instance.model.limits] == [x for x in robust.frame.limit_units]
 
 

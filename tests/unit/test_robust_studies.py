@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 
 import synth
-import synth.robust
-from synth.breaks import NOT_ROBUST
-from synth.rated import COLUMNS
-from synth.request import Request
+import synth.robust.robust_front
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
 from synth.results import ParetoFront
-from synth.search_settings import SearchSettings
-from synth.study import Study
-from synth.study_questions import Steps
-from synth.what_if import study_of
+from synth.results.rating_tables import COLUMNS
+from synth.studies.whatif.break_points import NOT_ROBUST
+from synth.studies.whatif.run import study_of
+from synth.studies.whatif.steps import Steps
+from synth.studies.whatif.study import Study
 from tests.asking import steps_of
 from tests.tuned import tuned
 from tests.unit.shaft_brake import CATALOGS, NEEDED, ShaftBrake

@@ -5,7 +5,7 @@ import math
 import pytest
 
 import synth
-from synth.cli import app
+from synth.terminal.cli import app
 from tests.unit.strut import NEEDED, RODS, Strut
 
 PARTS = {"plate": "core 2", "material": "soft"}

@@ -10,12 +10,12 @@ import pytest
 from strut import NEEDED, RODS, Strut
 
 import synth
-from synth.batch_nlp import Tasks
-from synth.clock import Clock
-from synth.formulation import Formulation
-from synth.instance import catalogs_for
-from synth.purposes import Cover
-from synth.seeker import Seeker, corners, spread_choice
+from synth.nlp.batch import Tasks
+from synth.question.catalogs import catalogs_for
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.primal_heuristics import Seeker, corners, spread_choice
+from synth.search.pruning import Cover
 from tests.asking import instance_of
 
 

@@ -5,9 +5,9 @@ import pytest
 
 import synth
 from synth import DesignProblem
-from synth.formulation import Candidate
-from synth.settle import settle_discrete
-from synth.together_search import TogetherSearch
+from synth.parametric.joint_search import TogetherSearch
+from synth.search.archive import Candidate
+from synth.search.polishing import settle_discrete
 from synth.tuning import TUNING, SettleLimits
 from tests.asking import pose
 from tests.tuned import tuned

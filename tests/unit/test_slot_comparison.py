@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 import synth
-from synth import refused_cells
-from synth.conditions import parse_condition
-from synth.formulation import Formulation
-from synth.instance import catalogs_for
+from synth.question.catalogs import catalogs_for
+from synth.search import refused_cells
+from synth.search.formulation import Formulation
+from synth.tables.conditions import parse_condition
 from tests.asking import instance_of
 
 rng = np.random.default_rng(7)

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.errors import InputError
-from synth.search_settings import SearchSettings
-from synth.spec import read_spec, spec_from_mapping
-from synth.spec_keys import FIELDS
+from synth.question.settings import SearchSettings
+from synth.question.spec import read_spec, spec_from_mapping
+from synth.question.spec_keys import FIELDS
 
 SMALL = "family: multi_plate_clutch\nrequirements:\n  load_torque: 600 N*m\n"
 

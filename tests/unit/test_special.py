@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
-from synth.contractor import Contractor, Layout
-from synth.intervals import Cut, Goal
-from synth.program import Program
+from synth.bounds.contractor import Contractor, Layout
+from synth.model.constraints import Cut, Goal
+from synth.model.program import Program
 from synth.special import TABLE, recorded, special
 from tests.unit.test_contractor import contraction
 

@@ -11,12 +11,13 @@ import synth
 from problems.mechanics.guide_friction import sum_geometric, sum_lipka
 from problems.mechanics.heat import peak_rise_per_work
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
+from synth.bounds.elementary import LOG_BELOW_ONE, MIRRORED, OUTER
+from synth.bounds.structure import LONGEST, classify
 from synth.declaration import Declaration
-from synth.description import declared_ranges
-from synth.instance import as_catalogs
-from synth.program import TEMPLATES
+from synth.model.program import TEMPLATES
+from synth.question.catalogs import as_catalogs
+from synth.question.ranges import declared_ranges
 from synth.special import TABLE, special
-from synth.structure import LOG_BELOW_ONE, LONGEST, MIRRORED, OUTER, classify
 
 
 def structure_of(build, low=None, high=None):

@@ -6,10 +6,10 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.derivatives import RowFunctions
-from synth.intervals import Cut, Goal
-from synth.nlp_rows import Rows
-from synth.program import Program
+from synth.model.constraints import Cut, Goal
+from synth.model.program import Program
+from synth.nlp.row_functions import RowFunctions
+from synth.nlp.rows import Rows
 
 N, COUNT = 3, 50
 

@@ -15,9 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import synth.tables
+import synth.tables.catalogs
 from synth.errors import InputError
-from synth.tables import Catalogs, Column, Schema, Table, load_schema, load_table, shipped_folders, table_from_frame
+from synth.tables.catalogs import Catalogs, shipped_folders
+from synth.tables.reading import load_table, table_from_frame
+from synth.tables.schema import Column, Schema, load_schema
+from synth.tables.table import Table
 
 QUICK = settings(deadline=None, derandomize=True, max_examples=100)
 CATALOGS = Path(__file__).parents[2] / "catalogs"
@@ -481,20 +484,20 @@ def test_discovery_finds_packages_without_importing_them(monkeypatch: pytest.Mon
     user(package, HEAD + ROWS, "parts.csv")
     user(package, SCHEMA, "parts.schema.csv")
     monkeypatch.syspath_prepend(tmp_path)
-    points = [EntryPoint(name, "own_catalogs", synth.tables.ENTRY_POINTS) for name in ("one", "again")]
-    monkeypatch.setattr(synth.tables, "entry_points", lambda group: points)
+    points = [EntryPoint(name, "own_catalogs", synth.tables.catalogs.ENTRY_POINTS) for name in ("one", "again")]
+    monkeypatch.setattr(synth.tables.catalogs, "entry_points", lambda group: points)
     assert shipped_folders() == (package.resolve(),)
     assert Catalogs().names() == ("parts",)
     assert "own_catalogs" not in sys.modules
     for gone in ("no_such_package_here", "no_such_package_here.part"):
-        points[:] = [EntryPoint("gone", gone, synth.tables.ENTRY_POINTS)]
+        points[:] = [EntryPoint("gone", gone, synth.tables.catalogs.ENTRY_POINTS)]
         with pytest.raises(InputError, match="an installed package"):
             shipped_folders()
 
 
 def test_reading_tables_does_not_import_pandas() -> None:
     code = (
-        "import sys; from synth.tables import Catalogs; import synth.conditions;"
+        "import sys; from synth.tables.catalogs import Catalogs; import synth.tables.conditions;"
         f"Catalogs(folders=[{str(CATALOGS)!r}]).table('metals').hashes; print('pandas' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=CATALOGS.parent, check=True)

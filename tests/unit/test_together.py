@@ -15,16 +15,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth import contractor, together_search
-from synth.clock import Stopped
+from synth.bounds import contractor
+from synth.deadline import Stopped
 from synth.feasibility import Status
-from synth.formulation import Formulation
-from synth.problem import DesignProblem
+from synth.model.problem import DesignProblem
+from synth.parametric import joint_search as together_search
+from synth.parametric.joint_question import BestOfEach, Each, Together, different, groups_of
+from synth.parametric.joint_search import TogetherSearch, Wider
 from synth.results import Design, ParetoFront
-from synth.search import Question
-from synth.tables import Catalogs
-from synth.together import BestOfEach, Each, Together, different, groups_of
-from synth.together_search import TogetherSearch, Wider
+from synth.search.formulation import Formulation
+from synth.search.question import Question
+from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
 from tests.asking import pose
 from tests.tuned import tuned

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 import synth
-from synth import together_fronts
-from synth.clock import Stopped
+from synth.deadline import Stopped
 from synth.feasibility import Status
+from synth.parametric import joint_fronts as together_fronts
+from synth.parametric.joint_fronts import FrontsSearch, joint_answers, joint_groups
+from synth.parametric.joint_search import TogetherSearch
 from synth.results import Design, ParetoFront
-from synth.search import Question
-from synth.tables import Catalogs
-from synth.together_fronts import FrontsSearch, joint_answers, joint_groups
-from synth.together_search import TogetherSearch
+from synth.search.question import Question
+from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
 from tests.asking import pose
 from tests.unit.ropes import Ropes, ropes

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import synth
 from synth.errors import InputError
-from synth.study_questions import Steps
-from synth.vary import Varied, split_text
+from synth.studies.whatif.steps import Steps
+from synth.studies.whatif.vary import Varied, split_text
 from tests.asking import steps_of
 from tests.unit.ropes import Ropes, ropes
 

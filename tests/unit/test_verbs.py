@@ -10,8 +10,8 @@ import pytest
 
 import synth
 from synth.errors import InputError
-from synth.request import Request
-from synth.search_settings import SearchSettings
+from synth.question.request import Request
+from synth.question.settings import SearchSettings
 from tests.unit.strut import NEEDED, RODS, Strut
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import synth
 from synth.declaration import Declaration
-from synth.spec_patch import patched
+from synth.question.spec_patch import patched
 from synth.units import parse_quantity
 
 

@@ -13,7 +13,7 @@ import pytest
 import synth
 from synth.feasibility import Status
 from synth.results import Design, ParetoFront
-from synth.study import Study
+from synth.studies.whatif.study import Study
 from tests.unit.ropes import Ropes, best_ropes, ropes
 from tests.unit.strut import RODS, Strut
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from synth.variants.choose import Chooser, _not_dominated
+from synth.variants.p_median import Chooser, _not_dominated
 
 
 def cheapest(costs: np.ndarray, weights: np.ndarray, number: int) -> float:

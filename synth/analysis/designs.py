@@ -1,0 +1,190 @@
+"""Design records: what is told of a design that was found or given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from synth.declaration import VariableRecord
+from synth.feasibility import Status, utilisation
+from synth.model.model import Evaluation
+from synth.question.count_domain import stated
+from synth.question.instance import Instance
+from synth.results import Design, Frame, PartRow
+from synth.results.statistics import SearchStatistics
+from synth.results.told import UNTOLD
+from synth.units import format_quantity
+
+ON_GRID = 1e-9
+
+
+def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
+    """Return what all designs of one question share."""
+    model, d = instance.model, instance.model.declaration
+    return Frame(
+        family=instance.problem.name,
+        title=instance.problem.title or instance.problem.name,
+        options={
+            name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options
+        },
+        requirements={
+            name: format_quantity(instance.requirements[name], d.requirements[name].unit, None)
+            for name in d.requirements
+            if name in instance.given
+        },
+        requirement_values=dict(instance.requirements),
+        not_asked=tuple(instance.not_asked),
+        objectives=dict(objectives),
+        units=dict(model.units),
+        kinds={name: kind for name, _, kind in d.quantities()},
+        limit_units={x.name: x.unit for x in instance.constraints},
+        limit_senses={x.name: x.sense for x in instance.constraints},
+        restated=_restated(instance),
+    )
+
+
+def _restated(instance: Instance) -> dict[str, Any]:
+    """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
+    restated: dict[str, Any] = dict(instance.problem.restated)
+    if instance.asked_limits:
+        restated["limits"] = stated(instance.asked_limits)
+    files = instance.catalogs.files()
+    if files:
+        restated["catalogs"] = files
+    return restated
+
+
+def make_design(
+    instance: Instance,
+    frame: Frame,
+    variables: np.ndarray,
+    result: Evaluation,
+    row: int,
+    parts: Mapping[str, PartRow],
+    choices: Mapping[str, str],
+    **more: Any,
+) -> Design:
+    """Return one design of a batch that has been evaluated.
+
+    Parameters
+    ----------
+    variables : array (variables,)
+        SI.
+    result : Evaluation
+    row : int
+        Which of the batch it is.
+    parts, choices : mapping
+        What fills the slots and choices.
+    **more
+        Fields of Design that the search knows (gap, elasticity, ...).
+    """
+    told = _told(instance, result, variables[None, :], [row])[0]
+    return _design(frame, told, parts, choices, more)
+
+
+def _design(
+    frame: Frame,
+    told: Mapping[str, Any],
+    parts: Mapping[str, PartRow],
+    choices: Mapping[str, str],
+    more: Mapping[str, Any],
+) -> Design:
+    """Return a design of what its evaluation tells and what the search knows."""
+    known = {"status": Status.INFEASIBLE if told["violated"] else Status.FEASIBLE, **told, **more}
+    known["advice"] = (*told["advice"], *known.pop("remarks", ()))
+    objectives = {name: told["values"][name] for name in frame.objectives}
+    return Design(frame=frame, parts=dict(parts), choices=dict(choices), objectives=objectives, **known)
+
+
+def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
+    """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
+    model, own = instance.model, np.asarray(rows, dtype=np.int64)
+    count = len(own)
+    sides = {n: (value[own], bound[own]) for n, (value, bound) in result.limits.items()}
+    senses = {x.name: x.sense for x in instance.constraints}
+    residuals = {n: r[own] for n, r in result.residuals.items()}
+    broken = [(x.name, ~result.holds[x.name][own]) for x in instance.constraints]
+    with np.errstate(all="ignore"):
+        used = {
+            name: _where_known(utilisation(value, bound, senses[name]), residuals[name])
+            for name, (value, bound) in sides.items()
+        }
+    void = [(x, gone) for x in instance.constraints if (gone := result.void[x.name][own]).any()]
+    lacking = [", ".join(model.data_inputs[k].label for k in x.void_without) for x, _ in void]
+    unchecked = [
+        (f"not checked: {x.name}, no {columns}", gone) for (x, gone), columns in zip(void, lacking, strict=True)
+    ]
+    advice = [
+        (_message(a.code, a.message, a.source), result.advice[k][own]) for k, a in enumerate(model.declaration.advices)
+    ]
+    pairs = {n: list(zip(value.tolist(), bound.tolist(), strict=True)) for n, (value, bound) in sides.items()}
+    fields = {
+        "values": _row_by_row({name: v[own].tolist() for name, v in result.values.items()}, count),
+        "limits": _row_by_row(pairs, count),
+        "residuals": _row_by_row({name: r.tolist() for name, r in residuals.items()}, count),
+        "utilisation": _row_by_row(used, count),
+        "advice": _which(advice, count),
+        "violated": _which(broken, count),
+        "not_checked": _which(unchecked, count),
+        "off_grid": off_grid(model.variables, points),
+    }
+    return [dict(zip(fields, each, strict=True)) for each in zip(*fields.values(), strict=True)]
+
+
+def _where_known(used: np.ndarray, residuals: np.ndarray) -> list[float | None]:
+    """Return how much of a limit designs use; None where it does not exist."""
+    return [None if gone else u for u, gone in zip(used.tolist(), np.isnan(residuals).tolist(), strict=True)]
+
+
+def _row_by_row(columns: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
+    """Return a mapping per row for columns by name."""
+    if not columns:
+        return [{} for _ in range(count)]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def _which(masks: Sequence[tuple[str, np.ndarray]], count: int) -> list[tuple[str, ...]]:
+    """Return, per row, the names whose mask holds there."""
+    result: list[tuple[str, ...]] = [()] * count
+    for name, mask in masks:
+        for k in np.flatnonzero(mask).tolist():
+            result[k] = (*result[k], name)
+    return result
+
+
+def offered(instance: Instance) -> SearchStatistics:
+    """Return what a question leaves to choose from, for the statistics of a front."""
+    selection = instance.selection
+    return SearchStatistics(
+        combinations=instance.combinations.count,
+        rows_offered={s.slot: selection.offered[s.slot] for s in selection.slots},
+        rows_used={s.slot: len(s.rows) for s in selection.slots},
+        counts={n: len(v) for n, v in selection.counts.items()},
+        choices={n: len(v) for n, v in selection.choices.items()},
+        rows_left_out=selection.left_out,
+        combinations_left_out=instance.combinations_left_out if instance.compared else UNTOLD,
+        not_asked=list(instance.not_asked),
+    )
+
+
+def _message(code: str, message: str, source: str) -> str:
+    return f"{code}: {message}" + (f" [{source}]" if source else "")
+
+
+def off_grid(variables: Sequence[VariableRecord], points: np.ndarray) -> list[dict[str, str]]:
+    """Return, per design, the variables that are off their grid, with the nearest makeable value."""
+    result: list[dict[str, str]] = [{} for _ in points]
+    for variable, values in zip(variables, points.T, strict=True):
+        if len(variable.grid):
+            nearest = variable.grid[np.argmin(np.abs(variable.grid - values[:, None]), axis=1)]
+            for k in np.flatnonzero(np.abs(nearest - values) > ON_GRID * np.abs(nearest)).tolist():
+                makeable = format_quantity(float(nearest[k]), variable.unit)
+                result[k][variable.name] = f"nearest makeable {makeable}"
+    return result
+
+
+def part_row(table: Any, index: int) -> PartRow:
+    """Return the row of a table as results show it."""
+    return PartRow(table.name, table.hashes[index], table.row(index))

@@ -1,0 +1,1 @@
+"""Bounds of the search: intervals, contraction, clusters, curvature, compiled boxes."""

@@ -1,0 +1,1 @@
+"""Compiled code: finding the compiler, keeping what it built."""

@@ -1,0 +1,84 @@
+"""Finding a C compiler, and keeping what it has built."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import platform
+import subprocess
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+from synth.compiled.compilation import compile_shared, switched_on
+from synth.native_switch import c_compiler
+
+FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
+
+
+def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
+    """Return a C source as loaded code; None where it cannot be compiled, kept or loaded.
+
+    Parameters
+    ----------
+    name : str
+        Of the kind of code, for the cache folder.
+    text : str
+        The translation unit.
+    flags : list of str
+        For the compiler.
+
+    Raises
+    ------
+    Stopped
+        Time is over before it is compiled.
+    NotCompiled
+        The time limit is too short for compiling it.
+    """
+    compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
+    if compiler is None or folder is None:
+        return None
+    key = hashlib.sha256("\0".join([text, *flags, *compiler, _machine()]).encode()).hexdigest()[:32]
+    path = folder / f"{name}_{key}.so"
+    try:
+        if not path.exists():
+            compile_shared(compiler[0], text, path, flags)
+        return ctypes.CDLL(str(path))
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+def cache_folder() -> Path | None:
+    """Return the folder for compiled code, made if need be; None where it cannot be written."""
+    given = os.environ.get("XDG_CACHE_HOME")
+    try:
+        folder = (Path(given) if given else Path.home() / ".cache") / "clutchsynth"
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, RuntimeError):
+        return None
+    return folder if os.access(folder, os.W_OK) else None
+
+
+@cache
+def _compiler() -> tuple[str, str] | None:
+    """Return the path and version of the system's C compiler."""
+    path = c_compiler()
+    if path is None:
+        return None
+    try:
+        done = subprocess.run([path, "--version"], capture_output=True, text=True, timeout=30, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return path, done.stdout
+
+
+@cache
+def _machine() -> str:
+    """Return what code for this very processor depends on: a cache folder may be shared between machines."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = [platform.processor()]
+    flags = next((line for line in lines if line.startswith(("flags", "Features"))), "")
+    return "\n".join([platform.machine(), platform.system(), flags])

@@ -1,0 +1,38 @@
+"""Declaring a problem: what a family says about requirements, sizes, parts, limits and objectives."""
+
+from synth.declaration.grids import grid_values
+from synth.declaration.records import (
+    Choice,
+    Count,
+    DeclarationError,
+    Limit,
+    Objective,
+    Origin,
+    Part,
+    Refusal,
+    RequirementRecord,
+    Setting,
+    VariableRecord,
+)
+from synth.declaration.verbs import Block, Declaration, Option, Requirement, Slot, Variable
+
+__all__ = [
+    "Block",
+    "Choice",
+    "Count",
+    "Declaration",
+    "DeclarationError",
+    "Limit",
+    "Objective",
+    "Option",
+    "Origin",
+    "Part",
+    "Refusal",
+    "Requirement",
+    "RequirementRecord",
+    "Setting",
+    "Slot",
+    "Variable",
+    "VariableRecord",
+    "grid_values",
+]

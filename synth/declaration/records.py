@@ -1,0 +1,271 @@
+"""What a declaration consists of: frozen records of requirements, variables, parts, limits and objectives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, TypeAlias
+
+import casadi as ca
+import numpy as np
+
+from synth.errors import InputError
+from synth.tables.table import CODE_OF
+
+# A CasADi symbol or an expression of symbols, in SI; no class that formulas could be checked against exists for both.
+Quantity: TypeAlias = Any
+
+
+class DeclarationError(TypeError):
+    """A family declares something that cannot be: a fault of the family, never of its user."""
+
+
+@dataclass(frozen=True)
+class RequirementRecord:
+    """What the user states. ``default`` is an SI number, an expression of earlier symbols, or None."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    default: Any
+    lower: float
+    upper: float
+    optional: bool
+    given: bool
+    sx: Any
+
+
+@dataclass(frozen=True)
+class OptionRecord:
+    """A structural choice of the user, fixed before the search."""
+
+    name: str
+    symbol: str
+    text: str
+    source: str
+    choices: tuple[str, ...]
+    default: str
+    chosen: str
+
+
+@dataclass(frozen=True)
+class VariableRecord:
+    """An unknown of the search with bounds in SI; ``grid`` holds the makeable values in SI, or is empty."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    lower: float
+    upper: float
+    grid: np.ndarray
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Count:
+    """A stepped integer (or half-integer) unknown; ``values`` are all its steps."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    values: np.ndarray
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A discrete unknown that the search decides; its symbol is the index of the label.
+
+    ``refused`` holds labels that people ask for and that cannot be offered, each with the reason.
+    """
+
+    name: str
+    symbol: str
+    text: str
+    source: str
+    labels: tuple[str, ...]
+    sx: Any
+    refused: Mapping[str, str] = field(default_factory=dict)
+
+    def expected(self, label: str) -> str:
+        """Return what may stand in place of a label that is not offered, with the reason where there is one."""
+        reason = self.refused.get(label)
+        return "one of " + ", ".join(self.labels) + (f"; {reason}" if reason else "")
+
+    def select(self, values: Mapping[str, Any]) -> Any:
+        """Return the value that belongs to the chosen label.
+
+        Parameters
+        ----------
+        values : mapping
+            One expression or number for every label.
+
+        Raises
+        ------
+        DeclarationError
+            When the labels do not match those of the choice.
+        """
+        if set(values) != set(self.labels):
+            raise DeclarationError(f"choice {self.name}: select() must name exactly the labels {self.labels}")
+        result: Any = ca.SX(values[self.labels[-1]])
+        for index, label in reversed(list(enumerate(self.labels[:-1]))):
+            result = ca.if_else(self.sx == index, values[label], result)
+        return result
+
+
+@dataclass
+class Part:
+    """One row of a catalogue table, seen through symbols.
+
+    Attribute access gives the SI symbol of a number column.
+    """
+
+    slot: str
+    table: str
+    where: tuple[str, ...]
+    symbol: str
+    text: str
+    source: str
+    is_slot: bool
+    known: frozenset[str]
+    columns: dict[str, PartColumn] = field(default_factory=dict)
+
+    def __getattr__(self, column: str) -> Any:
+        if column.startswith("_"):
+            raise AttributeError(column)
+        if column not in self.known:
+            right = f"a number column, which slot {self.slot} uses"
+            raise InputError(f"table {self.table}, column {column}", None, right, ("catalogs", self.table, column))
+        return self._symbol((column,), required=True)
+
+    def code(self, column: str) -> Any:
+        """Return a number that stands for the text of a column: the same in all tables for the same text."""
+        return self._symbol((f"{CODE_OF}{column}",), required=True)
+
+    def optional(self, column: str) -> Any:
+        """Return a column that table or row may lack; limits that use it are void there."""
+        return self._symbol((column,), required=False)
+
+    def first_of(self, *columns: str) -> Any:
+        """Return the first of several columns that the row has a value for."""
+        return self._symbol(columns, required=True)
+
+    def _symbol(self, columns: tuple[str, ...], required: bool) -> Any:
+        key = "|".join(columns)
+        known = self.columns.get(key)
+        if known is None:
+            self.columns[key] = PartColumn(self.slot, columns, required, ca.SX.sym(f"{self.slot}.{key}"))
+        elif required and not known.required:
+            # One use that cannot do without the column is enough; the other uses keep their symbol.
+            self.columns[key] = PartColumn(self.slot, columns, required, known.sx)
+        return self.columns[key].sx
+
+
+@dataclass(frozen=True)
+class PartColumn:
+    """A column (or first of several) used by the problem, and its symbol."""
+
+    slot: str
+    columns: tuple[str, ...]
+    required: bool
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A named, reported quantity; it exists only where the guards in ``needs`` hold.
+
+    No limit above ``ceiling`` (SI) may be typed for it.
+    """
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    needs: tuple[str, ...]
+    sx: Any
+    ceiling: float = np.inf
+
+
+class Origin(StrEnum):
+    """Who states a limit."""
+
+    FAMILY = "family"
+    USER = "user"
+    PIN = "pin"  # the user, who fixes a derived quantity
+    RANGE = "range"  # of the family or the user, at a corner of what scatters
+
+
+@dataclass(frozen=True)
+class Step:
+    """A named quantity on the way to others, which is not among the public results."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    sx: Any
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
+
+    name: str
+    sense: str
+    unit: str
+    text: str
+    source: str
+    value: Any
+    limit: Any
+    guard: bool
+    scale: float
+    origin: Origin = Origin.FAMILY
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A quantity to be made small ("min") or large ("max")."""
+
+    name: str
+    sense: str
+    default: bool
+    resolution: float | None = None  # in the unit of the quantity
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Input that must be refused when the condition holds."""
+
+    code: str
+    when: Any
+    message: str
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A remark printed on the designs for which the condition holds."""
+
+    code: str
+    when: Any
+    message: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Something that a simulation may be told beside the requirements: a number in ``unit``, a word, or a table row."""
+
+    text: str
+    unit: str = ""
+    choices: tuple[str, ...] = ()
+    table: str = ""

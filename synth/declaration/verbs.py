@@ -1,0 +1,598 @@
+"""What a design problem declares: the verbs of ``DesignProblem.declare`` and the records they leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload
+
+import casadi as ca
+import numpy as np
+
+from synth.errors import InputError, UnknownOptionError
+from synth.feasibility import SMALLEST
+from synth.units import parse_unit, to_si
+
+if TYPE_CHECKING:
+    from synth.tables.catalogs import Catalogs
+from synth.declaration.grids import grid_values
+from synth.declaration.records import (
+    Advice,
+    Choice,
+    Count,
+    DeclarationError,
+    Derived,
+    Limit,
+    Objective,
+    OptionRecord,
+    Part,
+    Quantity,
+    Refusal,
+    RequirementRecord,
+    Step,
+    VariableRecord,
+)
+
+# Formulas are plain NumPy functions; in this mode NumPy calls on symbols return plain symbols.
+ca.GlobalOptions.setNumpyMode(-1)
+
+
+class BlockField(Protocol):
+    """What may stand in a :class:`Block`: it declares itself under the name of the attribute."""
+
+    @property
+    def default(self) -> Any:
+        """Value where the user states none; a function of the block for one that follows from fields above."""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Any:
+        """Declare the field under a name; return what the attribute of the block is."""
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A requirement as field of a :class:`Block`; see :meth:`Declaration.requirement`.
+
+    ``default`` may be a function that takes the block and returns the default from fields that stand above.
+    """
+
+    unit: str
+    default: Any = None
+    lower: float | None = None
+    upper: float | None = None
+    optional: bool = False
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
+        """Declare the requirement; return its symbol, or None for an optional one that is not given."""
+        return d.requirement(
+            name, self.unit, default, self.lower, self.upper, self.optional, self.symbol, self.text, self.source
+        )
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Requirement: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option as field of a :class:`Block`, whose attribute is the word chosen; see :meth:`Declaration.option`.
+
+    The choices are words, or the designations of a ``table``.
+    """
+
+    choices: tuple[str, ...] = ()
+    default: str | Callable[[Any], str] = ""
+    table: str = ""
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    def declared(self, d: Declaration, name: str, default: Any) -> str:
+        """Declare the option; return the chosen word."""
+        choices = d.designations(self.table) if self.table else self.choices
+        return d.option(name, choices, default, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Option: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> str: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable as field of a :class:`Block`; see :meth:`Declaration.variable`."""
+
+    unit: str
+    lower: float
+    upper: float
+    grid: float | str | Sequence[float] | None = None
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    default = None
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
+        """Declare the variable; return its symbol."""
+        if default is not None:
+            raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
+        return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Variable: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Quantity: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A slot as field of a :class:`Block`; see :meth:`Declaration.part`."""
+
+    table: str
+    where: str | tuple[str, ...] = ()
+    symbol: str | None = None
+    text: str = ""
+    source: str = ""
+
+    default = None
+
+    def declared(self, d: Declaration, name: str, default: Any) -> Part:
+        """Declare the slot; return the part whose columns are symbols."""
+        if default is not None:
+            raise DeclarationError(f"{d.problem}: slot {name} has no default, it is what the search decides")
+        return d.part(name, self.table, self.where, self.symbol, self.text, self.source)
+
+    @overload
+    def __get__(self, block: None, kind: type[Block]) -> Slot: ...
+    @overload
+    def __get__(self, block: Block, kind: type[Block]) -> Part: ...
+    def __get__(self, block: Block | None, kind: type[Block]) -> Any:
+        return _field_of(self, block)
+
+
+def _field_of(own: Any, block: Block | None) -> Any:
+    """Return the field to who asks the class, as it has no value there yet."""
+    if block is None:
+        return own
+    raise AttributeError("this field of the block is declared further down")
+
+
+class Block:
+    """Quantities that are declared together, each once: its attribute is its field and its public name.
+
+    ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
+    the block, whose attributes are then the symbols. Properties may say what follows from them.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    defaults : mapping
+        Defaults that this use of the block decides, by field.
+
+    Raises
+    ------
+    DeclarationError
+        When a default is meant for a field that the block does not have.
+
+    Examples
+    --------
+    >>> class Duty(Block):
+    ...     torque = Requirement("N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit")
+    ...     peak_torque = Requirement("N*m", lambda duty: 2 * duty.torque, upper=1e7, text="Shock")
+    >>> from synth.tables.table import Catalogs
+    >>> d = Declaration("shaft", {}, frozenset(), Catalogs())
+    >>> duty = d.block(Duty)
+    >>> duty.torque, d.requirements["peak_torque"].default
+    (SX(torque), SX((2.*torque)))
+    """
+
+    def __init__(self, d: Declaration, defaults: Mapping[str, Any]) -> None:
+        fields = self.fields()
+        for name in defaults:
+            if name not in fields:
+                raise DeclarationError(f"{d.problem}: block {type(self).__name__} has no field {name!r}")
+        for name, own in fields.items():
+            default = defaults.get(name, own.default)
+            if callable(default):
+                default = default(self)
+            self.__dict__[name] = own.declared(d, name, default)
+
+    @classmethod
+    def fields(cls) -> dict[str, BlockField]:
+        """Return what the block declares, by name and in order."""
+        everything = [item for base in reversed(cls.__mro__) for item in vars(base).items()]
+        return {name: value for name, value in everything if isinstance(value, (Requirement, Option, Variable, Slot))}
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{type(self).__name__}.{name} is what was declared; it cannot be set")
+
+
+AnyBlock = TypeVar("AnyBlock", bound=Block)
+
+
+class Declaration:
+    """Collects what a problem declares, for one set of options and of optional requirements given.
+
+    Parameters
+    ----------
+    problem : str
+        Name of the problem, for messages.
+    options : mapping
+        Options the user has set.
+    given : set of str
+        Names of the requirements the user has given.
+    catalogs : Catalogs
+        The part tables in force.
+    """
+
+    def __init__(self, problem: str, options: Mapping[str, str], given: frozenset[str], catalogs: Catalogs) -> None:
+        self.problem = problem
+        self.catalogs = catalogs
+        self._asked_options = dict(options)
+        self._given = given
+        self.requirements: dict[str, RequirementRecord] = {}
+        self.options: dict[str, OptionRecord] = {}
+        self.variables: dict[str, VariableRecord] = {}
+        self.counts: dict[str, Count] = {}
+        self.choices: dict[str, Choice] = {}
+        self.slots: dict[str, Part] = {}
+        self.rows: dict[str, Part] = {}
+        self.derived: dict[str, Derived] = {}
+        self.steps: dict[str, Step] = {}
+        self.limits: dict[str, Limit] = {}
+        self.objectives: dict[str, Objective] = {}
+        self.refusals: list[Refusal] = []
+        self.advices: list[Advice] = []
+        self._symbols: dict[str, str] = {}
+
+    # -- names ---------------------------------------------------------------------------------
+
+    def _claim(self, name: str, symbol: str | None) -> str:
+        symbol = name if symbol is None else symbol
+        for word in {name, symbol}:
+            if word in self._symbols:
+                raise DeclarationError(
+                    f"{self.problem}: {word!r} of {name} is already the name or symbol of {self._symbols[word]}"
+                )
+        self._symbols[name] = self._symbols[symbol] = name
+        return symbol
+
+    def names(self) -> dict[str, str]:
+        """Return every accepted spelling (name or symbol) and the name it stands for."""
+        return {word: name for word, name in self._symbols.items() if name not in self.steps}
+
+    # -- verbs ---------------------------------------------------------------------------------
+
+    def block(self, kind: type[AnyBlock], **defaults: Any) -> AnyBlock:
+        """Declare the fields of a block and return it.
+
+        Parameters
+        ----------
+        kind : subclass of Block
+        **defaults
+            Defaults that this use of the block decides, by field: numbers in the unit of the field, expressions in SI,
+            words for options.
+
+        Returns
+        -------
+        Block
+            Its attributes are the symbols, None for optional requirements that are not given, words for options.
+        """
+        return kind(self, defaults)
+
+    def requirement(
+        self,
+        name: str,
+        unit: str,
+        default: Any = None,
+        lower: float | None = None,
+        upper: float | None = None,
+        optional: bool = False,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare a quantity that the user states; bare numbers are in ``unit``, expressions in SI.
+
+        Returns
+        -------
+        symbol, or None for an optional requirement that was not given.
+        """
+        symbol = self._claim(name, symbol)
+        parsed = parse_unit(unit)
+        numeric = default is None or isinstance(default, (int, float))
+        given = name in self._given
+        record = RequirementRecord(
+            name=name,
+            unit=unit,
+            symbol=symbol,
+            text=text,
+            source=source,
+            default=float(to_si(default, parsed)) if numeric and default is not None else default,
+            lower=-np.inf if lower is None else float(to_si(lower, parsed)),
+            upper=np.inf if upper is None else float(to_si(upper, parsed)),
+            optional=optional,
+            given=given,
+            sx=None if optional and not given else ca.SX.sym(name),
+        )
+        self.requirements[name] = record
+        return record.sx
+
+    def option(
+        self,
+        name: str,
+        choices: Sequence[str],
+        default: str,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> str:
+        """Declare a structural choice of the user and return the chosen string."""
+        symbol = self._claim(name, symbol)
+        labels = tuple(choices)
+        if default not in labels:
+            raise DeclarationError(f"{self.problem}: default {default!r} of option {name} is not one of {labels}")
+        if name != symbol and name in self._asked_options and symbol in self._asked_options:
+            right = "each option once (name and symbol mean the same)"
+            raise InputError(f"options: {name}", symbol, right, ("options", symbol))
+        chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
+        if isinstance(chosen, bool):
+            chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
+        if chosen not in labels:
+            raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
+        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen)
+        return str(chosen)
+
+    def designations(self, table: str) -> tuple[str, ...]:
+        """Return the designations of a catalogue table, for options that are rows of a table."""
+        return tuple(self.catalogs.table(table).designations)
+
+    def cell(self, table: str, designation: str, column: str) -> str:
+        """Return a text of a catalogue table; empty where a user's own table does not have the column."""
+        found = self.catalogs.table(table)
+        return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+
+    def numbers(self, table: str, column: str) -> np.ndarray:
+        """Return a column of a catalogue table in SI, not-a-number where a row has no value."""
+        return self.catalogs.table(table).number(column)
+
+    def variable(
+        self,
+        name: str,
+        unit: str,
+        lower: float,
+        upper: float,
+        grid: float | str | Sequence[float] | None = None,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare an unknown with bounds (and grid) in ``unit``; return its SI symbol."""
+        symbol = self._claim(name, symbol)
+        parsed = parse_unit(unit)
+        if not lower < upper:
+            raise DeclarationError(f"{self.problem}: variable {name} needs lower < upper")
+        makeable = grid_values(grid, lower, upper)
+        if grid is not None and not len(makeable):
+            raise DeclarationError(f"{self.problem}: the grid of variable {name} has no value from {lower} to {upper}")
+        record = VariableRecord(
+            name=name,
+            unit=unit,
+            symbol=symbol,
+            text=text,
+            source=source,
+            lower=float(to_si(lower, parsed)),
+            upper=float(to_si(upper, parsed)),
+            grid=np.asarray(to_si(makeable, parsed), dtype=float),
+            sx=ca.SX.sym(name),
+        )
+        self.variables[name] = record
+        return record.sx
+
+    def count(
+        self,
+        name: str,
+        lower: float,
+        upper: float,
+        step: float = 1,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Any:
+        """Declare a stepped unknown; return its symbol."""
+        symbol = self._claim(name, symbol)
+        if not (step > 0 and lower <= upper):
+            raise DeclarationError(f"{self.problem}: count {name} needs lower <= upper and a step above 0")
+        values = lower + step * np.arange(int(np.floor((upper - lower) / step + 1e-9)) + 1)
+        record = Count(name, "-", symbol, text, source, values.astype(float), ca.SX.sym(name))
+        self.counts[name] = record
+        return record.sx
+
+    def choice(
+        self,
+        name: str,
+        labels: Sequence[str],
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+        refused: Mapping[str, str] | None = None,
+    ) -> Choice:
+        """Declare a discrete unknown that the search decides; ``refused`` says why other labels cannot be asked for."""
+        symbol = self._claim(name, symbol)
+        if not labels or len(set(labels)) < len(labels):
+            raise DeclarationError(f"{self.problem}: choice {name} needs labels, each once")
+        record = Choice(name, symbol, text, source, tuple(labels), ca.SX.sym(name), dict(refused or {}))
+        self.choices[name] = record
+        return record
+
+    def part(
+        self,
+        slot: str,
+        table: str,
+        where: str | Sequence[str] = (),
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> Part:
+        """Declare a slot filled by one row of a catalogue table; columns are attributes of the result."""
+        symbol = self._claim(slot, symbol)
+        conditions = (where,) if isinstance(where, str) else tuple(where)
+        part = self._part(slot, table, tuple(c for c in conditions if c), symbol, text, source, True)
+        self.slots[slot] = part
+        return part
+
+    def row(self, table: str, designation: str) -> Part:
+        """Return one fixed row of a table (not a slot), for options whose figures stand in a table."""
+        self.catalogs.table(table).row_index(designation)
+        part = self._part(f"{table}:{designation}", table, (f"designation == {designation!r}",), "", "", "", False)
+        self.rows[part.slot] = part
+        return part
+
+    def _part(
+        self, slot: str, table: str, where: tuple[str, ...], symbol: str, text: str, source: str, is_slot: bool
+    ) -> Part:
+        columns = self.catalogs.table(table).columns
+        known = frozenset(c for c, column in columns.items() if column.type in ("number", "integer", "flag"))
+        return Part(slot, table, where, symbol, text, source, is_slot, known)
+
+    def derive(
+        self,
+        name: str,
+        unit: str,
+        expr: Any,
+        symbol: str | None = None,
+        text: str = "",
+        source: str = "",
+        needs: str | Sequence[str] = (),
+        ceiling: float | None = None,
+    ) -> Any:
+        """Declare a named, reported quantity and return its expression.
+
+        ``needs`` names the guards (limits with ``guard=True``) without which it does not exist;
+        it and all that depends on it are null where one of them fails. A user's own limit on it above
+        ``ceiling`` (in ``unit``) is refused: it would allow what the model does not cover.
+        """
+        symbol = self._claim(name, symbol)
+        parsed = parse_unit(unit)
+        guards = (needs,) if isinstance(needs, str) else tuple(needs)
+        highest = np.inf if ceiling is None else float(to_si(ceiling, parsed))
+        record = Derived(name, unit, symbol, text, source, guards, ca.SX(expr), highest)
+        self.derived[name] = record
+        return record.sx
+
+    def step(
+        self, name: str, unit: str, expr: Any, symbol: str | None = None, text: str = "", source: str = ""
+    ) -> Quantity:
+        """Name a quantity on the way to others, so that hooks read it from ``design.steps``; return its expression.
+
+        It is no public result: no column, limit or objective, and the search does not see it.
+        """
+        symbol = self._claim(name, symbol)
+        parse_unit(unit)
+        record = Step(name, unit, symbol, text, source, ca.SX(expr))
+        self.steps[name] = record
+        return record.sx
+
+    def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""
+        self._limit(name, "at_most", value, limit, unit, **details)
+
+    def at_least(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value >= limit``."""
+        self._limit(name, "at_least", value, limit, unit, **details)
+
+    def equal(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
+        """Declare the limit ``value == limit``."""
+        self._limit(name, "equal", value, limit, unit, **details)
+
+    def _limit(
+        self,
+        name: str,
+        sense: str,
+        value: Any,
+        limit: Any,
+        unit: str,
+        guard: bool = False,
+        text: str = "",
+        source: str = "",
+        scale: float | None = None,
+    ) -> None:
+        if name in self.limits:
+            raise DeclarationError(f"{self.problem}: limit {name} is declared twice")
+        if guard and sense == "equal":
+            raise DeclarationError(f"{self.problem}: an equality ({name}) cannot be a guard")
+        parsed = parse_unit(unit)
+        size = SMALLEST if scale is None else float(to_si(scale, parsed))
+        self.limits[name] = Limit(name, sense, unit, text, source, ca.SX(value), ca.SX(limit), guard, size)
+
+    def objective(self, name: str, sense: str = "min", default: bool = True, resolution: float | None = None) -> None:
+        """Offer a named quantity as objective.
+
+        Parameters
+        ----------
+        name : str
+        sense : {"min", "max"}
+        default : bool
+            Whether it counts where the question names none.
+        resolution : float, optional
+            In the unit of the quantity: what is better by less counts as equal where the objective may be zero or
+            negative, so that a share of its value tells nothing.
+        """
+        if sense not in ("min", "max"):
+            raise DeclarationError(f"{self.problem}: objective {name} has sense {sense!r}; write 'min' or 'max'")
+        if resolution is not None and not (np.isfinite(resolution) and resolution > 0):
+            raise DeclarationError(
+                f"{self.problem}: objective {name} has resolution {resolution!r}; it must be above 0"
+            )
+        self.objectives[name] = Objective(name, sense, default, resolution)
+
+    def refuse(self, code: str, when: Any, message: str) -> None:
+        """Refuse input (or leave out rows) for which ``when`` holds."""
+        self.refusals.append(Refusal(code, ca.SX(when), message))
+
+    def advise(self, code: str, when: Any, message: str, source: str = "") -> None:
+        """Print a remark on the designs for which ``when`` holds."""
+        self.advices.append(Advice(code, ca.SX(when), message, source))
+
+    # -- views ---------------------------------------------------------------------------------
+
+    def asked(self) -> tuple[str, dict[str, str], frozenset[str], Catalogs]:
+        """Return what this was made for: another one made for the same takes the same declarations."""
+        return self.problem, self._asked_options, self._given, self.catalogs
+
+    def quantities(self) -> Iterator[tuple[str, str, str]]:
+        """Yield (name, unit, kind) of every numeric quantity, in the order of reports."""
+        for variable in self.variables.values():
+            yield variable.name, variable.unit, "variable"
+        for count in self.counts.values():
+            yield count.name, "-", "count"
+        for derived in self.derived.values():
+            yield derived.name, derived.unit, "derived"
+
+    def finish(self) -> None:
+        """Check what can only be checked when everything is declared."""
+        known = {name for name, _, _ in self.quantities()}
+        for objective in self.objectives.values():
+            if objective.name not in known:
+                raise DeclarationError(
+                    f"{self.problem}: objective {objective.name} is no variable, count or derived quantity"
+                )
+        for derived in self.derived.values():
+            for guard in derived.needs:
+                if guard not in self.limits or not self.limits[guard].guard:
+                    raise DeclarationError(f"{self.problem}: {derived.name} needs {guard!r}, which is no guard")
+        for option in self._asked_options:
+            if option not in self.options and option not in {o.symbol for o in self.options.values()}:
+                known_options = ", ".join(self.options) or "none"
+                right = f"an option of {self.problem}: {known_options}"
+                raise UnknownOptionError("options", option, right, ("options", option))

@@ -1,0 +1,509 @@
+"""Batches: a table of rows becomes a job, the job is worked off, its results are written."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import shutil
+import tempfile
+import weakref
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sqlalchemy import URL
+
+from synth.errors import InputError, whole_number
+from synth.input_limits import INPUT_LIMITS
+from synth.jobs.executors import Cluster, Inline, Processes
+from synth.jobs.outputs import write_outputs
+from synth.jobs.row_questions import Asked, Questioner, canonical_position, read_mapping
+from synth.jobs.row_table import read_table
+from synth.jobs.runner import Runner, Shares
+from synth.jobs.store import DONE, OPEN, Store, digest, encoded, file_url
+from synth.jobs.warm_starts import School
+from synth.model.registry import families, load
+from synth.output_folder import claimed, settle
+from synth.plain_text import as_meant
+from synth.question.catalogs import as_catalogs
+from synth.question.count_domain import stated_value
+from synth.question.names import as_mapping
+from synth.question.request import EXAMPLES, check_grid, listed_objectives
+from synth.question.settings import SearchSettings, check_progress
+from synth.results.provenance import code_digest, native_code, problem_digest
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.model.problem import DesignProblem
+
+DATABASE = "jobs.sqlite"  # beside the results, unless another one is named
+# A unit of work should take 0.2 to 2 s: less and the database costs too much, more and an interruption does.
+ROWS_PER_UNIT = 4  # one objective
+FRONTS_PER_UNIT = 1
+SHOWN_FAULTS = 20
+
+
+@dataclass(frozen=True)
+class BatchResult:
+    """What a batch has come to: its files, and how many rows stand how."""
+
+    folder: Path
+    job: str
+    stopped: str  # why it was stopped; empty when it is done
+    counts: Mapping[str, int]  # rows by status
+    database: Any = field(repr=False)
+    catalogs: Any = field(default=None, repr=False, compare=False)  # own tables, and
+    own: Any = field(default=None, repr=False, compare=False)  # a problem that is not registered
+    keep: Any = field(default=None, repr=False, compare=False)  # a temporary folder lives as long as this
+
+    def designs(self) -> pd.DataFrame:
+        """Return designs.csv: the ranked designs of all rows, in an order that only their content decides."""
+        import pandas as pd  # costly to import; who asks has waited long enough for the batch
+
+        settle(self.folder)
+        return _as_meant(pd.read_csv(self.folder / "designs.csv", dtype={"row": str}, low_memory=False))
+
+    def rows(self) -> pd.DataFrame:
+        """Return rows.csv: what became of each row, in the order of the table."""
+        import pandas as pd
+
+        settle(self.folder)
+        return _as_meant(pd.read_csv(self.folder / "rows.csv", dtype={"row": str}, keep_default_na=False))
+
+
+def _as_meant(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table as it was before its texts were kept from being formulas."""
+    frame = frame.rename(columns=as_meant)
+    for k, kind in enumerate(frame.dtypes):
+        if getattr(kind, "kind", "O") not in "biuf":
+            frame.isetitem(k, [as_meant(cell) if isinstance(cell, str) else cell for cell in frame.iloc[:, k]])
+    return frame
+
+
+def batch(
+    p: str | type[DesignProblem] | DesignProblem | None,
+    table: Any,
+    output: str | Path | None = None,
+    *,
+    mapping: Any = None,
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    parts: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    fix: Mapping[str, Any] | None = None,
+    gap: float = 1e-3,
+    grid: bool = True,
+    workers: int = 1,
+    seed: int = 0,
+    scheduler: str | None = None,
+    database: str | None = None,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+) -> BatchResult:
+    """Find the ranked designs for every row of a table of requirements.
+
+    The rows are checked first; a bad one is reported in ``rows()`` and the others run. What was found is kept in a
+    database: the same call after an interruption goes on where it was, and ends with the same designs.csv.
+
+    Parameters
+    ----------
+    p : family name, DesignProblem subclass or instance, or None
+        Of rows that name no ``family``.
+    table : path, DataFrame or list of mappings
+        CSV or .xlsx. Columns are names or symbols of requirements with units in brackets, options, variables that are
+        pinned, and ``family``, ``options``, ``limits``, ``fix``, ``parts``.
+    output : path, optional
+        Folder for designs.csv, rows.csv, batch.json and the database; a temporary one if not given.
+    mapping : path or mapping, optional
+        Headings of the table -> names; ``carry`` for a column that is only carried along.
+    objectives, points, catalogs, gap, grid, seed
+        As for ``synthesize``, for each row.
+    parts, limits, fix : mapping, optional
+        As for ``synthesize``; a row that states the same name replaces it.
+    workers : int
+        Processes; 1 works in this one.
+    scheduler : str, optional
+        ``tcp://host:port`` of a Dask cluster, instead of processes.
+    database : str, optional
+        ``sqlite:///file`` or ``postgresql://...``, instead of a file in the folder.
+    progress : callable, optional
+        Called with a mapping: rows, done, failed, infeasible, bad, rate, left.
+    time_limit : float, optional
+        Seconds per row. What is found within a time is not the same on every machine.
+
+    Returns
+    -------
+    BatchResult
+
+    Raises
+    ------
+    InputError
+        The table as a whole is wrong, or none of its rows asks a question.
+    """
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    keep = None
+    if output is None:
+        keep = _TemporaryFolder()
+        output = keep.path
+    job = BatchJob(
+        p, table, Path(output), mapping, catalogs, database, settings,
+        {"parts": parts, "limits": limits, "fix": fix, "objectives": objectives, "grid": grid},
+    )  # fmt: skip
+    with closing(job), claimed(job.folder, job.id):
+        job.plan()
+        stopped = job.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
+        counts = job.write()
+    return BatchResult(job.place, job.id, stopped, counts, job.address, catalogs, job.questioner.own, keep)
+
+
+class _TemporaryFolder:
+    """A folder that goes when nobody needs it any more."""
+
+    def __init__(self) -> None:
+        self.path = tempfile.mkdtemp(prefix="clutchsynth-")
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+
+class BatchJob:
+    """The steps of a batch: plan, work, write. Each can be repeated, by any process.
+
+    Parameters
+    ----------
+    problem, table, mapping, catalogs, database
+        As for :func:`batch`.
+    folder : Path
+        For the results.
+    settings : SearchSettings
+        Of every row.
+    common : mapping
+        What is asked in all rows: ``parts``, ``limits``, ``fix``, ``objectives``, ``grid``.
+
+    Raises
+    ------
+    InputError
+        The table as a whole, or a setting, is wrong.
+    """
+
+    def __init__(
+        self,
+        problem: Any,
+        table: Any,
+        folder: Path,
+        mapping: Any,
+        catalogs: Any,
+        database: str | None,
+        settings: SearchSettings,
+        common: Mapping[str, Any],
+    ) -> None:
+        check_grid(common["grid"])
+        if folder.exists() and not folder.is_dir():
+            raise InputError("--output", str(folder), "a folder; this is a file")
+        self.folder = self.place = folder
+        self.table = read_table(table)
+        self.mapping = dict(mapping) if isinstance(mapping, Mapping) else read_mapping(mapping)
+        self.settings: dict[str, Any] = {
+            "objectives": listed_objectives(common["objectives"]),
+            "points": settings.points,
+            "gap": settings.gap,
+            "grid": common["grid"],
+            "seed": settings.seed,
+            "time_limit": settings.time_limit,
+        }
+        self.common = {
+            name: {str(key): stated_value(value) for key, value in as_mapping(given, name, EXAMPLES[name]).items()}
+            for name in ("parts", "limits", "fix")
+            for given in [common[name]]
+        }
+        self.catalog_spec = str(Path(catalogs).resolve()) if isinstance(catalogs, (str, Path)) else catalogs
+        self.catalogs = as_catalogs(self.catalog_spec)
+        self.questioner = Questioner(self.table, problem, self.mapping, self.settings, self.common, self.catalogs)
+        self.hashes = {
+            "rows": self.table.digest(),
+            "code": code_digest(),
+            "native code": native_code(),  # processors may differ among the workers of one job
+            "families": problem_digest(self.questioner.problems()),
+            "tables": self.catalogs.digest(),
+        }
+        self.basis = digest([self.settings, {k: v for k, v in self.hashes.items() if k != "rows"}])
+        own = self.questioner.own
+        self.id = digest([
+            self.basis, self.hashes["rows"], self.table.header(), self.mapping, self.common,
+            self.questioner.default, self.questioner.own_options, None if own is None else own.__qualname__,
+        ])[:16]  # fmt: skip
+        self.address: Any = database or file_url(folder.resolve() / DATABASE)
+        self.faults: dict[tuple[str, str | None, str], list[int]] = {}  # column, value, right -> lines; the first kinds
+        self.bad = 0
+        self.unused: dict[str, set[str]] = {}  # family -> columns that it does not have
+        self._store: Store | None = None
+
+    @property
+    def store(self) -> Store:
+        """The database; made when it is first needed."""
+        if self._store is None:
+            self._store = Store(self.address)
+        return self._store
+
+    def close(self) -> None:
+        """Let go of the database."""
+        if self._store is not None:
+            self._store.close()
+
+    # -- plan ----------------------------------------------------------------------------------
+
+    def plan(self) -> bool:
+        """Check all rows and write the job, unless it is there already.
+
+        Returns
+        -------
+        bool
+            Whether it was there: then it goes on.
+
+        Raises
+        ------
+        InputError
+            No row asks a question; then nothing is written.
+        """
+        file = Path(str(self.address.database)) if isinstance(self.address, URL) else None
+        fresh = file is not None and not file.exists()
+        try:
+            return self._planned()
+        except BaseException:
+            if file is not None and fresh:  # nothing is kept of a job that could not be written
+                self.close()
+                for place in (file, *(file.with_name(f"{file.name}-{more}") for more in ("wal", "shm", "journal"))):
+                    place.unlink(missing_ok=True)
+            raise
+
+    def _planned(self) -> bool:
+        if self._is_planned():
+            self._reopen()
+            return True
+        # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
+        with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
+            asked, first, school = 0, list[Asked](), School()
+            for count, row in enumerate(self.questioner.rows(), start=1):
+                if row.key is not None and row.question is not None:
+                    asked += 1
+                    school.show(row.structure, row.key, row.place, row.question)
+                if count <= SHOWN_FAULTS and not asked:
+                    first.append(row)
+                pickle.dump((self._recorded(row), row.place), checked)
+            if not asked:
+                self._refuse(first, count if first else 0)
+            checked.seek(0)
+            return not self.store.create(
+                {
+                    "id": self.id, "basis": self.basis, "source": self.table.name,
+                    "folder": str(self.folder.resolve()), "content": self._content(),
+                },
+                (_taught(school, *pickle.load(checked)) for _ in range(count)),
+                ROWS_PER_UNIT if self._is_single() else FRONTS_PER_UNIT,
+            )  # fmt: skip
+
+    def _is_planned(self) -> bool:
+        place = self.address if isinstance(self.address, str) else Path(str(self.address.database))
+        if isinstance(place, Path) and not place.is_file():
+            return False
+        return self.store.job(self.id) is not None
+
+    def _is_single(self) -> bool:
+        """Tell whether each row asks for one best design only."""
+        return self.settings["points"] == 1 or len(self.settings["objectives"] or ()) == 1
+
+    def _reopen(self) -> None:
+        job = self.store.job(self.id)
+        assert job is not None
+        if job.folder != str(self.folder.resolve()):
+            self.store.set_folder(self.id, str(self.folder.resolve()))
+        self.store.set_state(self.id, OPEN, "continued", f"was {job.state}")
+
+    def _refuse(self, rows: list[Asked], count: int) -> None:
+        if not rows:
+            raise InputError(self.table.name, "a header only", "at least one row below the header")
+        fault = rows[0].faults[0]
+        where = f"{self.table.name}, line {fault.line}{f', column {fault.column}' if fault.column else ''}"
+        others = f" (none of {count} rows can be asked)" if count > 1 else ""
+        path = ("rows", fault.line, fault.column) if fault.column else ("rows", fault.line)
+        raise InputError(where, fault.value, f"{fault.expected}{others}", path)
+
+    def _content(self) -> dict[str, Any]:
+        """Return what is kept with the job: how it is solved, and what its columns are."""
+        carried = {column.position for column in self.questioner.carried}
+        kept = None if self.catalogs is None else self._catalogs_as_text()
+        return {
+            "source": self.table.name,
+            "settings": self.settings,
+            "mapping": self.mapping,
+            "hashes": self.hashes,
+            "catalogs": kept,
+            "own": None if self.questioner.own is None else self.questioner.own.__qualname__,
+            "families": sorted(name for name in self.questioner.named if name in families()),
+            "columns": [
+                {"title": c.title, "position": c.position, "carried": c.position in carried}
+                for c in self.questioner.columns
+            ],
+        }
+
+    def _catalogs_as_text(self) -> Any:
+        """Return own tables as another process can find them; the word ``memory`` where it cannot."""
+        if self.catalog_spec is None or isinstance(self.catalog_spec, str):
+            return self.catalog_spec
+        files = self.catalogs.files()
+        return files if isinstance(self.catalog_spec, Mapping) and set(files) == set(self.catalog_spec) else "memory"
+
+    def _recorded(self, row: Asked) -> dict[str, Any]:
+        if row.faults:
+            self.bad += 1
+            for fault in row.faults:
+                kind = (fault.column, fault.value, fault.expected)
+                if kind in self.faults or len(self.faults) < SHOWN_FAULTS:
+                    self.faults.setdefault(kind, []).append(fault.line)
+        if row.unused:
+            self.unused.setdefault(row.family, set()).update(row.unused)
+        question = None
+        if row.question is not None:
+            question = {
+                "key": row.key,
+                "structure": row.structure,
+                "content": row.question,
+            }
+        return {
+            "line": row.line,
+            "position": canonical_position(row.cells),
+            "key": row.key,
+            "family": row.family,
+            "cells": list(row.cells),
+            "remarks": f"not used: {', '.join(row.unused)}" if row.unused else "",
+            "faults": [
+                {"column": f.column, "value": f.value, "expected": f.expected, "sentence": f.sentence()}
+                for f in row.faults
+            ],
+            "question": question,
+        }
+
+    # -- work and results ----------------------------------------------------------------------
+
+    def work(
+        self,
+        workers: int | None,
+        scheduler: str | None,
+        progress: Callable[[Mapping[str, Any]], None] | None,
+        say: Callable[[str], None] = lambda sentence: None,
+    ) -> str:
+        """Work the job off; return why it was stopped, or an empty text."""
+        shares = Shares(self.settings, self.catalog_spec, self.questioner.own)
+        return work_off(self.store, self.id, shares, workers, scheduler, progress, say)
+
+    def write(self) -> dict[str, int]:
+        """Write the results that there are to ``place``; return the rows by status."""
+        counts, self.place = write_outputs(self.store, self.id, self.folder)
+        return counts
+
+
+def work_off(
+    store: Store,
+    job: str,
+    shares: Shares,
+    workers: int | None,
+    scheduler: str | None,
+    progress: Callable[[Mapping[str, Any]], None] | None,
+    say: Callable[[str], None],
+) -> str:
+    """Work a job off.
+
+    Parameters
+    ----------
+    store, job, shares, progress
+        As for ``Runner``.
+    workers : int or None
+        Processes; None works in this one.
+    scheduler : str, optional
+        Of a Dask cluster, instead of processes.
+    say : callable
+        Told in a sentence what happens to the cluster.
+
+    Returns
+    -------
+    str
+        Why it was stopped; empty when the job is done.
+    """
+    if workers is not None:
+        whole_number(workers, "workers", INPUT_LIMITS.workers, path=("workers",))
+    if sum(store.open_units(job)):
+        executor: Any
+        if scheduler is not None:
+            executor = Cluster(scheduler, say)
+        else:
+            executor = Inline() if workers is None else Processes(workers)
+        stopped = Runner(store, job, shares, executor, progress).run()
+    else:
+        stopped = ""
+    if stopped == "cancelled":
+        return stopped
+    if stopped:
+        store.tell(job, "stopped", stopped)
+    else:
+        store.set_state(job, DONE, "done")
+    return stopped
+
+
+def _taught(school: School, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
+    """Return a row as it is kept: with the question whose experience helps it."""
+    question = record["question"]
+    if question is None:
+        return record
+    key, asked, teacher = school.taught(question["structure"], question["key"], where, question["content"])
+    # Questions with one teacher stand together, so that few processes need its experience.
+    position = canonical_position((encoded(question["content"]),))
+    return {
+        **record,
+        "key": key,
+        "question": {**question, "key": key, "content": asked, "position": teacher.encode() + b"\0" + position},
+    }
+
+
+def resume(
+    store: Store,
+    job: str,
+    workers: int | None,
+    scheduler: str | None,
+    progress: Callable[[Mapping[str, Any]], None] | None,
+    say: Callable[[str], None],
+) -> str:
+    """Go on with a job from what the database says alone; return why it was stopped, or an empty text.
+
+    Raises
+    ------
+    InputError
+        The job has a problem or tables that only the script that made it knows, or the program has changed.
+    """
+    found = store.job(job)
+    if found is None:
+        raise InputError("job", job, "a job of this database")
+    content = found.content
+    if content["own"] is not None or content["catalogs"] == "memory":
+        raise InputError("job", job, "its own script: only that knows the problem or the tables it was made with")
+    now = {
+        "code": code_digest(),
+        "native code": native_code(),
+        "families": problem_digest([type(load(name)) for name in content["families"]]),
+        "tables": as_catalogs(content["catalogs"]).digest(),
+    }
+    changed = [name for name, text in now.items() if content["hashes"].get(name) != text]
+    if changed:
+        wanted = f"the {' and '.join(changed)} it was made with; run clutchsynth batch with its table instead"
+        raise InputError("job", job, wanted)
+    store.set_state(job, OPEN, "resumed", f"was {found.state}")
+    return work_off(
+        store, job, Shares(content["settings"], content["catalogs"], None), workers, scheduler, progress, say
+    )
+
+
+def cores() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,1 @@
+"""A declared problem, traced: its program, constraints and goals."""

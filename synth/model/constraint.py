@@ -1,0 +1,88 @@
+"""A limit as everything reads it: one record, whoever states it, and what designs make of it.
+
+Search, check, ratings and explanations take their sides, senses and scales from here. Verification alone reads the
+declaration itself (``synth.verification.verify``, ``synth.proof.tree``), so that a mistake made here would show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.declaration import Limit, Origin
+from synth.feasibility import SMALLEST
+
+SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraint:
+    """A limit on designs of a model.
+
+    Parameters
+    ----------
+    name : str
+        As reports call it.
+    sense : {"at_most", "at_least", "equal"}
+    value : int
+        Node of the program that is limited.
+    bound : int or float
+        What limits it: another node, or a number in SI.
+    unit : str
+        Of both sides, for reports.
+    scale : float
+        Smallest size that counts, in SI.
+    guard : bool
+        Whether formulas exist only where it holds: then it holds strictly.
+    origin : Origin
+        Who states it.
+    quantity : str
+        The named quantity that a user limits; nothing where the family limits an expression.
+    void_without : tuple of int
+        Data inputs; where one of them has no value the limit does not count.
+    behind : tuple of str
+        Guards without which its sides do not exist.
+    """
+
+    name: str
+    sense: str
+    value: int
+    bound: int | float
+    unit: str
+    scale: float = SMALLEST
+    guard: bool = False
+    origin: Origin = Origin.FAMILY
+    quantity: str = ""
+    void_without: tuple[int, ...] = ()
+    behind: tuple[str, ...] = ()
+
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Return the sides that are nodes of the program."""
+        return (self.value, self.bound) if isinstance(self.bound, int) else (self.value,)
+
+    def void(self, data: Sequence[Any], shape: tuple[int, ...]) -> np.ndarray:
+        """Return for which designs it does not count: an optional column has no value.
+
+        Parameters
+        ----------
+        data : list of numbers or arrays
+            The data inputs of the model, which broadcast to the shape.
+        shape : tuple of int
+            Of the batch of designs.
+        """
+        gone = np.zeros(shape, dtype=bool)
+        for k in self.void_without:
+            gone |= np.isnan(np.asarray(data[k], dtype=float))
+        return gone
+
+    def declared(self, value: Any) -> Limit:
+        """Return the limit on a number as a declaration states it, of the expression that has its value there."""
+        assert not isinstance(self.bound, int)
+        return Limit(
+            self.name, self.sense, self.unit, "", "", value, ca.SX(self.bound), self.guard, self.scale, self.origin
+        )

@@ -1,0 +1,368 @@
+"""A declaration traced into one program, from which everything else is read."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.declaration import Declaration, DeclarationError, Origin, Part, Refusal
+from synth.errors import InputError
+from synth.feasibility import holds, residual
+from synth.interrupts import held_back
+from synth.model.constraint import SIGNS, Constraint
+from synth.model.program import Program
+from synth.special import SpecialCall, expanded
+from synth.units import format_quantity
+
+
+@dataclass(frozen=True)
+class DataInput:
+    """One input of the program that is fixed by the combination or the requirements."""
+
+    kind: str  # requirement, row, count, choice, part
+    name: str  # requirement, count, choice, slot or row
+    columns: tuple[str, ...]  # of part and row: the columns, first one given counts
+    required: bool
+    sx: Any
+
+    @property
+    def column(self) -> str:
+        """Return the key of the column in its part or row; empty for what is no column."""
+        return "|".join(self.columns)
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Return what tells it from all other inputs."""
+        return self.kind, self.name, self.column
+
+    @property
+    def label(self) -> str:
+        """Return a readable name, ``slot.column`` for parts."""
+        return f"{self.name}.{self.column}" if self.columns else self.name
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What the program says for a batch of designs; every value is an array over the batch, in SI."""
+
+    values: dict[str, np.ndarray]
+    limits: dict[str, tuple[np.ndarray, np.ndarray]]
+    residuals: dict[str, np.ndarray]
+    holds: dict[str, np.ndarray]
+    void: dict[str, np.ndarray]
+    advice: dict[int, np.ndarray]
+    feasible: np.ndarray
+
+    def also(self, constraints: Sequence[Constraint]) -> Evaluation:
+        """Return what it says with further limits on quantities, which count as those of the family do.
+
+        Where the guards do not hold without which a quantity does not exist, they alone tell why.
+        """
+        if not constraints:
+            return self
+        limits, residuals, held, void = dict(self.limits), dict(self.residuals), dict(self.holds), dict(self.void)
+        feasible = self.feasible.copy()
+        for x in constraints:
+            value = self.values[x.quantity]
+            limits[x.name] = value, np.full(value.shape, float(x.bound))
+            with np.errstate(all="ignore"):
+                residuals[x.name] = residual(value, float(x.bound), x.sense, x.scale)
+            kept = holds(residuals[x.name], x.guard)
+            for guard in x.behind:
+                kept = kept | ~self.holds[guard]
+            held[x.name], void[x.name] = kept, np.zeros(kept.shape, dtype=bool)
+            feasible &= kept
+        return replace(self, limits=limits, residuals=residuals, holds=held, void=void, feasible=feasible)
+
+    def take(self, rows: slice) -> Evaluation:
+        """Return what it says of some of the designs."""
+        return Evaluation(
+            {name: x[rows] for name, x in self.values.items()},
+            {name: (value[rows], bound[rows]) for name, (value, bound) in self.limits.items()},
+            {name: x[rows] for name, x in self.residuals.items()},
+            {name: x[rows] for name, x in self.holds.items()},
+            {name: x[rows] for name, x in self.void.items()},
+            {k: x[rows] for k, x in self.advice.items()},
+            self.feasible[rows],
+        )
+
+
+class Model:
+    """One traced problem: its symbols, its program and the evaluators made from it.
+
+    Parameters
+    ----------
+    title : str
+        Name of the problem, for messages.
+    declaration : Declaration
+        What the family declared.
+    calls : list of SpecialCall
+        Special functions that were used.
+    """
+
+    def __init__(self, title: str, declaration: Declaration, calls: Sequence[SpecialCall] = ()) -> None:
+        declaration.finish()
+        self.title = title
+        self.declaration = declaration
+        self.calls = list(calls)
+        self.variables = list(declaration.variables.values())
+        self.limits = list(declaration.limits.values())
+        requirements = declaration.requirements.values()
+        self.requirement_symbols = {r.name: str(r.sx) for r in requirements if r.sx is not None}
+        self.data_inputs = self._data_inputs(declaration)
+        self.inputs = [v.sx for v in self.variables] + [i.sx for i in self.data_inputs]
+        keys = [("variable", v.name, "") for v in self.variables] + [i.key for i in self.data_inputs]
+        self.input_number = {key: number for number, key in enumerate(keys)}
+        self.units = {name: unit for name, unit, _ in declaration.quantities()}
+        self._check_symbols()
+        named: dict[str, Any] = {v.name: v.sx for v in self.variables}
+        named |= {c.name: c.sx for c in declaration.counts.values()}
+        named |= {q.name: q.sx for q in declaration.derived.values()}
+        self.quantity_sx = named
+        outputs = list(named.values())
+        outputs += [side for limit in self.limits for side in (limit.value, limit.limit)]
+        outputs += [a.when for a in declaration.advices]
+        self.program = Program(self.inputs, outputs, calls)
+        numbers = iter(self.program.outputs)
+        self.quantity_node = {name: next(numbers) for name in named}
+        sides = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+        self.advice_nodes = [next(numbers) for _ in declaration.advices]
+        self._evaluate = self.program.compile()
+        self.refusal_kinds = [self._refusal_inputs(r.code, r.when) for r in declaration.refusals]
+        self._function_cache: dict[Any, Any] = {}
+        self._null_values, behind = self._behind_guards(sides)
+        void = self._void_inputs(sides)
+        self.constraints = tuple(
+            Constraint(
+                name=x.name, sense=x.sense, value=sides[x.name][0], bound=sides[x.name][1], unit=x.unit, scale=x.scale,
+                guard=x.guard, origin=x.origin, void_without=tuple(void[x.name]), behind=tuple(behind[x.name]),
+            )
+            for x in self.limits
+        )  # fmt: skip
+
+    # -- the trace -----------------------------------------------------------------------------
+
+    def steps(self, variables: np.ndarray, data: Sequence[Any]) -> dict[str, float]:
+        """Return the steps of one design in SI.
+
+        Parameters
+        ----------
+        variables : array (variables,)
+            SI values in the declared order.
+        data : list of numbers
+            One entry per data input.
+        """
+        steps = self.declaration.steps
+        if not steps:
+            return {}
+        # A program of its own: the search does not carry what only hooks read.
+        if "steps" not in self._function_cache:
+            program = Program(self.inputs, [s.sx for s in steps.values()], self.calls)
+            self._function_cache["steps"] = program.compile()
+        with np.errstate(all="ignore"):
+            found = self._function_cache["steps"]([np.array([x], dtype=float) for x in (*variables, *data)])
+        return {name: float(np.ravel(x)[0]) for name, x in zip(steps, found, strict=True)}
+
+    def _data_inputs(self, d: Declaration) -> list[DataInput]:
+        inputs = [DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None]
+
+        def columns(kind: str, part: Part) -> list[DataInput]:
+            return [DataInput(kind, part.slot, c.columns, c.required, c.sx) for c in part.columns.values()]
+
+        for row in d.rows.values():
+            inputs += columns("row", row)
+        inputs += [DataInput("count", c.name, (), True, c.sx) for c in d.counts.values()]
+        inputs += [DataInput("choice", c.name, (), True, c.sx) for c in d.choices.values()]
+        for slot in d.slots.values():
+            inputs += columns("part", slot)
+        return inputs
+
+    def _check_symbols(self) -> None:
+        known = {str(s) for s in self.inputs} | {str(c.symbol) for c in self.calls}
+        d = self.declaration
+        sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
+        named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
+        named += [(f"step {s.name}", s.sx) for s in d.steps.values()]
+        when = [(f"refusal {r.code}", r.when) for r in d.refusals] + [(f"advice {a.code}", a.when) for a in d.advices]
+        for label, expression in sides + named + when:
+            strange = sorted({str(s) for s in ca.symvar(expression)} - known)
+            if strange:
+                raise DeclarationError(f"{self.title}: {label} uses {strange}, which the declaration does not make")
+
+    def _void_inputs(self, sides: Mapping[str, tuple[int, int]]) -> dict[str, list[int]]:
+        """Return, per limit, the optional data inputs that make it void where they have no value.
+
+        What a user limits must have a value: such a limit is missed where there is none.
+        """
+        first = len(self.variables)
+        optional = [first + k for k, i in enumerate(self.data_inputs) if not i.required]
+        result: dict[str, list[int]] = {limit.name: [] for limit in self.limits}
+        for k in optional:
+            marked = self.program.dependence([k])
+            for limit in self.limits:
+                if limit.origin not in (Origin.USER, Origin.PIN) and any(marked[n] for n in sides[limit.name]):
+                    result[limit.name].append(k - first)
+        return result
+
+    def _refusal_inputs(self, code: str, when: Any) -> frozenset[str]:
+        """Return the discrete unknowns (slots, counts, choices) that a refusal speaks of."""
+        used = {str(s) for s in ca.symvar(expanded(when, self.calls))}
+        if used & {str(v.sx) for v in self.variables}:
+            raise DeclarationError(f"{self.title}: refusal {code} speaks of a continuous variable; that is a limit")
+        return frozenset(
+            i.name for i in self.data_inputs if i.kind in ("count", "choice", "part") and str(i.sx) in used
+        )
+
+    def _behind_guards(self, sides: Mapping[str, tuple[int, int]]) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+        """Return, per quantity and per limit, the guards without which it does not exist."""
+        values: dict[str, list[str]] = {name: [] for name in self.quantity_node}
+        limits: dict[str, list[str]] = {limit.name: [] for limit in self.limits}
+        needs = [(q.name, g) for q in self.declaration.derived.values() for g in q.needs]
+        for guard in sorted({g for _, g in needs}):
+            marked = self.program.downstream(self.quantity_node[name] for name, g in needs if g == guard)
+            for name, node in self.quantity_node.items():
+                if marked[node]:
+                    values[name].append(guard)
+            for name, nodes in sides.items():
+                if name != guard and any(marked[n] for n in nodes):
+                    limits[name].append(guard)
+        return values, limits
+
+    def guards_of(self, name: str) -> tuple[str, ...]:
+        """Return the guards without which a quantity does not exist."""
+        return tuple(self._null_values[name])
+
+    def constraint_on(
+        self, quantity: str, sense: str, bound: float, name: str = "", origin: Origin = Origin.USER
+    ) -> Constraint:
+        """Return the limit of a user on a named quantity.
+
+        Parameters
+        ----------
+        quantity : str
+            Its public name.
+        sense : {"at_most", "at_least", "equal"}
+        bound : float
+            SI.
+        name : str
+            As reports call it; by default what a user would type.
+        origin : Origin
+        """
+        unit = self.units[quantity]
+        return Constraint(
+            name=name or f"{quantity} {SIGNS[sense]} {format_quantity(bound, unit, None)}", sense=sense,
+            value=self.quantity_node[quantity], bound=float(bound), unit=unit, origin=origin, quantity=quantity,
+            behind=self.guards_of(quantity),
+        )  # fmt: skip
+
+    # -- names ---------------------------------------------------------------------------------
+
+    def name_of(
+        self, word: str, field: str, among: Sequence[str], what: str, path: tuple[str, ...] | None = None
+    ) -> str:
+        """Return the public name for a name or symbol; refuse with the closest spellings otherwise.
+
+        ``path`` is where the word stands, by default a key under the field.
+        """
+        path = (field, word) if path is None else path
+        spellings = self.declaration.names()
+        name = spellings.get(word)
+        if name in among:
+            return str(name)
+        if name is not None:
+            raise InputError(field, word, f"{what}; {name} is {self.kind_of(name)}", path)
+        allowed = [s for s, n in spellings.items() if n in among]
+        close = difflib.get_close_matches(word, allowed, n=3, cutoff=0.6)
+        hint = f" (did you mean {' or '.join(close)}?)" if close else ""
+        right = f"{what} of {self.title}{hint}; clutchsynth describe {self.title} lists them"
+        raise InputError(field, word, right, path)
+
+    def by_name(self, mapping: Mapping[Any, Any], field: str, among: Sequence[str], what: str) -> dict[str, Any]:
+        """Return a mapping of names or symbols by public name; each may be given once."""
+        result: dict[str, Any] = {}
+        for word, value in mapping.items():
+            name = self.name_of(str(word), field, among, what)
+            if name in result:
+                right = "each name once (name and symbol mean the same)"
+                raise InputError(f"{field}: {name}", str(word), right, (field, str(word)))
+            result[name] = value
+        return result
+
+    def kind_of(self, name: str) -> str:
+        """Return what a declared name is, with its article."""
+        d = self.declaration
+        kinds: dict[str, Mapping[str, Any]] = {
+            "a requirement": d.requirements,
+            "an option": d.options,
+            "a variable": d.variables,
+            "a count": d.counts,
+            "a choice": d.choices,
+            "a slot": d.slots,
+            "a derived quantity": d.derived,
+        }
+        return next(kind for kind, members in kinds.items() if name in members)
+
+    # -- numbers -------------------------------------------------------------------------------
+
+    def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
+        """Evaluate a batch of designs: quantities and the limits of the family (``Instance.evaluate`` has all).
+
+        Parameters
+        ----------
+        variables : array (batch, variables)
+            SI values in the declared order.
+        data : list of numbers or arrays (batch,)
+            One entry per data input.
+
+        Returns
+        -------
+        Evaluation
+        """
+        count = len(variables)
+        with np.errstate(all="ignore"):
+            raw = self._evaluate([variables[:, k] for k in range(len(self.variables))] + list(data))
+            numbers = iter([_column(x, count) for x in raw])
+            values = {name: next(numbers) for name in self.quantity_node}
+            limits = {limit.name: (next(numbers), next(numbers)) for limit in self.limits}
+            advice = {k: next(numbers) > 0.5 for k in range(len(self.advice_nodes))}
+            residuals = {x.name: residual(*limits[x.name], x.sense, x.scale) for x in self.constraints}
+            held = {x.name: holds(residuals[x.name], x.guard) for x in self.constraints}
+            void = {x.name: x.void(data, (count,)) for x in self.constraints}
+            for name, guards in self._null_values.items():
+                for guard in guards:
+                    values[name] = np.where(held[guard], values[name], np.nan)
+            feasible = np.ones(count, dtype=bool)
+            for limit in self.constraints:
+                name = limit.name
+                for guard in limit.behind:
+                    residuals[name] = np.where(held[guard], residuals[name], np.nan)
+                    held[name] = held[name] | ~held[guard]  # the guard alone tells why
+                residuals[name] = np.where(void[name], np.nan, residuals[name])
+                held[name] = held[name] | void[name]
+                feasible &= held[name]
+        return Evaluation(values, limits, residuals, held, void, advice, feasible)
+
+    def refused(self, refusal: Refusal) -> Any:
+        """Return the function that evaluates a refusal for batches of inputs."""
+        return self.function(
+            ("refusal", id(refusal)), lambda: Program(self.inputs, [refusal.when], self.calls).compile()
+        )
+
+    def function(self, key: Any, make: Callable[[], Any]) -> Any:
+        """Return an object that is built once per model, for example a CasADi function or a solver."""
+        if key not in self._function_cache:
+            with held_back():
+                self._function_cache[key] = make()
+        return self._function_cache[key]
+
+
+def _column(x: Any, count: int) -> np.ndarray:
+    """Return an output as an array over the batch."""
+    if isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == float:
+        return x
+    return np.broadcast_to(np.asarray(x, dtype=float), (count,))

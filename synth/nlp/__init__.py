@@ -1,0 +1,1 @@
+"""Nonlinear programs: rows, batched interior point, IPOPT as referee."""

@@ -1,0 +1,391 @@
+"""Many small continuous problems at once: one set of rows, a combination of parts and a task each.
+
+The problem is that of :class:`synth.nlp.ipopt.ParametricNlp`,
+
+    minimise  weights . phi + t_weight t
+    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k,
+
+solved for whole arrays of data by an interior-point method of our own. ``min``, ``max`` and ``where`` are
+differentiated piecewise as they stand, which leads to optima beside their kinks; for those on kinks see
+:mod:`synth.nlp.pieces`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from synth import deadline
+from synth.model.program import Program
+from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Layout, Problems
+from synth.nlp.interior_point_c import Solver, native
+from synth.nlp.interior_point_c_interpreted import General, general
+from synth.nlp.interior_point_numpy import InteriorPoint
+from synth.nlp.row_functions import RowFunctions
+from synth.nlp.rows import GUARD_MARGIN, Rows
+from synth.tuning import TUNING, NlpSettings
+
+# How problems are solved: over arrays of NumPy, by code that serves all formulas, or by code of their own.
+Code = Literal["arrays", "general", "own"]
+
+
+@dataclass(frozen=True)
+class Tasks:
+    """Scalar problems, one per row of each array.
+
+    Parameters
+    ----------
+    weights, slopes, caps : array (problems, objectives)
+        A cap of infinity is none.
+    goal_scales : array (objectives,)
+        Size of objectives that do not enter by logarithm.
+    t_weight : float
+        0: t is held at 0.
+    elastic : float
+        How much one unit of t loosens every limit but the guards.
+    moved : array (problems, limits), optional
+        By how much the row of each limit may be exceeded: the limit itself is another one.
+    """
+
+    weights: np.ndarray
+    slopes: np.ndarray
+    caps: np.ndarray
+    goal_scales: np.ndarray
+    t_weight: float = 1.0
+    elastic: float = 0.0
+    moved: np.ndarray | None = None
+
+    def take(self, rows: np.ndarray) -> Tasks:
+        """Return some of the problems, by positions."""
+        moved = None if self.moved is None else self.moved[rows]
+        own = self.weights[rows], self.slopes[rows], self.caps[rows]
+        return Tasks(*own, self.goal_scales, self.t_weight, self.elastic, moved)
+
+
+@dataclass(frozen=True)
+class Solutions:
+    """Where the solver ended, one row per problem; nothing in it is trusted before it is re-evaluated.
+
+    Parameters
+    ----------
+    variables : array (problems, variables)
+        SI, within their bounds.
+    phi : array (problems, objectives)
+    t : array (problems,)
+    violation : array (problems,)
+        Largest violation of a row at the point; 0 where all hold, infinite where one does not exist.
+    cut_multipliers : array (problems, cuts)
+    goal_multipliers : array (problems, objectives)
+    converged : array of bool (problems,)
+        Whether the point met the tolerances of an optimum.
+    """
+
+    variables: np.ndarray
+    phi: np.ndarray
+    t: np.ndarray
+    violation: np.ndarray
+    cut_multipliers: np.ndarray
+    goal_multipliers: np.ndarray
+    converged: np.ndarray
+
+    def take(self, rows: np.ndarray) -> Solutions:
+        """Return some of the solutions, by mask or positions."""
+        return Solutions(**{field.name: getattr(self, field.name)[rows] for field in fields(self)})
+
+    def put(self, rows: np.ndarray, other: Solutions) -> None:
+        """Put others into the places of some of the solutions."""
+        for field in fields(self):
+            getattr(self, field.name)[rows] = getattr(other, field.name)
+
+
+class BatchNlp:
+    """The solver of one program and set of rows; derivatives and code are made once.
+
+    Parameters
+    ----------
+    program : Program
+    n_variables : int
+    rows : Rows
+    code : {"arrays", "general", "own"}
+        How problems are solved. Without a compiler, or room for so many rows, it is over arrays.
+    edge : float
+        By which share the edge of max and min is rounded off; 0: not at all.
+    conditions : int
+        How many of the last limits never give way: they say where formulas are the right ones.
+    settings : NlpSettings
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        n_variables: int,
+        rows: Rows,
+        code: Code = "own",
+        edge: float = 0.0,
+        conditions: int = 0,
+        settings: NlpSettings = TUNING.nlp,
+    ) -> None:
+        self.rows, self.settings = rows, settings
+        self.functions = RowFunctions(program, n_variables, rows, edge)
+        self.log_variables = np.array(rows.log_variables, dtype=bool)
+        self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
+        self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)
+        self.rigid = self.guard | (np.arange(len(rows.cuts)) >= len(rows.cuts) - conditions)
+        self.solver: InteriorPoint | Solver = self._solver(code)
+        self.compiled = isinstance(self.solver, Solver)
+        self._stored = self.functions.compile_stored()
+        self._sides = self._compile_sides(program)
+
+    def _solver(self, code: Code) -> InteriorPoint | Solver:
+        compiled = {"own": native, "general": general}
+        made = compiled[code](self.functions, self.settings.method) if code != "arrays" else None
+        return made or InteriorPoint(self.functions, self.settings)
+
+    @property
+    def evaluations(self) -> int:
+        """Return how many evaluations all has cost that was solved without code of its own."""
+        if isinstance(self.solver, General):
+            return self.solver.evaluations
+        return self.settings.step_cost * self.solver.steps if isinstance(self.solver, InteriorPoint) else 0
+
+    def _compile_sides(self, program: Program) -> Any:
+        """Return a function of both sides of the rows that enter by a scaled difference."""
+        plain = [c for c, log in zip(self.rows.cuts, self.rows.log_cuts, strict=True) if not log]
+        wanted = [k for c in plain for k in (c.value, c.limit) if k is not None]
+        return program.compile(wanted) if wanted else None
+
+    def solve(
+        self,
+        tasks: Tasks,
+        data: Sequence[Any],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+        workers: int = 1,
+    ) -> Solutions:
+        """Solve all problems, each from its start, and again from other starts where that fails.
+
+        Parameters
+        ----------
+        tasks : Tasks
+        data : list of numbers or arrays (problems,)
+            Data inputs of the program; NaN where a column has no value.
+        start, low, high : array (problems, variables)
+            SI; equal bounds pin a variable.
+        bounds : list of float
+            Constant right sides, in the order of the cuts.
+        void : array of bool (problems, cuts)
+            Limits that do not count.
+        workers : int
+            Threads that may solve at the same time, where the code is compiled.
+
+        Returns
+        -------
+        Solutions
+        """
+        count = len(tasks.weights)
+        columns = [np.asarray(x, dtype=float) for x in data]
+        chunk = self.settings.compiled_at_once if self.compiled else self.settings.at_once
+
+        def solved(first: int) -> Solutions:
+            deadline.check()
+            rows = slice(first, min(first + chunk, count))
+            return self._solve_part(
+                Tasks(
+                    tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
+                    tasks.t_weight, tasks.elastic, None if tasks.moved is None else tasks.moved[rows],
+                ),
+                [x if x.ndim == 0 else x[rows] for x in columns],
+                start[rows], low[rows], high[rows], bounds, void[rows],
+            )  # fmt: skip
+
+        begins = range(0, max(count, 1), chunk)
+        if self.compiled and min(workers, len(begins)) > 1:
+            with ThreadPoolExecutor(min(workers, len(begins))) as threads:
+                parts = []
+                for part in threads.map(solved, begins):
+                    deadline.check()  # the threads themselves know of none
+                    parts.append(part)
+        else:
+            parts = [solved(first) for first in begins]
+        return Solutions(
+            **{field.name: np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Solutions)}
+        )
+
+    # -- one chunk -----------------------------------------------------------------------------
+
+    def _solve_part(
+        self,
+        tasks: Tasks,
+        data: Sequence[np.ndarray],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+    ) -> Solutions:
+        with np.errstate(all="ignore"):
+            clean = [np.where(np.isnan(x), 1.0, x) for x in data]
+            scales = self._scales(low, high)
+            first = np.clip(start, low, high)
+            sizes = self._inverse_sizes(tasks, [*first.T, *clean], bounds)
+            worth = worth_of(tasks)
+            problems = Problems(
+                stored=self._stored(self._fixed_inputs(clean, bounds, sizes, scales)),
+                start=self._to_search(first, scales),
+                low=self._to_search(low, scales),
+                high=self._to_search(high, scales),
+                counts=np.concatenate([~void, np.isfinite(tasks.caps)], axis=1).T,
+                slopes=self._slopes(tasks),
+                rights=self._rights(tasks),
+                weights=(tasks.weights * worth[:, None]).T,
+                t_weight=tasks.t_weight * worth,
+            )
+            ends = self.solver.solve(problems)
+            result = self._finished(problems, ends, scales, low, high, worth)
+            status = ends.status
+            for share in self.settings.other_starts:
+                # Where the rows cannot be met near where a solver ended, another start has hardly ever met them.
+                missed = ~(result.violation <= self.settings.missed)
+                again = np.flatnonzero((status != CONVERGED) & (status != INFEASIBLE) & missed)
+                if not len(again):
+                    break
+                some = problems.moved(again, share)
+                ends = self.solver.solve(some)
+                status[again] = ends.status
+                other = self._finished(some, ends, scales[:, again], low[again], high[again], worth[again])
+                _keep_better(result, other, again)
+        return result
+
+    def slopes(
+        self,
+        tasks: Tasks,
+        data: Sequence[np.ndarray],
+        start: np.ndarray,
+        points: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return values (rows, points) and nonzero derivatives of all rows, in the units that starts give them."""
+        with np.errstate(all="ignore"):
+            scales = self._scales(low, high)
+            sizes = self._inverse_sizes(tasks, [*np.clip(start, low, high).T, *data], bounds)
+            stored = self._stored(self._fixed_inputs(data, bounds, sizes, scales))
+            found = self._first_order(list(self._to_search(points, scales)), [], stored)
+            values = [np.broadcast_to(np.asarray(x, dtype=float), len(points)) for x in found]
+        rows = self.functions.n_rows
+        return np.array(values[:rows]), np.array(values[rows:]).reshape(-1, len(points))
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the nonzero derivatives stand."""
+        return Layout(self.functions)
+
+    @cached_property
+    def _first_order(self) -> Any:
+        return self.functions.compile_point(curved=False)
+
+    def _scales(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the unit of each variable (variables, problems); 1 where the logarithm is the variable."""
+        size = np.maximum(np.abs(low), np.abs(high)).T
+        plain = ~self.log_variables[:, None] & (size > 0) & np.isfinite(size)
+        return np.where(plain, size, 1.0)
+
+    def _to_search(self, values: np.ndarray, scales: np.ndarray) -> np.ndarray:
+        logs = self.log_variables[:, None]
+        return np.where(logs, np.log(np.where(logs, values.T, 1.0)), values.T / scales)
+
+    def _inverse_sizes(self, tasks: Tasks, inputs: Sequence[Any], bounds: Sequence[float]) -> list[Any]:
+        """Return one over what one unit of a scaled difference is, per row."""
+        result: list[Any] = []
+        sides = iter([] if self._sides is None else self._sides(inputs))
+        for j, cut in enumerate(self.rows.cuts):
+            if self.rows.log_cuts[j]:
+                result.append(1.0)
+                continue
+            value = next(sides)
+            limit = bounds[j] if cut.limit is None else next(sides)
+            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
+            result.append(1.0 / np.where(np.isfinite(size), size, 1.0))
+        return [*result, *(1.0 / tasks.goal_scales)]
+
+    def _fixed_inputs(
+        self, data: Sequence[Any], bounds: Sequence[float], sizes: Sequence[Any], scales: np.ndarray
+    ) -> list[Any]:
+        nothing = [0.0] * self.functions.n
+        return [
+            *nothing,
+            *data,
+            *bounds,
+            *sizes,
+            *(1.0 if log else s for log, s in zip(self.log_variables, scales, strict=True)),
+        ]
+
+    def _slopes(self, tasks: Tasks) -> np.ndarray:
+        give = np.where(self.rigid, 0.0, tasks.elastic)
+        return np.concatenate([np.broadcast_to(give, (len(tasks.caps), len(give))), tasks.slopes], axis=1).T
+
+    def _rights(self, tasks: Tasks) -> np.ndarray:
+        margin = np.where(self.guard, -GUARD_MARGIN, 0.0)
+        caps = np.where(np.isfinite(tasks.caps), tasks.caps, 0.0)
+        allowed = np.broadcast_to(margin, (len(caps), len(margin))) + (0.0 if tasks.moved is None else tasks.moved)
+        return np.concatenate([allowed, caps], axis=1).T
+
+    def _finished(
+        self,
+        problems: Problems,
+        ends: Ends,
+        scales: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        worth: np.ndarray,
+    ) -> Solutions:
+        cuts = self.functions.n_cuts
+        logs = self.log_variables[:, None]
+        variables = np.where(logs, np.exp(np.where(logs, ends.y, 0.0)), ends.y * scales)
+        t = self._least_t(problems, ends)
+        left = ends.rows - problems.slopes * t - problems.rights
+        left[:cuts] = np.where(self.equal[:, None], np.abs(left[:cuts]), left[:cuts])
+        left = np.where(problems.counts, np.where(np.isnan(left), np.inf, left), 0.0)
+        return Solutions(
+            variables=np.clip(variables.T, low, high),
+            phi=ends.rows[cuts:].T,
+            t=t,
+            violation=left.max(axis=0, initial=0.0),
+            cut_multipliers=(ends.multipliers[:cuts] / worth).T,
+            goal_multipliers=(ends.multipliers[cuts:] / worth).T,
+            converged=ends.status == CONVERGED,
+        )
+
+    def _least_t(self, problems: Problems, ends: Ends) -> np.ndarray:
+        """Return the least t that all rows allow at the point, where only upper limits speak of it."""
+        speaks = problems.counts & (problems.slopes != 0)
+        soft = speaks & (problems.slopes > 0)
+        soft[: len(self.equal)] &= ~self.equal[:, None]
+        needed = np.where(soft, (ends.rows - problems.rights) / np.where(soft, problems.slopes, 1.0), -np.inf)
+        least = needed.max(axis=0, initial=-np.inf)
+        exact = (problems.t_weight > 0) & np.isfinite(least) & np.all(soft == speaks, axis=0)
+        return np.where(exact, least, ends.t)
+
+
+def worth_of(tasks: Tasks) -> np.ndarray:
+    """Return factors for the objective that make multipliers a matter of ones, one per problem."""
+    slopes = np.where(np.isfinite(tasks.caps), tasks.slopes, 0.0)
+    slope = np.maximum(np.max(slopes, axis=1, initial=0.0), tasks.elastic)
+    by_t = np.where(slope > 0, tasks.t_weight / np.where(slope > 0, slope, 1.0), 0.0)
+    size = np.maximum(np.max(np.abs(tasks.weights), axis=1, initial=0.0), by_t)
+    return np.where(size > 0, 1.0 / np.where(size > 0, size, 1.0), 1.0)
+
+
+def _keep_better(result: Solutions, other: Solutions, places: np.ndarray) -> None:
+    """Put those of other solutions into their places that break their rows less."""
+    better = other.violation < result.violation[places]
+    result.put(places[better], other.take(better))

@@ -1,0 +1,482 @@
+"""The interior-point method over arrays: one lane per problem, all lanes take a step together.
+
+See :mod:`synth.nlp.interior_point` for the method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from synth import deadline
+from synth.nlp.interior_point import (
+    CONVERGED,
+    INFEASIBLE,
+    STOPPED,
+    STUCK,
+    Ends,
+    Layout,
+    Problems,
+    solve_shifted,
+    split,
+)
+from synth.nlp.row_functions import RowFunctions
+from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
+
+
+class InteriorPoint:
+    """The solver of one set of row functions.
+
+    Parameters
+    ----------
+    functions : RowFunctions
+    settings : NlpSettings
+
+    Attributes
+    ----------
+    steps : int
+        How often all lanes went one step: what the solver has cost.
+    """
+
+    def __init__(self, functions: RowFunctions, settings: NlpSettings = TUNING.nlp) -> None:
+        self.functions, self.settings = functions, settings
+        self.steps = 0
+        self.point = functions.compile_point()
+        self.layout = Layout(functions)
+
+    def solve(self, problems: Problems) -> Ends:
+        """Solve all problems, each from its start."""
+        n, rows, count = self.functions.n, self.functions.n_rows, len(problems)
+        ends = Ends(
+            np.empty((n, count)), np.empty(count), np.empty((rows, count)), np.empty((rows, count)),
+            np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64),
+        )  # fmt: skip
+        waiting, most, refill = 0, self.settings.lanes, self.settings.refill
+        lanes: Lanes | None = None
+        with np.errstate(all="ignore"):
+            while lanes is not None or waiting < count:
+                if waiting < count and (lanes is None or len(lanes) < refill * most):
+                    upto = min(count, waiting + most - (0 if lanes is None else len(lanes)))
+                    fresh = Lanes.of(self.layout, self.settings.method, problems, np.arange(waiting, upto))
+                    lanes = fresh if lanes is None else lanes.joined(fresh)
+                    waiting = upto
+                assert lanes is not None
+                deadline.check()
+                lanes.advance(self.point)
+                self.steps += 1
+                lanes = lanes.without_finished(ends)
+        return ends
+
+
+@dataclass
+class Lanes:
+    """Problems on their way: numbers, point, trial point and direction of each, one column per lane.
+
+    ``multipliers`` are those of the rows, above the least they can be (0, or minus the penalty for an equality);
+    names that end in ``_change`` belong to the full step, ``uncorrected`` and ``forecast`` to the last Newton step.
+    """
+
+    layout: Layout
+    method: InteriorPointSettings
+    stored: list[Any]
+    number: np.ndarray
+    # the problem
+    low: np.ndarray
+    high: np.ndarray
+    free: np.ndarray
+    counts: np.ndarray
+    slopes: np.ndarray
+    rights: np.ndarray
+    weights: np.ndarray
+    t_weight: np.ndarray
+    t_free: np.ndarray
+    # the point
+    y: np.ndarray
+    t: np.ndarray
+    form: np.ndarray
+    values: np.ndarray
+    absent: np.ndarray
+    missing: np.ndarray
+    multipliers: np.ndarray
+    low_dual: np.ndarray
+    high_dual: np.ndarray
+    barrier: np.ndarray
+    penalty: np.ndarray
+    next_penalty: np.ndarray
+    restoring: np.ndarray
+    merit: np.ndarray
+    # the step
+    direction: np.ndarray
+    change: np.ndarray
+    low_change: np.ndarray
+    high_change: np.ndarray
+    slope: np.ndarray
+    step: np.ndarray
+    dual_step: np.ndarray
+    rejected: np.ndarray
+    uncorrected: np.ndarray
+    forecast: np.ndarray
+    evaluations: np.ndarray
+    late: np.ndarray
+    status: np.ndarray
+
+    @staticmethod
+    def of(layout: Layout, method: InteriorPointSettings, problems: Problems, number: np.ndarray) -> Lanes:
+        """Return lanes for some of the problems, at their starts."""
+        n, rows, count = layout.n, layout.rows, len(number)
+        low, high = problems.low[:, number], problems.high[:, number]
+        width = high - low
+        free = width > method.pinned_width
+        inside = np.clip(problems.start[:, number], low + method.inside * width, high - method.inside * width)
+        counts, slopes = problems.counts[:, number], problems.slopes[:, number]
+        t_weight = problems.t_weight[number]
+        t_free = (t_weight != 0) & np.any((slopes != 0) & counts, axis=0)
+        per_row, per_variable, zero = np.zeros((rows, count)), np.zeros((n, count)), np.zeros(count)
+        none = np.zeros(count, dtype=np.int64)
+        return Lanes(
+            layout=layout,
+            method=method,
+            stored=[x if np.ndim(x) == 0 else x[number] for x in problems.stored],
+            number=number, low=low, high=high, free=free, counts=counts,
+            slopes=np.where(counts & t_free, slopes, 0.0), rights=problems.rights[:, number],
+            weights=problems.weights[:, number], t_weight=t_weight,
+            t_free=t_free,
+            y=np.where(free, inside, 0.5 * (low + high)), t=zero, form=per_row, values=per_row,
+            absent=np.ones((rows, count), dtype=bool), missing=none + rows + 2,
+            multipliers=per_row, low_dual=per_variable, high_dual=per_variable,
+            barrier=zero + method.first_barrier,
+            penalty=zero + method.first_penalty, next_penalty=zero + method.first_penalty,
+            restoring=np.zeros(count, dtype=bool), merit=zero,
+            direction=np.zeros((n + 1, count)), uncorrected=np.zeros((n + 1, count)), forecast=per_row,
+            change=per_row, low_change=per_variable, high_change=per_variable,
+            slope=zero, step=zero, dual_step=zero, rejected=none, evaluations=none, late=none,
+            status=none,
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        return len(self.number)
+
+    def joined(self, other: Lanes) -> Lanes:
+        """Return these lanes and others after them."""
+        mine, its = self._arrays(), other._arrays()
+        stored = [
+            x if np.ndim(x) == 0 else np.concatenate([x, y]) for x, y in zip(self.stored, other.stored, strict=True)
+        ]
+        return Lanes(self.layout, self.method, stored, **{k: np.concatenate([mine[k], its[k]], axis=-1) for k in mine})
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        return {field.name: getattr(self, field.name) for field in fields(self)[3:]}
+
+    def without_finished(self, ends: Ends) -> Lanes | None:
+        """Write finished lanes to their places and return those that go on."""
+        done = self.status != 0
+        if not done.any():
+            return self
+        number = self.number[done]
+        ends.y[:, number], ends.t[number] = self.y[:, done], self.t[done]
+        ends.rows[:, number] = self.form[:, done]
+        ends.multipliers[:, number] = np.where(self.counts & ~self.absent, self._signed(self.multipliers), 0.0)[:, done]
+        ends.status[number], ends.evaluations[number] = self.status[done], self.evaluations[done]
+        if done.all():
+            return None
+        keep = np.flatnonzero(~done)
+        stored = [x if np.ndim(x) == 0 else x[keep] for x in self.stored]
+        return Lanes(self.layout, self.method, stored, **{k: v[..., keep] for k, v in self._arrays().items()})
+
+    # -- one step ------------------------------------------------------------------------------
+
+    def advance(self, point: Callable[..., list[Any]]) -> None:
+        """Evaluate all trial points, take those that are good enough, and find the next ones."""
+        method = self.method
+        y, t = self.y + self.step * self.direction[:-1], self.t + self.step * self.direction[-1]
+        multipliers = self.multipliers + self.dual_step * self.change
+        form, jacobian, hessian = self._evaluate(point, y, multipliers)
+        absent, missing = self._absent(form, jacobian)
+        values = self._values(form, t, absent, missing)
+        merit = self._merit(y, t, form, values, missing)
+        enough = self.merit + method.armijo * self.step * self.slope + method.rounding * (1 + np.abs(self.merit))
+        fresh = missing < self.missing
+        taken = fresh | ((missing == self.missing) & (merit <= enough))
+        self._set(
+            taken, y=y, t=t, form=form, values=values, absent=absent, missing=missing, multipliers=multipliers,
+            low_dual=self.low_dual + self.dual_step * self.low_change,
+            high_dual=self.high_dual + self.dual_step * self.high_change,
+        )  # fmt: skip
+        self.evaluations = self.evaluations + 1
+        self.late = self.late + (self.barrier <= method.late_barrier)
+        self.rejected = np.where(taken, 0, self.rejected + 1)
+        if fresh.any():
+            self._begin(fresh)
+        slopes = np.where(self._idle(absent, missing) | self._first(missing), 0.0, self.slopes)
+        again = self._judge(taken, jacobian, slopes)
+        bent = (self.rejected == 1) & (missing == self.missing) & np.isfinite(merit)
+        self._direct(taken, bent, jacobian, hessian, slopes, values)
+        self._restart(again | self._stuck(~taken))
+
+    def _set(self, where: np.ndarray, **values: np.ndarray) -> None:
+        every = bool(where.all())
+        for name, value in values.items():
+            setattr(self, name, value if every else np.where(where, value, getattr(self, name)))
+
+    def _evaluate(
+        self, point: Callable[..., list[Any]], y: np.ndarray, multipliers: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        layout, count = self.layout, len(self)
+        weights = np.where(self.counts & ~self.absent, self._signed(multipliers), 0.0)
+        weights[layout.cuts :] += self._objective()
+        out = point(list(y), list(weights), self.stored)
+        form, jacobian = np.empty((layout.rows, count)), np.empty((len(layout.row), count))
+        for k in range(layout.rows):
+            form[k] = out[k]
+        for k in range(len(layout.row)):
+            jacobian[k] = out[layout.rows + k]
+        return form, jacobian, out[layout.rows + len(layout.row) :]
+
+    def _objective(self) -> np.ndarray:
+        """Return the weights of the objectives; while rows are to be met at all there are none."""
+        return np.where(self._first(self.missing), 0.0, self.weights)
+
+    def _first(self, missing: np.ndarray) -> np.ndarray:
+        """Return which lanes only look for a point where all rows exist and hold."""
+        first: np.ndarray = (missing > 0) | self.restoring
+        return first
+
+    def _absent(self, form: np.ndarray, jacobian: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return which rows do not exist at a point, and how many; clear what must not count there."""
+        layout = self.layout
+        wanted = self.counts.copy()
+        wanted[layout.cuts :] |= self.weights != 0
+        absent = ~(np.abs(form) < self.method.largest_row)
+        strange = ~np.isfinite(jacobian)
+        if strange.any():
+            np.logical_or.at(absent, layout.row, strange)
+        absent &= wanted
+        missing = absent.sum(axis=0)
+        if layout.has_guard:
+            guard = layout.guard[:, None]
+            beyond = np.any(self.counts & guard & ~(form <= 0), axis=0)
+            absent |= beyond & wanted & ~guard
+            missing = absent.sum(axis=0) + beyond
+        form[absent] = np.nan
+        silent = ~wanted | self._idle(absent, missing)
+        jacobian[silent[layout.row] | ~self.free[layout.column]] = 0.0
+        return absent, missing
+
+    def _idle(self, absent: np.ndarray, missing: np.ndarray) -> np.ndarray:
+        """Return rows that do not count at a point.
+
+        As long as rows are to be met, those that t can meet do not; as long as rows are to exist, limits all do.
+        """
+        soft: np.ndarray = (self.slopes != 0) & (self.restoring | (self.layout.is_goal & (missing > 0)))
+        idle: np.ndarray = absent | soft
+        return idle
+
+    def _values(self, form: np.ndarray, t: np.ndarray, absent: np.ndarray, missing: np.ndarray) -> np.ndarray:
+        """Return what each row exceeds its right side by; -1 where there is no row."""
+        here = self.counts & ~self._idle(absent, missing)
+        return np.where(here, form - self.slopes * t - self.rights, -1.0)
+
+    def _signed(self, multipliers: np.ndarray) -> np.ndarray:
+        """Return multipliers with the sign of their row; those of equalities are kept from minus the penalty on."""
+        return multipliers - np.where(self.layout.equal, self.penalty, 0.0) if self.layout.has_equal else multipliers
+
+    def _prices(self) -> np.ndarray:
+        return np.where(self.layout.equal, 2 * self.penalty, self.penalty) if self.layout.has_equal else self.penalty
+
+    def _room(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.where(self.free, y - self.low, 1.0), np.where(self.free, self.high - y, 1.0)
+
+    def _merit(
+        self, y: np.ndarray, t: np.ndarray, form: np.ndarray, values: np.ndarray, missing: np.ndarray
+    ) -> np.ndarray:
+        """Return the function that the line search makes smaller, but for a constant."""
+        prices = self._prices()
+        least = 2 * self.barrier / prices
+        length = np.sqrt(values * values + least * least)
+        rows = 0.5 * prices * (values + length) - self.barrier * np.log(least + length)
+        if self.layout.has_equal:
+            rows -= np.where(self.layout.equal, self.penalty * values, 0.0)
+        below, above = self._room(y)
+        goals = form[self.layout.cuts :]
+        objective = np.where(self.weights != 0, self.weights * goals, 0.0).sum(axis=0) + self.t_weight * t
+        barrier = self.barrier * np.log(below * above).sum(axis=0)
+        result: np.ndarray = rows.sum(axis=0) - barrier + np.where(self._first(missing), 0.0, objective)
+        return result
+
+    def _begin(self, fresh: np.ndarray) -> None:
+        """Set multipliers, barrier and t where the rows that count have just changed."""
+        method = self.method
+        soft = self.counts & (self.slopes > 0) & ~self.layout.equal & ~self.absent
+        needed = np.where(soft, (self.form - self.rights) / np.where(soft, self.slopes, 1.0), -np.inf)
+        first = needed.max(axis=0, initial=-np.inf) + method.first_room
+        held = ~self.t_free | self._first(self.missing) | ~np.isfinite(first)
+        self._set(fresh, t=np.where(held, 0.0, first))
+        self._set(
+            fresh,
+            values=self._values(self.form, self.t, self.absent, self.missing),
+            barrier=np.full(len(self), method.first_barrier),
+            penalty=np.where(self._first(self.missing), method.first_penalty, self.next_penalty),
+        )
+        below, above = self._room(self.y)
+        _, _, own = split(self.values, self.barrier, self._prices())
+        self._set(fresh, multipliers=own, low_dual=self.barrier / below, high_dual=self.barrier / above)
+
+    def _bring_in(self, own: np.ndarray, below: np.ndarray, above: np.ndarray) -> None:
+        """Keep multipliers within reach of those that the point itself implies."""
+        method = self.method
+        prices = self._prices()
+        top = np.minimum(own * method.multiplier_spread, prices - (prices - own) / method.multiplier_spread)
+        self.multipliers = np.clip(self.multipliers, own / method.multiplier_spread, top)
+        for name, room in (("low_dual", below), ("high_dual", above)):
+            own = self.barrier / room
+            kept = np.clip(getattr(self, name), own / method.multiplier_spread, own * method.multiplier_spread)
+            setattr(self, name, kept)
+
+    def _judge(self, taken: np.ndarray, jacobian: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """End lanes whose point is good enough, or will never be; else set the barrier.
+
+        Returns which lanes must start again where they are, because what they look for has changed.
+        """
+        layout, method = self.layout, self.method
+        first = self._first(self.missing)
+        below, above = self._room(self.y)
+        slack, excess, own = split(self.values, self.barrier, self._prices())
+        self._bring_in(own, below, above)
+        signed = self._signed(self.multipliers)
+        weights = signed.copy()
+        weights[layout.cuts :] += self._objective()
+        residual = layout.transposed(jacobian, weights)
+        residual += np.where(self.free, self.high_dual - self.low_dual, 0.0)
+        along_t = np.where(self.t_free & ~first, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
+        dual = np.maximum(np.abs(residual).max(axis=0, initial=0.0), np.abs(along_t))
+        dual /= np.maximum(1.0, 0.1 * np.abs(signed).max(axis=0, initial=0.0))
+        products = np.concatenate([
+            self.multipliers * slack, (self._prices() - self.multipliers) * excess,
+            np.where(self.free, self.low_dual * below, self.barrier),
+            np.where(self.free, self.high_dual * above, self.barrier), self.barrier[None],
+        ])  # fmt: skip
+        largest, least = products.max(axis=0), products.min(axis=0)
+        over = np.where(layout.equal, np.abs(self.values), self.values).max(axis=0, initial=0.0)
+        over = np.where(self.missing > 0, np.inf, over)
+        good = (dual < method.dual_tolerance) & (largest < method.gap_tolerance) & (over < method.row_tolerance)
+        hopeless = (
+            first
+            & (dual < method.hopeless_dual)
+            & (self.barrier < method.hopeless_barrier)
+            & (over > method.hopeless_ratio * self.barrier)
+        )
+        self._set(taken & good & ~first, status=np.full(len(self), CONVERGED))
+        self._set(taken & hopeless, status=np.full(len(self), INFEASIBLE))
+        # Along a flat and bent valley the last steps are tiny: what they could still gain is not worth them.
+        tired = (self.evaluations >= method.max_evaluations) | (self.late >= method.max_late)
+        self._set((self.status == 0) & tired, status=np.full(len(self), STOPPED))
+        # Where rows press against the penalty the objective is put aside until they are met.
+        pressed = np.any(self.multipliers > 0.5 * self._prices(), axis=0) & (self.barrier <= method.penalty_barrier)
+        leaves = taken & ~first & pressed & (over > 10 * self.barrier)
+        comes = taken & self.restoring & (over <= method.met)
+        again: np.ndarray = (leaves | comes) & (self.status == 0)
+        if again.any():
+            self._set(leaves, next_penalty=np.minimum(method.penalty_factor * self.penalty, method.last_penalty))
+            self.restoring = (self.restoring | leaves) & ~comes
+            self._begin(again)
+        for _ in range(3):
+            error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
+            smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
+            lower = taken & ~again & (error < method.barrier_error * self.barrier)
+            self._set(lower, barrier=np.maximum(method.least_barrier, smaller))
+        return again
+
+    def _direct(
+        self,
+        taken: np.ndarray,
+        bent: np.ndarray,
+        jacobian: np.ndarray,
+        hessian: Sequence[np.ndarray],
+        slopes: np.ndarray,
+        values: np.ndarray,
+    ) -> None:
+        """Find the next step of lanes that have moved; correct that of lanes in ``bent``, halve that of the others.
+
+        A first step that was refused is corrected by what the rows at the trial point differ from their linear
+        forecast: rows that bend would otherwise keep steps small.
+        """
+        layout, n = self.layout, self.layout.n
+        below, above = self._room(self.y)
+        prices = self._prices()
+        slack, excess, own = split(self.values, self.barrier, prices)
+        self._bring_in(own, below, above)
+        rest = prices - self.multipliers
+        both = self.multipliers * rest
+        stiffness = both / (slack * rest + excess * self.multipliers)
+        # Gradient of the merit function, and its curvature with the multipliers at hand.
+        weights = self._signed(own)
+        along_t = self.t_weight - (slopes * weights).sum(axis=0)
+        weights = weights.copy()
+        weights[layout.cuts :] += self._objective()
+        gradient = np.empty((n + 1, len(self)))
+        gradient[:n] = layout.transposed(jacobian, weights) - self.barrier / below + self.barrier / above
+        held = ~self.t_free | self._first(self.missing)
+        gradient[n] = np.where(held, 0.0, along_t)
+        right = gradient
+        if bent.any():
+            off = stiffness * (values - self.forecast)
+            along_t = np.where(held, 0.0, -(slopes * off).sum(axis=0))
+            right = np.where(bent, np.concatenate([layout.transposed(jacobian, off), along_t[None]]), gradient)
+        matrix = layout.gram(jacobian, slopes, stiffness)
+        shift = self._add_curvature(matrix, hessian)
+        for a in range(n):
+            matrix[a][a] = matrix[a][a] + self.low_dual[a] / below[a] + self.high_dual[a] / above[a]
+        matrix[n][n] = matrix[n][n] + held
+        direction = -solve_shifted(matrix, right, shift, taken | bent, self.method)
+        moved = layout.times(jacobian, slopes, direction)
+        change = own - self.multipliers + stiffness * moved
+        low_change = self.barrier / below - self.low_dual * (1 + direction[:n] / below)
+        high_change = self.barrier / above - self.high_dual * (1 - direction[:n] / above)
+        # The largest share of the step that keeps everything positive; each row is a rate of decrease.
+        nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
+        primal = np.concatenate([
+            1 + (change - own) * rest / both, -direction[:n] / below, direction[:n] / above,
+        ])  # fmt: skip
+        dual = np.concatenate([
+            -change * rest / both, change * self.multipliers / both,
+            -low_change / self.low_dual, -high_change / self.high_dual,
+        ])  # fmt: skip
+        step = nearly / np.maximum(nearly, primal.max(axis=0, initial=0.0))
+        dual_step = nearly / np.maximum(nearly, dual.max(axis=0, initial=0.0))
+        merit = self._merit(self.y, self.t, self.form, self.values, self.missing)
+        self._set(
+            taken, direction=direction, change=change, low_change=low_change, high_change=high_change, merit=merit,
+            slope=(gradient * direction).sum(axis=0), dual_step=dual_step,
+        )  # fmt: skip
+        corrected = self.uncorrected + direction / np.where(self.step > 0, self.step, 1.0)
+        self._set(~taken, direction=np.where(bent, corrected, self.uncorrected))
+        self._set(taken, uncorrected=direction, forecast=self.values + step * moved)
+        self.step = np.where(taken, step, np.where(bent, self.step, 0.5 * self.step))
+
+    def _add_curvature(self, matrix: list[list[np.ndarray]], hessian: Sequence[np.ndarray]) -> np.ndarray:
+        """Add the second derivatives of the rows; return a first shift where there are none to be had."""
+        total = np.zeros(len(self))
+        for part in hessian:
+            total = total + part
+        strange = ~np.isfinite(total)
+        for (a, b), part in zip(self.layout.hessian, hessian, strict=True):
+            use = self.free[a] & self.free[b] & ~strange
+            matrix[a][b] = matrix[a][b] + np.where(use, part, 0.0)
+        return np.where(strange, 1.0, 0.0)
+
+    def _stuck(self, refused: np.ndarray) -> np.ndarray:
+        """End lanes where no step along their direction helps; return those that may go on with a smaller barrier."""
+        stuck = refused & (self.rejected > self.method.max_rejected) & (self.status == 0)
+        self._set(stuck & (self.barrier <= self.method.stuck_barrier), status=np.full(len(self), STUCK))
+        again: np.ndarray = stuck & (self.status == 0)
+        self._set(again, barrier=np.maximum(self.method.least_barrier, 0.01 * self.barrier))
+        return again
+
+    def _restart(self, again: np.ndarray) -> None:
+        """Make the point itself the next trial point, to be taken whatever its merit."""
+        if again.any():
+            zero = np.zeros(len(self))
+            self._set(again, merit=zero + np.inf, step=zero, dual_step=zero, rejected=zero.astype(np.int64))

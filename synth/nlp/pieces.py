@@ -1,0 +1,530 @@
+"""Problems whose formulas have kinks, one piece at a time.
+
+Where ``min``, ``max``, ``abs`` or ``where`` decides between two formulas, both of which move, derivatives jump, and a
+method of Newton's finds no way once an optimum lies on the jump. Here each decision is an input of the problem, so
+that the formulas are smooth, and the condition under which a piece is the right one is a row of its own. An optimum
+on such a condition is one of the whole problem if the other piece has nothing better to offer from there on; its
+multipliers tell. If not, the piece is exchanged and the problem is solved again.
+
+With the condition c <= 0 and its multiplier mu >= 0, the gradient of the Lagrangian of the other rows is -mu grad c
+there. In the other piece it is (kappa - mu) grad c, where kappa is known from the gradients of both pieces, and the
+condition is -c <= 0. The other piece leads further down where mu > kappa. At the edge of a ``max`` that must be
+small kappa is the weight of the edge, and the point is optimal for 0 <= mu <= kappa; at one that must be large kappa
+is negative.
+
+References
+----------
+J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed. (2006), chapters 16 and 17.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.model.constraints import Cut
+from synth.model.program import OP_SELECT, Program
+from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks, worth_of
+from synth.nlp.rows import Rows
+from synth.tuning import TUNING, NlpSettings
+
+DECISIONS = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
+
+
+def decisions(program: Program, n_variables: int, rows: Rows) -> list[int]:
+    """Return the nodes of the rows that choose between formulas by what the variables are."""
+    moving = program.dependence(range(n_variables))
+    return [k for k in program.needed(_wanted(rows)) if moving[k] and program.nodes[k].op in DECISIONS]
+
+
+def sides(program: Program, k: int) -> tuple[int, int | None]:
+    """Return the nodes between which a decision is made; None is zero."""
+    node = program.nodes[k]
+    if len(node.args) == 2:
+        return node.args[0], node.args[1]
+    inner = program.nodes[node.args[0]]
+    return inner.args if inner.op == ca.OP_SUB else (node.args[0], None)  # type: ignore[return-value]
+
+
+def _wanted(rows: Rows) -> list[int]:
+    return [k for c in rows.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in rows.goals]
+
+
+class Pieces:
+    """The decisions of a set of rows: which way they go at a point, and the rows of each way to decide.
+
+    A decision is true where the first side is less than the second, and of an absolute value where it is not.
+
+    Parameters
+    ----------
+    program : Program
+    n_variables : int
+    rows : Rows
+    open_decisions : list of int
+        Nodes of the decisions that may go either way.
+    positive : callable
+        Tells of a node whether it is surely positive.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        n_variables: int,
+        rows: Rows,
+        open_decisions: Sequence[int],
+        positive: Callable[[int], bool] = lambda _: False,
+    ) -> None:
+        self.program, self.n, self.rows = program, n_variables, rows
+        self.decisions = list(open_decisions)
+        self._sides = [sides(program, k) for k in self.decisions]
+        self.log = [b is not None and positive(a) and positive(b) for a, b in self._sides]
+        ops = [program.nodes[k].op for k in self.decisions]
+        self.absolute = np.array([op == ca.OP_FABS for op in ops], dtype=bool)
+        self.compares = np.array([op in (ca.OP_LT, ca.OP_LE) for op in ops], dtype=bool)
+        self._inclusive = np.array([op == ca.OP_LE for op in ops], dtype=bool)
+        self._terms = [self._terms_of([k for k in pair if k is not None]) for pair in self._sides]
+        flat = [k for a, b in self._sides for k in (a, b) if k is not None]
+        flat += [k for terms in self._terms for k in terms]
+        self._evaluate = program.compile(flat)
+
+    def __len__(self) -> int:
+        return len(self.decisions)
+
+    def _terms_of(self, nodes: Sequence[int]) -> list[int]:
+        """Return what the sums behind some nodes are made of."""
+        result: list[int] = []
+        stack = list(nodes)
+        while stack:
+            k = stack.pop()
+            node = self.program.nodes[k]
+            if node.op in (ca.OP_ADD, ca.OP_SUB, ca.OP_NEG, ca.OP_TWICE):
+                stack += node.args
+            else:
+                result.append(k)
+        return sorted(set(result))
+
+    def written(self) -> tuple[Program, Rows]:
+        """Return the program with its decisions and the sizes of their conditions as further inputs, and its rows."""
+        program, rows, count = self.program, self.rows, len(self.decisions)
+        inputs = [ca.SX.sym(f"x{k}") for k in range(program.n_inputs)]
+        ways = [ca.SX.sym(f"way{k}") for k in range(count)]
+        inverse_sizes = [ca.SX.sym(f"inverse_size{k}") for k in range(count)]
+        number = {k: position for position, k in enumerate(self.decisions)}
+        values: dict[int, Any] = {}
+        for k in program.needed([*_wanted(rows), *(a for pair in self._sides for a in pair if a is not None)]):
+            node = program.nodes[k]
+            if node.op == ca.OP_CONST:
+                values[k] = ca.SX(node.constant)
+            elif node.op == ca.OP_INPUT:
+                values[k] = inputs[int(node.constant)]
+            elif k in number:
+                values[k] = _piece(node.op, ways[number[k]], [values[a] for a in node.args])
+            else:
+                values[k] = program.apply(node, [values[a] for a in node.args])
+        conditions: list[Any] = []
+        for position, (a, b) in enumerate(self._sides):
+            first, second = values[a], values[b] if b is not None else ca.SX(0.0)
+            if self.absolute[position]:
+                first, second = second, first
+            less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
+            conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
+        wanted = _wanted(rows)
+        made = Program([*inputs, *ways, *inverse_sizes], [*(values[k] for k in wanted), *conditions])
+        place = iter(made.outputs)
+        cuts = [replace(c, value=next(place), limit=None if c.limit is None else next(place)) for c in rows.cuts]
+        goals = tuple(replace(g, node=next(place)) for g in rows.goals)
+        cuts += [Cut("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
+        return made, Rows(tuple(cuts), goals, (*rows.log_cuts, *self.log), rows.log_goals, rows.log_variables)
+
+    def at(self, inputs: Sequence[Any], reach: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return, at some points, which way each decision goes, how far its sides are apart, and their size.
+
+        Parameters
+        ----------
+        inputs : list of numbers or arrays (points,)
+        reach : array (points, variables), optional
+            How large variables can be: where one is near zero, its size is not.
+
+        Returns
+        -------
+        ways : array of bool (points, decisions)
+        apart : array (points, decisions)
+            As a share of the size; not negative.
+        size : array (points, decisions)
+        """
+        found = self._evaluate(inputs)
+        count = max(np.size(x) for x in inputs)
+        values = iter(np.broadcast_to(np.asarray(x, dtype=float), count) for x in found)
+        ways = np.empty((count, len(self)), dtype=bool)
+        apart, size = np.empty(ways.shape), np.zeros(ways.shape)
+        for position, (_, b) in enumerate(self._sides):
+            first, second = next(values), next(values) if b is not None else np.zeros(count)
+            if self.absolute[position]:
+                ways[:, position] = first >= second
+            else:
+                ways[:, position] = first <= second if self._inclusive[position] else first < second
+            apart[:, position] = np.abs(first - second)
+        for position, terms in enumerate(self._terms):
+            for k in terms:
+                value, node = np.abs(next(values)), self.program.nodes[k]
+                if reach is not None and node.op == ca.OP_INPUT and node.constant < self.n:
+                    value = np.maximum(value, reach[:, int(node.constant)])
+                size[:, position] = np.fmax(size[:, position], np.where(np.isfinite(value), value, 0.0))
+        size = np.where(size > 0, size, 1.0)
+        return ways, np.nan_to_num(apart / size, nan=np.inf), size
+
+    def live(self, ways: np.ndarray) -> np.ndarray:
+        """Return which decisions matter where they all go these ways: a branch that is not taken is not looked at."""
+        program, count = self.program, len(ways)
+        number = {k: position for position, k in enumerate(self.decisions)}
+        nothing, everything = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
+        read: dict[int, np.ndarray] = dict.fromkeys(_wanted(self.rows), everything)
+        truths: dict[int, np.ndarray | None] = {}
+
+        def truth(k: int) -> np.ndarray | None:
+            if k not in truths:
+                node = program.nodes[k]
+                logical = node.op in (ca.OP_NOT, ca.OP_AND, ca.OP_OR)
+                inner = [x for x in (truth(a) for a in node.args if logical) if x is not None]
+                if k in number:
+                    truths[k] = ways[:, number[k]]
+                elif not logical or len(inner) < len(node.args):
+                    truths[k] = None
+                elif node.op == ca.OP_NOT:
+                    truths[k] = ~inner[0]
+                else:
+                    truths[k] = inner[0] & inner[1] if node.op == ca.OP_AND else inner[0] | inner[1]
+            return truths[k]
+
+        for k in reversed(program.needed(_wanted(self.rows))):
+            own, node = read.get(k, nothing), program.nodes[k]
+            shares = [own] * len(node.args)
+            if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) and (chosen := truth(node.args[0])) is not None:
+                shares = [own, own & chosen, own & ~chosen][: len(node.args)]
+            for a, share in zip(node.args, shares, strict=True):
+                read[a] = share if a not in read else read[a] | share
+        return np.stack([read.get(k, nothing) for k in self.decisions], axis=1)
+
+
+def _piece(op: int, way: Any, args: Sequence[Any]) -> Any:
+    """Return what a decision gives, as an expression of which way it goes."""
+    if op in (ca.OP_LT, ca.OP_LE):
+        return way
+    if op == ca.OP_FABS:
+        return ca.if_else(way, args[0], -args[0])
+    return ca.if_else(way, *args) if op == ca.OP_FMIN else ca.if_else(way, *args[::-1])
+
+
+@dataclass
+class _State:
+    """Where some problems stand: the best answer of each, the ways it was found with, and what it started from."""
+
+    best: Solutions
+    prices: np.ndarray  # multipliers of the conditions
+    ways: np.ndarray
+    start: np.ndarray
+    size: np.ndarray
+
+    def put(self, rows: np.ndarray, other: _State, chosen: np.ndarray) -> None:
+        """Put the chosen ones of other answers into the places of some problems."""
+        self.best.put(rows, other.best.take(chosen))
+        for name in ("prices", "ways", "start", "size"):
+            getattr(self, name)[rows] = getattr(other, name)[chosen]
+
+
+class _Tried:
+    """The ways that one problem was solved with: from where it stands, and from anywhere."""
+
+    def __init__(self, ways: np.ndarray) -> None:
+        self.here, self.ever = {ways.tobytes()}, {ways.tobytes()}
+
+    def add(self, ways: np.ndarray) -> None:
+        """Note what is tried from here."""
+        self.here.add(ways.tobytes())
+        self.ever.add(ways.tobytes())
+
+    def from_here(self, ways: np.ndarray) -> None:
+        """Begin at another place: what led nowhere before may lead on from there."""
+        self.here = {ways.tobytes()}
+
+
+class PiecedNlp:
+    """The solver of a set of rows with kinks.
+
+    Parameters
+    ----------
+    pieces : Pieces
+    code : {"arrays", "general", "own"}
+        How problems are solved, as of :class:`synth.nlp.batch.BatchNlp`.
+    settings : NlpSettings
+    """
+
+    def __init__(self, pieces: Pieces, code: Code = "own", settings: NlpSettings = TUNING.nlp) -> None:
+        self.pieces, self.code, self.settings, self.nlp_settings = pieces, code, settings.pieces, settings
+
+    @cached_property
+    def nlp(self) -> BatchNlp:
+        """The solver of the pieces; made when the first problem needs it."""
+        program, rows = self.pieces.written()
+        return BatchNlp(
+            program, self.pieces.n, rows, self.code, conditions=len(self.pieces), settings=self.nlp_settings
+        )
+
+    @property
+    def evaluations(self) -> int:
+        """Return how many evaluations all has cost that was solved without code of its own."""
+        return self.nlp.evaluations if "nlp" in vars(self) else 0
+
+    def doubtful(self, found: Solutions, data: Sequence[Any], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Tell which answers of a solver of the whole formulas may not be optima: on a kink, or stuck."""
+        with np.errstate(all="ignore"):
+            ways, apart, _ = self.pieces.at([*found.variables.T, *_clean(data)], _reach(low, high))
+        tied = np.any(self.pieces.live(ways) & (apart <= self.settings.tie), axis=1)
+        doubtful: np.ndarray = ~found.converged | tied
+        return doubtful
+
+    def solve(
+        self,
+        tasks: Tasks,
+        data: Sequence[Any],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+        workers: int = 1,
+    ) -> Solutions:
+        """Solve all problems, each from its start and the pieces there; parameters as of ``BatchNlp.solve``."""
+        question = _Question(self, tasks, [np.asarray(x, dtype=float) for x in data], low, high, bounds, void, workers)
+        with np.errstate(all="ignore"):
+            start = np.clip(start, low, high)
+            ways, _, size = self.pieces.at([*start.T, *_clean(data)], _reach(low, high))
+            everything = np.arange(len(start))
+            state = question.solved(everything, ways, start, size)
+            tried = [_Tried(w) for w in ways]
+            waiting = question.turns(everything, state, tried)
+            for _ in range(self.settings.turns):
+                rows = np.array([k for k in sorted(waiting) if waiting[k]], dtype=np.int64)
+                if not len(rows):
+                    break
+                turned = np.array([waiting[k].pop(0) for k in rows])
+                for k, own in zip(rows, turned, strict=True):
+                    tried[k].add(own)
+                begin = state.best.variables[rows]
+                _, _, size = self.pieces.at([*begin.T, *question.inputs(rows)], _reach(low[rows], high[rows]))
+                other = question.solved(rows, turned, begin, size)
+                better = question.better(rows, other.best, state.best)
+                won = rows[better]
+                state.put(won, other, better)
+                for k in won:
+                    tried[k].from_here(state.ways[k])
+                waiting.update(question.turns(won, state, tried))
+        return state.best
+
+
+@dataclass(frozen=True)
+class _Question:
+    """Problems to be solved piece by piece, with all they are made of."""
+
+    solver: PiecedNlp
+    tasks: Tasks
+    data: Sequence[np.ndarray]
+    low: np.ndarray
+    high: np.ndarray
+    bounds: Sequence[float]
+    void: np.ndarray
+    workers: int
+
+    def inputs(self, rows: np.ndarray) -> list[np.ndarray]:
+        """Return the data of some problems."""
+        return _clean([x if x.ndim == 0 else x[rows] for x in self.data])
+
+    def _posed(self, rows: np.ndarray, ways: np.ndarray, size: np.ndarray) -> tuple[Tasks, list[Any]]:
+        """Return some problems with the pieces that are to be used, and their data."""
+        tasks, settings, pieces = self.tasks.take(rows), self.solver.settings, self.solver.pieces
+        own = np.zeros(self.void[rows].shape) if tasks.moved is None else tasks.moved
+        margin = np.broadcast_to(np.where(pieces.compares, -settings.margin, 0.0), ways.shape)
+        tasks = replace(tasks, moved=np.concatenate([own, margin], axis=1))
+        return tasks, [*self.inputs(rows), *ways.T.astype(float), *(1.0 / size).T]
+
+    def solved(self, rows: np.ndarray, ways: np.ndarray, start: np.ndarray, size: np.ndarray) -> _State:
+        """Solve some problems with given pieces."""
+        tasks, data = self._posed(rows, ways, size)
+        pieces, low, high = self.solver.pieces, self.low[rows], self.high[rows]
+        live = pieces.live(ways)
+        void = np.concatenate([self.void[rows], ~live], axis=1)
+        found = self.solver.nlp.solve(tasks, data, start, low, high, self._right_sides(), void, self.workers)
+        # In a branch that is not taken decisions go the way they would if it were: an exchange may lead there.
+        there, _, _ = pieces.at([*found.variables.T, *self.inputs(rows)], _reach(low, high))
+        ways = np.where(live, ways, there)
+        cuts = self.void.shape[1]
+        own = replace(found, cut_multipliers=found.cut_multipliers[:, :cuts])
+        return _State(own, found.cut_multipliers[:, cuts:], ways, start, size)
+
+    def _right_sides(self) -> list[float]:
+        return [*self.bounds, *([0.0] * len(self.solver.pieces))]
+
+    def better(self, rows: np.ndarray, new: Solutions, old: Solutions) -> np.ndarray:
+        """Tell which answers are better than the old ones of these problems."""
+        tasks = self.tasks.take(rows)
+        least = self.solver.settings.gain / worth_of(tasks)
+        cost, known = _cost(tasks, new), _cost(tasks, old.take(rows))
+        violation, before, missed = new.violation, old.violation[rows], self.solver.nlp_settings.missed
+        holds, held = violation <= missed, before <= missed
+        better: np.ndarray = np.where(
+            holds & held, cost < known - least, holds | (~held & (violation < before - self.solver.settings.gain))
+        )
+        return better
+
+    def turns(self, rows: np.ndarray, state: _State, tried: Sequence[_Tried]) -> dict[int, list[np.ndarray]]:
+        """Return, of some problems, other pieces that promise to be better from where they stand, the best first."""
+        pressed, apart = self._promises(rows, state)
+        ways = state.ways[rows]
+        result: dict[int, list[np.ndarray]] = {}
+        for place in np.flatnonzero(np.any((pressed > 0) | apart, axis=1)):
+            own, k = pressed[place], int(rows[place])
+            order = np.argsort(-own, kind="stable")[: int(np.sum(own > 0))]
+            flips = [order] if len(order) > 1 else []
+            turned = [_turned(ways[place], flip) for flip in [*flips, *order[:, None]]]
+            others = [_turned(ways[place], i) for i in np.flatnonzero(apart[place] & ~(own > 0))]
+            result[k] = [w for w in turned if w.tobytes() not in tried[k].here]
+            result[k] += [w for w in others if w.tobytes() not in tried[k].ever]
+        return result
+
+    def _promises(self, rows: np.ndarray, state: _State) -> tuple[np.ndarray, np.ndarray]:
+        """Return what speaks for the other piece of each decision of some problems.
+
+        Returns
+        -------
+        pressed : array (problems, decisions)
+            By how much the condition holds back an answer that the other piece would let go further; 0: not at all.
+        apart : array of bool (problems, decisions)
+            Whether the other piece is worse here, so that it has optima of its own. (Where it is better, as beside
+            the edge of a max that must be small, it is not the right one here.)
+        """
+        solver, settings, nlp = self.solver, self.solver.settings, self.solver.nlp
+        count, cuts, found = len(solver.pieces), self.void.shape[1], state.best.take(rows)
+        pressed, apart = np.zeros((len(rows), count)), np.zeros((len(rows), count), dtype=bool)
+        if not len(rows):
+            return pressed, apart
+        weight = np.zeros((nlp.functions.n_rows, len(rows)))
+        weight[:cuts] = found.cut_multipliers.T
+        weight[nlp.functions.n_cuts :] = (found.goal_multipliers + self.tasks.weights[rows]).T
+        least = settings.press / worth_of(self.tasks.take(rows))
+        live, ways = solver.pieces.live(state.ways[rows]), state.ways[rows]
+        values, first = self._slopes(rows, state, ways)
+        for k in range(count):
+            others, second = self._slopes(rows, state, _turned(ways, k))
+            picked = np.zeros_like(weight)
+            picked[cuts + k] = 1.0
+            normal = nlp.layout.transposed(first, picked)
+            length = np.sum(normal * normal, axis=0)
+            change = nlp.layout.transposed(np.nan_to_num(second - first), weight)
+            kappa = np.sum(change * normal, axis=0) / np.where(length > 0, length, 1.0)
+            step = np.where(weight != 0, others - values, 0.0)
+            jumps = (state.prices[rows, k] > least) & (np.max(np.abs(step), axis=0) > settings.jump)
+            excess = state.prices[rows, k] - np.where(jumps, 0.0, kappa)
+            goes = live[:, k] & (length > 0)
+            pressed[:, k] = np.where(goes & (state.prices[rows, k] > least) & (excess > least), excess, 0.0)
+            effect = np.sum(weight * step, axis=0)
+            apart[:, k] = goes & ((effect > least) | (solver.pieces.compares[k] & (np.abs(effect) > least)))
+        return pressed, apart
+
+    def _slopes(self, rows: np.ndarray, state: _State, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return values and derivatives of all rows where some problems stand, with the given pieces."""
+        tasks, data = self._posed(rows, ways, state.size[rows])
+        points, ends = state.best.variables[rows], (self.low[rows], self.high[rows])
+        return self.solver.nlp.slopes(tasks, data, state.start[rows], points, *ends, self._right_sides())
+
+
+def _turned(ways: np.ndarray, which: int | np.integer[Any] | np.ndarray) -> np.ndarray:
+    result = ways.copy()
+    result[..., which] = ~result[..., which]
+    return result
+
+
+def _clean(data: Sequence[Any]) -> list[Any]:
+    return [np.where(np.isnan(x), 1.0, x) for x in data]
+
+
+def _reach(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    reach: np.ndarray = np.maximum(np.abs(low), np.abs(high))
+    return reach
+
+
+def _cost(tasks: Tasks, found: Solutions) -> np.ndarray:
+    cost: np.ndarray = np.sum(tasks.weights * found.phi, axis=1) + tasks.t_weight * found.t
+    return cost
+
+
+class KinkedNlp:
+    """The solver of a set of rows with kinks: first all at once, then piece by piece where that leaves doubts.
+
+    Parameters
+    ----------
+    first : BatchNlp
+        Of the formulas as they stand or, where edges are rounded off, near to them.
+    pieced : PiecedNlp
+    """
+
+    def __init__(self, first: BatchNlp, pieced: PiecedNlp) -> None:
+        self.first, self.pieced = first, pieced
+        self.rounded = first.functions.edge > 0
+
+    @property
+    def compiled(self) -> bool:
+        """Tell whether problems are solved by compiled code."""
+        return self.first.compiled
+
+    @property
+    def evaluations(self) -> int:
+        """Return how many evaluations all has cost that was solved without code of its own."""
+        return self.first.evaluations + self.pieced.evaluations
+
+    def solve(
+        self,
+        tasks: Tasks,
+        data: Sequence[Any],
+        start: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        bounds: Sequence[float],
+        void: np.ndarray,
+        workers: int = 1,
+        rough: bool = False,
+    ) -> Solutions:
+        """Solve all problems, each from its start; parameters as of ``BatchNlp.solve``.
+
+        ``rough``: answers may be near optima.
+        """
+        found = self.first.solve(tasks, data, start, low, high, bounds, void, workers)
+        if rough:
+            return found
+        if self.rounded:
+            doubtful = np.arange(len(start))
+        else:
+            doubtful = np.flatnonzero(self.pieced.doubtful(found, data, low, high))
+        if not len(doubtful):
+            return found
+        arrays = [np.asarray(x, dtype=float) for x in data]
+        sharp = self.pieced.solve(
+            tasks.take(doubtful), [x if x.ndim == 0 else x[doubtful] for x in arrays], found.variables[doubtful],
+            low[doubtful], high[doubtful], bounds, void[doubtful], workers,
+        )  # fmt: skip
+        # An answer to other formulas is none, but may be a design; one to the same formulas may be better.
+        known, missed = found.take(doubtful), self.pieced.nlp_settings.missed
+        lost = (known.violation <= missed) & (sharp.violation > missed)
+        if self.rounded:
+            found.converged[doubtful] = False
+        else:
+            cost, before = _cost(tasks.take(doubtful), sharp), _cost(tasks.take(doubtful), known)
+            least = self.pieced.settings.gain / worth_of(tasks.take(doubtful))
+            held = (known.violation <= missed) & known.converged
+            lost |= held & (before < cost - least)
+        found.put(doubtful[~lost], sharp.take(~lost))
+        return found

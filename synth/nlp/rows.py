@@ -1,0 +1,33 @@
+"""What every solver of continuous problems knows of limits and objectives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from synth.model.constraints import Cut, Goal
+
+# A guard holds only strictly, by so much: beyond it the other formulas do not exist.
+GUARD_MARGIN = 1e-6
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What the NLP knows of limits and objectives.
+
+    Parameters
+    ----------
+    cuts : tuple of Cut
+        Limits; a constant right side is handed over with each call.
+    goals : tuple of Goal
+        Objectives.
+    log_cuts, log_goals : tuple of bool
+        Which are positive on both sides, and so enter by logarithm.
+    log_variables : tuple of bool
+        Which variables are positive.
+    """
+
+    cuts: tuple[Cut, ...]
+    goals: tuple[Goal, ...]
+    log_cuts: tuple[bool, ...]
+    log_goals: tuple[bool, ...]
+    log_variables: tuple[bool, ...]

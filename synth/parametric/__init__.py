@@ -1,0 +1,1 @@
+"""Many questions as one search."""

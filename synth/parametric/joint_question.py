@@ -1,0 +1,269 @@
+"""Several questions at once: alike but for the numbers of some requirements, each for its best design in one objective.
+
+Which question a design answers is one more thing to choose among, as a slot is: a box may speak of many questions, is
+tightened once for all of them, and is split between them only where that matters. A box is of no use any more when
+none of its questions could have a better design in it. What is proven of each question is what a search of its
+own would prove.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from synth.bounds.compiled_subtrees import CapTables
+from synth.question.combinations import JointCombinations
+from synth.question.inputs import inputs_of_combination
+from synth.question.instance import Instance
+from synth.search.archive import Archive, Candidate
+from synth.search.boxes import Boxes
+from synth.search.formulation import Formulation
+from synth.search.pruning import reaches_beyond
+from synth.search.question import Question
+from synth.tuning import TUNING, Tuning
+
+LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
+
+
+class Together(Instance):
+    """Several questions as one: the first digit of a combination tells which.
+
+    Parameters
+    ----------
+    each : list of Instance
+        That are alike, as :func:`alike` tells.
+    moving : collection of str, optional
+        Requirements that may differ although they do not here, so that code is compiled once for several searches.
+    caps : mapping, optional
+        Number of an objective -> the most that it may be in each question, as a value with its sign: it tells
+        questions apart.
+    """
+
+    combinations: JointCombinations
+
+    def __init__(
+        self, each: Sequence[Instance], moving: Collection[str] = (), caps: Mapping[int, np.ndarray] | None = None
+    ) -> None:
+        self.__dict__.update(each[0].__dict__)
+        self.each, self._caps = list(each), dict(caps or {})
+        names = {*moving, *different(each)}
+        self.moving = {n: np.array([i.requirements[n] for i in each]) for n in self.requirements if n in names}
+        self.apart = 1
+        self.combinations = JointCombinations([i.combinations for i in each])
+
+    def owners(self) -> tuple[int, ...]:
+        """Return, per data input of the model, the number of the factor it belongs to."""
+        inputs = zip(super().owners(), self.model.data_inputs, strict=True)
+        return tuple(0 if self._moves(entry) else own for own, entry in inputs)
+
+    def caps(self, f: int) -> dict[int, np.ndarray]:
+        """Return what each question allows objectives to be, by the number of the objective."""
+        return self._caps if f == 0 else {}
+
+    def of(self, combination: int) -> Instance:
+        """Return the question that a combination belongs to."""
+        return self.each[self.combinations.question(combination)]
+
+    def data(self, combinations: np.ndarray) -> list[Any]:
+        """Return the data inputs of the model for combinations given by number."""
+        every = np.asarray(combinations, dtype=np.int64)
+        question = self.combinations.question(every)
+        requirements = {**self.requirements, **{name: values[question] for name, values in self.moving.items()}}
+        return inputs_of_combination(self.model, requirements, self.row_values, self.combinations, every)
+
+    def column(self, position: int) -> np.ndarray:
+        """Return data input number ``position`` for every alternative of the factor it belongs to."""
+        entry = self.model.data_inputs[position]
+        return self.moving[entry.name] if self._moves(entry) else super().column(position)
+
+    def _moves(self, entry: Any) -> bool:
+        return entry.kind == "requirement" and entry.name in self.moving
+
+
+def different(each: Sequence[Instance]) -> list[str]:
+    """Return the requirements that are not the same in all of some questions."""
+    # Options may leave out requirements.
+    names = dict.fromkeys(n for i in each for n in i.requirements)
+    return [n for n in names if len({i.requirements[n] for i in each if n in i.requirements}) > 1]
+
+
+def alike(question: Question) -> tuple[Any, ...]:
+    """Return what questions must have in common to be answered together."""
+    instance, settings = question.instance, question.settings
+    selection = instance.selection
+    return (
+        instance.model,
+        instance.grid,
+        instance.lower.tobytes(),
+        instance.upper.tobytes(),
+        instance.pinned.tobytes(),
+        tuple(instance.own),
+        tuple((s.slot, tuple(s.table.hashes[int(r)] for r in s.rows)) for s in selection.slots),
+        tuple((n, v.tobytes()) for n, v in (*selection.counts.items(), *selection.choices.items())),
+        tuple(question.chosen.items()),
+        settings.gap,
+        settings.seed,
+        question.tuning,
+    )
+
+
+class BestOfEach(Archive):
+    """The best feasible design of each question in one objective.
+
+    Parameters
+    ----------
+    together : Together
+    column : int
+        Number of the objective.
+    variables, objectives : int
+        Width of the stored rows.
+    plain : array (questions, objectives), optional
+        Caps of phi that a design must keep.
+    tuning : Tuning
+    """
+
+    def __init__(
+        self,
+        together: Together,
+        column: int,
+        variables: int,
+        objectives: int,
+        plain: np.ndarray | None = None,
+        tuning: Tuning = TUNING,
+    ) -> None:
+        super().__init__([column], variables, objectives, tuning)
+        self.tie = tuning.tolerances.tie
+        self.together, self.column = together, column
+        self.plain = np.full((len(together.each), objectives), np.inf) if plain is None else plain
+
+    def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
+        """Take new designs and keep the best of each question; of equal ones that which was known first."""
+        keep = np.all(phi <= self.plain[self.together.combinations.question(combination)] + self.tie, axis=1)
+        if combination is self.combination or not keep.any():
+            return
+        combination = np.concatenate([self.combination, combination[keep]])
+        variables = np.concatenate([self.variables, variables[keep]])
+        phi = np.concatenate([self.phi, phi[keep]])
+        question = self.together.combinations.question(combination)
+        order = np.lexsort((phi[:, self.column], question))
+        _, first = np.unique(question[order], return_index=True)
+        best = order[first]
+        self.combination, self.variables, self.phi = combination[best], variables[best], phi[best]
+
+    def questions(self) -> np.ndarray:
+        """Return the questions of the designs."""
+        return self.together.combinations.question(self.combination)
+
+    def best(self) -> np.ndarray:
+        """Return phi of the best design of each question, infinite where none is known."""
+        result = np.full(len(self.together.each), np.inf)
+        result[self.questions()] = self.phi[:, self.column]
+        return result
+
+
+class Each:
+    """Find the best design of each question in one objective.
+
+    Parameters
+    ----------
+    form : Formulation
+        Of questions together.
+    known : BestOfEach
+    slack : callable
+        Takes phi of the best designs; returns how much better a design must be to be of use.
+    asked : array of bool (questions,)
+        Questions that are not asked need no proof.
+    """
+
+    proves = False
+
+    def __init__(
+        self, form: Formulation, known: BestOfEach, slack: Callable[[np.ndarray], np.ndarray], asked: np.ndarray
+    ) -> None:
+        self.form, self.known, self._slack, self.asked = form, known, slack, asked
+        self.columns, self.tie = [known.column], form.tuning.tolerances.tie
+        self.slack = slack(np.zeros(1))
+        self.plain = np.full(len(form.goals), np.inf)
+        self._tree = form.cells.trees[0]
+        self._plain = self._tree.hull(known.plain)[1]
+        self._ends: tuple[np.ndarray, np.ndarray] | None = None
+        self._polished = np.full(len(asked), np.inf)
+
+    def needed(self) -> np.ndarray:
+        """Return, per question, what a design must be better than in phi."""
+        best = self.known.best()
+        needed: np.ndarray = np.where(self.asked, best - np.where(np.isfinite(best), self._slack(best), 0.0), -np.inf)
+        return needed
+
+    def _cap(self, cell: np.ndarray) -> np.ndarray:
+        """Return, per box, what a design must be better than in one of its questions."""
+        if self._ends is None or self._ends[0] is not self.known.phi:
+            self._ends = self.known.phi, self._tree.hull(self.needed()[:, None])[1][:, 0]
+        cap: np.ndarray = self._ends[1][cell[:, 0]]
+        return cap
+
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
+        assert cell is not None
+        caps: np.ndarray = self._plain[cell[:, 0], : lower.shape[1]] + self.tie
+        k = self.columns[0]
+        caps[:, k] = np.minimum(caps[:, k], self._cap(cell))
+        return caps
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return how much better than needed a box could be."""
+        assert cell is not None
+        cap = self._cap(cell)
+        with np.errstate(all="ignore"):
+            distance = cap - lower[:, self.columns[0]]
+        broken = np.any(lower > self._plain[cell[:, 0], : lower.shape[1]] + self.tie, axis=1) | (cap == -np.inf)
+        room: np.ndarray = np.where(broken, 0.0, np.where(np.isnan(distance), np.inf, distance))
+        return room
+
+    def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many were of use."""
+        new = int((self.room(phi, self.form.cell_of(combinations)) > 0).sum())
+        self.known.add(combinations, variables, phi)
+        return new
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return the best designs that are better than when last asked."""
+        best = self.known.best()
+        better = best < self._polished - self.tie
+        self._polished = np.minimum(best, self._polished)
+        return [c for c, q in zip(self.known, self.known.questions(), strict=True) if better[q]]
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return the caps by the cluster of questions that a box speaks of."""
+        if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._plain[:, form.bounded :])):
+            return None
+        caps = self._plain[:, : form.bounded] + self.tie
+        clusters = np.arange(len(caps))[:, None]
+        caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(clusters))
+        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.values_of(caps))
+
+    def open_questions(self, left: Boxes) -> np.ndarray:
+        """Tell of which questions boxes that were left open may hold something of use."""
+        needed, result = self.needed(), np.zeros(len(self.asked), dtype=bool)
+        if not len(left):
+            return result
+        lower, clusters = self.form.phi_of(left.bounds)[:, self.columns[0]], left.cell[:, 0]
+        for cluster in np.unique(clusters):
+            least = np.nan_to_num(lower[clusters == cluster], nan=-np.inf).min()
+            rows = self._tree.rows(int(cluster))
+            result[rows] |= needed[rows] > least
+        return result
+
+
+def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1) -> list[list[int]]:
+    """Return the positions of questions that can be answered together: so many or more, alike.
+
+    ``objectives``: how many each must have.
+    """
+    groups: dict[Any, list[int]] = {}
+    for k, question in enumerate(questions):
+        if len(question.chosen) == objectives:
+            groups.setdefault(alike(question), []).append(k)
+    return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations.count]

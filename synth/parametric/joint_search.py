@@ -1,0 +1,410 @@
+"""One search for several questions: what is proven of each is what a search of its own would prove."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.analysis.designs import make_frame, offered
+from synth.feasibility import Status
+from synth.parametric.joint_heuristics import Lookout
+from synth.parametric.joint_question import BestOfEach, Each, Together
+from synth.question.objectives import with_ties
+from synth.results import Certificate, Design, ParetoFront
+from synth.results.assembly import front_of, ranked
+from synth.search.archive import Candidate, rows_of
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.found_designs import found_designs
+from synth.search.polishing import settle_ties
+from synth.search.question import Question
+from synth.search.resolution import rounded_up, slack
+from synth.search.sensitivity import elasticities
+
+
+class Wider:
+    """What holds for many questions, found once for all searches of some of them.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike.
+    moving : collection of str
+        As for :class:`Together`.
+    first : str, optional
+        Of several chosen objectives that which comes first; the others settle ties.
+    """
+
+    def __init__(self, questions: Sequence[Question], moving: Collection[str], first: str | None = None) -> None:
+        self.moving, self._tuning = moving, questions[0].tuning
+        self._together = Together([q.instance for q in questions], moving)
+        chosen = dict(questions[0].chosen)
+        in_order = {first: chosen[first], **chosen} if first is not None else chosen
+        self.goals = with_ties(self._together.model, in_order)
+        self._forms: dict[bool, Formulation] = {}
+
+    def among(self, together: Together, conflict: bool) -> Formulation | None:
+        """Return questions prepared for a search; None where their numbers are not among those of these."""
+        if conflict not in self._forms:
+            self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict, tuning=self._tuning)
+        return self._forms[conflict].among(together)
+
+
+class _Attempt:
+    """One way of bounding what questions may have, which goes on where it stopped."""
+
+    def __init__(self, search: TogetherSearch, form: Formulation, known: BestOfEach, boxes: Boxes) -> None:
+        self.search, self.form, self.known, self.left = search, form, known, boxes
+
+    def open_questions(self, asked: np.ndarray, effort: float) -> np.ndarray:
+        """Go on with so much effort; tell of which of the questions asked it is not proven what is best."""
+        search, form = self.search, self.form
+        joint = search.joint
+        if not asked.any():
+            return asked
+        if self.known is not search.known:
+            # Designs of other questions would only seem to say that those of these are found.
+            rows = asked[search.known.questions()]
+            self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
+        before = form.contracted, form.nlp_solves
+        purpose = Each(form, self.known, search._slack(search.sought), asked)
+        for _ in range(2):
+            self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, joint.most_boxes)).open
+            if not 0 < len(self.left) < joint.nearly_closed * effort:
+                break
+        if self.known is not search.known:
+            search.known.add(self.known.combination, self.known.variables, self.known.phi)
+            search.form.contracted += form.contracted - before[0]
+            search.form.nlp_solves += form.nlp_solves - before[1]
+        return purpose.open_questions(self.left)
+
+
+class TogetherSearch:
+    """One search for several questions.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike, each with one objective.
+    workers : int
+    progress : callable, optional
+    time_limit : float, optional
+        Seconds; then ``Stopped`` is raised.
+    ideas : list of Design
+        Designs of similar questions, where to look first. They prove nothing.
+    wider : Wider, optional
+        Of questions that these are among.
+    sought : int
+        Number of the objective that is sought.
+    caps : mapping, optional
+        As for :class:`Together`.
+    """
+
+    def __init__(
+        self,
+        questions: Sequence[Question],
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+        time_limit: float | None = None,
+        ideas: Sequence[Design] = (),
+        wider: Wider | None = None,
+        sought: int = 0,
+        caps: Mapping[int, np.ndarray] | None = None,
+    ) -> None:
+        self.started = time.monotonic()
+        self.questions, self.progress = list(questions), progress
+        first = questions[0]
+        self.tuning, self.joint = first.tuning, first.tuning.joint
+        self.wider, self.workers, self.sought = wider, workers, sought
+        self.together = Together([q.instance for q in questions], () if wider is None else wider.moving, caps)
+        self.gap = first.settings.gap
+        self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
+        self.form = self._prepared()
+        self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
+        for k, values in (caps or {}).items():
+            self.plain[:, k] = self.form.phi_of(np.tile(values[:, None], k + 1))[:, k]
+        self.known = self._none_known()
+        self.form.archive = self.known
+        self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
+        self.rng = np.random.default_rng(first.settings.seed)
+        self.pool = self.form.nothing()
+        # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
+        self.look = Lookout(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
+        self.look.starts = self._starts(ideas)
+
+    def answers(self) -> list[ParetoFront | None]:
+        """Return the front of each question; None where it is not proven or has no design: better asked alone."""
+        chosen = self.optima(self.told_apart())
+        return self.fronts(chosen, 1, self.form.nlp_solves)
+
+    def optima(self, asked: np.ndarray) -> list[Candidate]:
+        """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
+
+        Parameters
+        ----------
+        asked : array of bool (questions,)
+        """
+        proven = self._search(asked, False)
+        return self._second([c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]])
+
+    def glimpse(self) -> list[Candidate]:
+        """Return good designs of the questions, of which nothing is proven."""
+        self.pool, self.look.thorough = self.form.root(), False
+        if len(self.pool):
+            purpose = Each(self.form, self.known, self._slack(self.sought), self.told_apart())
+            self.look.recalled(purpose)
+            self.look.improve(purpose)
+        return list(self.known)
+
+    def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs of some questions, None where there is none, and whether that is proven.
+
+        Parameters
+        ----------
+        wanted : list of int
+            Positions of the questions.
+        """
+        asked = self.told_apart() & np.isin(np.arange(len(self.questions)), wanted)
+        proven = self._search(asked, True)
+        designs = self._designs([(c, ()) for c in self.known], 0)
+        return [(designs.get(q, [None])[0], bool(proven[q])) for q in wanted]
+
+    def _search(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
+        """Find the best design of each question asked; tell of which it is proven.
+
+        ``excluded``: also where no question has a design that is easily found; then it is proven that there is none.
+        """
+        self.pool = self.form.root()
+        if not len(self.pool) or not asked.any():
+            return asked
+        self.look.first(Each(self.form, self.known, self._slack(self.sought), asked), self.pool)
+        found, unproven = np.isfinite(self.known.best()), asked.copy()
+        if not found.any() and not excluded:
+            return np.zeros_like(asked)
+        plain = _Attempt(self, self.form, self.known, self.pool)
+        conflict: _Attempt | None = None
+        # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
+        for plainly, surely, doubtfully in self.joint.turns:
+            now = unproven & found
+            unproven &= ~found | plain.open_questions(now, plainly * int(now.sum()))
+            if not unproven.any():
+                break
+            self.look.thorough = True
+            self.look.improve(Each(self.form, self.known, self._slack(self.sought), unproven))
+            conflict = self._in_conflict() if conflict is None else conflict
+            sure = int((unproven & np.isfinite(self.known.best())).sum())
+            effort = surely * sure + doubtfully * (int(unproven.sum()) - sure)
+            unproven &= conflict.open_questions(unproven, effort)
+        proven: np.ndarray = asked & ~unproven
+        return proven
+
+    def best_with(self, wanted: Sequence[tuple[int, Design]]) -> list[tuple[Design | None, bool]]:
+        """Return the best designs with given parts, counts and choices, and whether each is proven.
+
+        Parameters
+        ----------
+        wanted : list of (int, Design)
+            The position of a question, and a design that has the parts.
+        """
+        found: list[tuple[Design | None, bool]] = [(None, False)] * len(wanted)
+        waiting = list(range(len(wanted)))
+        while waiting:
+            # A question has one best design at a time.
+            now = {wanted[k][0]: k for k in reversed(waiting)}
+            waiting = [k for k in waiting if now[wanted[k][0]] != k]
+            for k, answer in self._best_with([wanted[k] for k in now.values()]).items():
+                found[now[k]] = answer
+        return found
+
+    def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
+        form, codec = self.form, self.together.combinations
+        form.archive = known = self._none_known()
+        like = [(q, codec.each[q].find(design), design) for q, design in wanted]
+        result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
+        rows = [(q, codec.joined(q, c), design) for q, c, design in like if c is not None]
+        asked = np.zeros(len(self.questions), dtype=bool)
+        asked[[q for q, _, _ in rows]] = True
+        asked &= self.told_apart()
+        purpose = Each(form, known, self._slack(self.sought), asked)
+        combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
+        self.look.tried(purpose, combinations, self._points([design for _, _, design in rows]))
+        outcome = cover(
+            form, form.leaves(combinations), purpose, self.clock, self.rng, self.joint.given_parts * len(rows)
+        )
+        left = purpose.open_questions(outcome.open)
+        designs = self._designs([(c, ()) for c in known], 0)
+        for q, _, _ in rows:
+            result[q] = designs.get(q, [None])[0], bool(asked[q] and not left[q])
+        form.archive = self.known
+        return result
+
+    def _in_conflict(self) -> _Attempt:
+        """Return what tries with boxes that carry what limits share, which helps where limits leave little."""
+        form = self._prepared(conflict=True)
+        form.work = self.form.work
+        form.solved_combinations = self.form.solved_combinations
+        form.propagation.taught_by(self.form.propagation.lessons())
+        form.archive = known = self._none_known()
+        return _Attempt(self, form, known, form.root())
+
+    def _none_known(self) -> BestOfEach:
+        return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain, self.tuning)
+
+    def _prepared(self, conflict: bool = False) -> Formulation:
+        form = None if self.wider is None else self.wider.among(self.together, conflict)
+        if form is None:
+            form = Formulation(self.together, self.goals, 1, conflict, tuning=self.tuning)
+        form.workers = self.workers
+        return form
+
+    def told_apart(self) -> np.ndarray:
+        """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
+        tree = self.form.cells.trees[0]
+        result = np.zeros(len(self.questions), dtype=bool)
+        result[tree.first[tree.leaf]] = True
+        return result
+
+    def _slack(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
+        """Return the gap as a distance in phi of an objective, per design."""
+        form = self.form
+        own = (form.log_goals[k], form.finest[k])
+        return lambda phi: slack(self.gap, *own, np.abs(phi))
+
+    def _working(self, open_boxes: int) -> None:
+        if self.progress is not None:
+            self.progress({
+                "stage": "search",
+                "done": 0.0,
+                "combinations": self.together.combinations.size,
+                "incumbents": len(self.known),
+                "message": f"{open_boxes} boxes open",
+            })  # fmt: skip
+
+    def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
+        """Return where to look first, from designs of similar questions."""
+        first = self.together.each[0].combinations
+        like = [first.find(d) for d in designs]
+        return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}
+
+    def _points(self, designs: Sequence[Design]) -> np.ndarray:
+        """Return the variables of designs, moved into their ranges."""
+        names = [v.name for v in self.form.model.variables]
+        points = np.array([[d.values[n] for n in names] for d in designs]).reshape(len(designs), self.form.n)
+        inside: np.ndarray = np.clip(points, self.form.lower, self.form.upper)
+        return inside
+
+    # -- the report ----------------------------------------------------------------------------
+
+    def fronts(self, chosen: Sequence[Candidate], traded: int, solves: int) -> list[ParetoFront | None]:
+        """Return the front of each question that has designs, ties settled.
+
+        Parameters
+        ----------
+        chosen : list of Candidate
+            Proven designs, those of a question together.
+        traded : int
+            How many objectives, from the first, are traded off.
+        solves : int
+            Continuous problems that were solved to find them.
+        """
+        form, together = self.form, self.together
+        fronts: list[ParetoFront | None] = [None] * len(together.each)
+        found = settle_ties(form, self.pool, chosen, traded) if chosen else []
+        every = np.array(sorted(form.solved_combinations), dtype=np.int64)
+        solved = np.bincount(together.combinations.question(every), minlength=len(together.each))
+        for number, designs in self._designs(found, traded).items():
+            question = self.questions[number]
+            total, own = question.instance.combinations.count, int(solved[number])
+            statistics = replace(
+                offered(question.instance),
+                excluded_by_bound=total - own,
+                solved=own,
+                searched_together=len(self.questions),
+                boxes=form.contracted,
+                nlp_solves=form.nlp_solves,
+                nlp_solves_to_find=solves,
+                seconds={"total": time.monotonic() - self.started},
+            )
+            certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
+            fronts[number] = front_of(
+                question.instance, designs[0].frame, designs, certificate, statistics, question.record(),
+                complete=traded == 1,
+            )  # fmt: skip
+        return fronts
+
+    def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
+        """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""
+        form, units = self.form, designs[0].frame.units
+        amounts = {}
+        for k, name in enumerate(list(designs[0].frame.objectives)[:traded]):
+            if not form.log_goals[k]:
+                size = abs(designs[0].values[name]) / form.goal_scales[k]
+                amounts[name] = rounded_up(max(self.gap * size, form.finest[k]) * form.goal_scales[k], units[name])
+        return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
+
+    def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
+        """Return the designs of each question in order of rank, from candidates with what ties with each.
+
+        ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
+        """
+        form, together = self.form, self.together
+        if not found:
+            return {}
+        candidates = [c for c, _ in found]
+        costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
+        combinations, points, _ = rows_of(candidates)
+        result = form.evaluate(points.reshape(len(candidates), form.n), combinations)
+        numbers = together.combinations.question(combinations).tolist()
+        made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
+        more = [
+            {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
+            for (_, also), cost in zip(found, costs, strict=True)
+        ]
+        designs: dict[int, list[Design]] = {}
+        frames = [made[number] for number in numbers]
+        for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
+            designs.setdefault(number, []).append(design)
+        asked = {number: self.questions[number] for number in designs}
+        return {q: ranked(own, asked[q].chosen, list(asked[q].weights.values()))[1] for q, own in designs.items()}
+
+    def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
+        """Return the elasticities of each design, as its question alone would tell them."""
+        if self.form.log_goals[:traded].all():
+            return elasticities(self.form, designs, traded)
+        # The objective may be positive in some questions although it is not in all.
+        result = []
+        for c in designs:
+            own = self.together.combinations.own(c.combination)
+            form, number = (
+                Formulation(self.together.of(c.combination), self.goals, 1, tuning=self.tuning),
+                np.array([own]),
+            )
+            _, phi = form.feasible_rows(c.variables[None, :], number)
+            result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
+        return result
+
+    def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs that are as good in the objective and better in the next one, over all parts."""
+        form, sought = self.form, self.sought
+        if len(form.goals) < 2 or not chosen:
+            return list(chosen)
+        following = 1 if sought == 0 else 0
+        questions = self.together.combinations.question(np.array([c.combination for c in chosen]))
+        plain = self.plain.copy()
+        plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
+        known = BestOfEach(self.together, following, form.n, len(form.goals), plain, self.tuning)
+        asked = np.zeros(len(self.questions), dtype=bool)
+        asked[questions] = True
+        known.add(*rows_of(chosen))
+        purpose = Each(form, known, self._slack(following), asked)
+        self.look.improve(purpose)
+        cover(form, self.pool, purpose, self.clock, self.rng, self.joint.tie * len(chosen))
+        better = dict(zip(known.questions().tolist(), known, strict=True))
+        return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]

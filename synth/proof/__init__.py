@@ -1,0 +1,1 @@
+"""The arithmetic and the tree of verification, which share nothing with the search."""

@@ -1,0 +1,634 @@
+"""A tree of boxes that proves that some regions of the objectives hold no feasible design.
+
+The tree belongs to ``verify`` and shares no code with the search; limits are read from the declaration once more, as
+``synth.verification.verify`` tells. A node is a box of everything that is open: a
+range of each variable, of each count and choice, a cluster of rows per slot, and a cluster of regions. The rows of
+a slot are arranged once as a tree over the columns that the question uses, so that one node can speak of thousands
+of combinations. Boxes whose enclosures (``synth.proof.enclosure``) break a limit or miss every region are dead; the
+others are tightened and split where the limits and objectives are spread most.
+
+References
+----------
+J. L. Bentley: Multidimensional binary search trees used for associative searching. Communications of the ACM 18
+(1975) 509-517. H. Schichl, A. Neumaier: Interval analysis on directed acyclic graphs for global optimization. J. of
+Global Optimization 33 (2005) 541-562.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.model.model import Model
+from synth.model.program import Program
+from synth.proof.clusters import FAR, TINY, Clusters
+from synth.proof.enclosure import Cut, Enclosed, Encloser
+from synth.proof.interval_arithmetic import INF, LOOSE
+from synth.proof.questions import Coordinate, LimitSides, Outcome, Point
+from synth.proof.tape import Ref, Tape
+from synth.proof.tightening import Row, _Step
+from synth.proof_limits import PROOF, ProofLimits
+from synth.question.instance import Instance
+from synth.special import expanded
+
+NO_SCALE = 1e-9  # of limits that the user added
+
+
+@dataclass
+class Boxes:
+    """Open boxes: ends of the continuous variables, and ends of ladders, nodes of slots and of the regions."""
+
+    real: np.ndarray  # (2 variables, boxes): low ends, then high ends
+    whole: np.ndarray  # (2 ladders + slots + 1, boxes): first ends, last ends, nodes
+
+    def __len__(self) -> int:
+        return int(self.whole.shape[1])
+
+    def take(self, which: Any) -> Boxes:
+        """Return some of the boxes."""
+        return Boxes(self.real[:, which], self.whole[:, which])
+
+    def each(self) -> Iterator[Boxes]:
+        """Yield the boxes one by one."""
+        return (self.take(slice(k, k + 1)) for k in range(len(self)))
+
+    @staticmethod
+    def joined(parts: Sequence[Boxes]) -> Boxes:
+        """Return several batches as one."""
+        return Boxes(np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.whole for p in parts], axis=1))
+
+
+def void_without(model: Model) -> dict[str, list[int]]:
+    """Return, per limit of the family, the data inputs without a value for which it does not count."""
+    optional = {str(e.sx): k for k, e in enumerate(model.data_inputs) if not e.required}
+    found: dict[str, list[int]] = {}
+    for limit in model.limits:
+        sides = expanded(ca.vertcat(limit.value, limit.limit), model.calls) if optional else ca.SX()
+        found[limit.name] = sorted(optional[str(s)] for s in ca.symvar(sides) if str(s) in optional)
+    return found
+
+
+class ProofTree:
+    """A question as a tree can prove it; made once, asked for any regions of the objectives.
+
+    Inside, an objective that is surely positive and to be small (``positive``) counts by logarithm.
+
+    Parameters
+    ----------
+    instance : Instance
+    objectives : mapping
+        Names and senses.
+    limits : ProofLimits
+    """
+
+    def __init__(self, instance: Instance, objectives: Mapping[str, str], limits: ProofLimits = PROOF) -> None:
+        self.instance, self.limits = instance, limits
+        self._senses = [1 if sense == "min" else -1 for sense in objectives.values()]
+        model = instance.model
+        sides: list[Any] = [model.quantity_sx[name] for name in objectives]
+        sides += [side for limit in model.limits for side in (limit.value, limit.limit)]
+        sides += [model.quantity_sx[x.quantity] for x in instance.own]
+        sides += [refusal.when for refusal in instance.joint_refusals]
+        self.program = Program(model.inputs, sides, model.calls)
+        self._used = set(self.program.needed(self.program.outputs))
+        self._coordinates: list[Coordinate] = []
+        self._variables: list[int] = []  # numbers of those that are continuous
+        self._ladders: list[np.ndarray] = []
+        self._tables: list[np.ndarray] = []  # per slot with columns that matter: values (rows, columns)
+        self._rows: list[np.ndarray] = []  # per such slot: the rows that are left
+        self._table_of: dict[str, int] = {}
+        self._inputs = self._read_inputs()
+        self._read_outputs(len(objectives))
+        self._order = self._in_order()
+        self.positive = [False] * len(objectives)
+        with np.errstate(all="ignore"):
+            self.empty = not (self._tighten_root() and self._keep_inside())
+            if not self.empty:
+                self._record()
+
+    # -- reading the question ------------------------------------------------------------------
+
+    def _read_inputs(self) -> list[int | float]:
+        """Return, per input of the program, the number of its coordinate, or its value where it has but one."""
+        instance, model = self.instance, self.instance.model
+        inputs: list[int | float] = [math.nan] * self.program.n_inputs
+        for k, grid in enumerate(instance.grids()):
+            low, high = float(instance.lower[k]), float(instance.upper[k])
+            if len(grid):
+                inputs[k] = self._ladder(k, grid)
+            elif low == high or not self._matters(k):
+                inputs[k] = low
+            else:
+                self._variables.append(k)
+                inputs[k] = self._moving("variable", len(self._variables) - 1, 0, np.array([low, high]))
+        stepped = {**instance.selection.counts, **instance.selection.choices}
+        slots: dict[str, list[int]] = {s.slot: [] for s in instance.selection.slots}
+        first = len(model.variables)
+        for k, entry in enumerate(model.data_inputs, start=first):
+            if entry.kind == "requirement":
+                inputs[k] = float(instance.requirements[entry.name])
+            elif entry.kind == "row":
+                inputs[k] = float(instance.row_values[str(entry.sx)])
+            elif entry.kind == "part":
+                slots[entry.name].append(k)
+            else:
+                inputs[k] = self._ladder(k, stepped[entry.name])
+        for slot in instance.selection.slots:
+            moving: list[np.ndarray] = []
+            for k in slots[slot.slot]:
+                values = slot.columns["|".join(model.data_inputs[k - first].columns)]
+                if not self._matters(k) or np.isnan(values).all() or np.all(values == values[0]):
+                    inputs[k] = float(values[0])
+                else:
+                    moving.append(values)
+                    inputs[k] = self._moving("column", len(self._tables), len(moving) - 1, values)
+            if moving:
+                self._table_of[slot.slot] = len(self._tables)
+                self._tables.append(np.array(moving).T)
+        return inputs
+
+    def _matters(self, k: int) -> bool:
+        return self.program.input_nodes[k] in self._used
+
+    def _moving(self, kind: str, group: int, column: int, values: np.ndarray) -> int:
+        low, high = float(np.nanmin(values)), float(np.nanmax(values))
+        self._coordinates.append(Coordinate(kind, group, column, low, high))
+        return len(self._coordinates) - 1
+
+    def _ladder(self, k: int, values: np.ndarray) -> int | float:
+        if len(values) == 1 or not self._matters(k):
+            return float(values[0])
+        self._ladders.append(np.asarray(values, dtype=float))
+        return self._moving("ladder", len(self._ladders) - 1, 0, values)
+
+    def _read_outputs(self, objectives: int) -> None:
+        model, outputs = self.instance.model, iter(self.program.outputs)
+        first = len(model.variables)
+        self._goals = [next(outputs) for _ in range(objectives)]
+        self._limits: list[LimitSides] = []
+        void_inputs = void_without(model)
+        for limit in model.limits:
+            value, bound = next(outputs), next(outputs)
+            optional = [self._inputs[first + k] for k in void_inputs[limit.name]]
+            if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
+                void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
+                self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))
+        for x in self.instance.own:
+            self._limits.append(LimitSides(next(outputs), float(x.bound), x.sense, NO_SCALE))
+        self._refusals = list(outputs)
+
+    def _in_order(self) -> list[int]:
+        """Return all instructions, the bounds of limits first, so that they can cut the values when those come."""
+        first = [x.bound for x in self._limits if isinstance(x.bound, int)]
+        order: dict[int, None] = {}
+        for node in [*first, *(x.value for x in self._limits), *self.program.outputs]:
+            order.update(dict.fromkeys(self.program.needed([node])))
+        return list(order)
+
+    def _lacks(self, coordinate: int) -> bool:
+        c = self._coordinates[coordinate]
+        return c.kind == "column" and bool(np.isnan(self._tables[c.group][:, c.column]).any())
+
+    def _cuts(self) -> dict[int, list[Cut]]:
+        cuts: dict[int, list[Cut]] = {}
+        for x in self._limits:
+            if not x.void:
+                direction = {"at_most": 1, "at_least": -1, "equal": 0}[x.sense]
+                loose = 0.0 if x.guard else LOOSE  # a guard has no tolerance
+                cuts.setdefault(x.value, []).append(Cut(x.bound, direction, x.scale, loose))
+                if isinstance(x.bound, int):
+                    cuts.setdefault(x.bound, []).append(Cut(x.value, -direction, x.scale, loose))
+        return cuts
+
+    # -- the root box --------------------------------------------------------------------------
+
+    def _root(self) -> list[Enclosed]:
+        result = []
+        for given in self._inputs:
+            if isinstance(given, int):
+                c = self._coordinates[given]
+                pair = (c.low, c.high)
+                middle = math.sqrt(c.low * c.high) if c.log else 0.5 * (c.low + c.high)
+                sign = 1 if c.low > 0 else -1 if c.high < 0 else 0
+                result.append(Enclosed(pair, (middle, middle), c.log, {given: (1.0, 1.0)}, sign, pair, pair, c.least))
+            else:
+                result.append(Enclosed.constant(given))
+        return result
+
+    def _tighten_root(self) -> bool:
+        """Cut the ranges of all inputs to what the limits leave; tell whether anything is left."""
+        nodes, cuts = self.program.nodes, self._cuts()
+        pad = self.limits.pad
+        for _ in range(self.limits.sweeps):
+            encloser = Encloser(Tape(), self.program, slopes=False)
+            found = encloser.run(nodes, self._order, self._root(), cuts)
+            self._certain = encloser.carried_back(nodes, self._order, found)
+            for k, given in enumerate(self._inputs):
+                if isinstance(given, int):
+                    c = self._coordinates[given]
+                    low, high = self._certain[self.program.input_nodes[k]]
+                    low, high = np.fmax(c.low, low - pad * abs(low)), np.fmin(c.high, high + pad * abs(high))
+                    if low > high:
+                        return False
+                    self._coordinates[given] = replace(c, low=float(low), high=float(high))
+        return True
+
+    def _keep_inside(self) -> bool:
+        """Leave out values of ladders and rows that the root box does not reach; tell whether any are left."""
+        self._rows, snap = [np.arange(len(table)) for table in self._tables], self.limits.snap
+        for k, c in enumerate(self._coordinates):
+            if c.kind == "ladder":
+                values = self._ladders[c.group]
+                values = values[_between(values, c.low, c.high, snap)]
+                if not len(values):
+                    return False
+                self._ladders[c.group] = values
+                self._coordinates[k] = replace(c, low=float(values[0]), high=float(values[-1]))
+            elif c.kind == "column":
+                values = self._tables[c.group][self._rows[c.group], c.column]
+                self._rows[c.group] = self._rows[c.group][_between(values, c.low, c.high, snap) | np.isnan(values)]
+        if not all(len(rows) for rows in self._rows):
+            return False
+        for k, c in enumerate(self._coordinates):
+            if c.kind == "column":
+                values = self._tables[c.group][self._rows[c.group], c.column]
+                there = values[~np.isnan(values)]
+                low, high = (float(there.min()), float(there.max())) if len(there) else (1.0, 1.0)
+                self._coordinates[k] = replace(c, low=low, high=high)
+        self._slots = []
+        for group, table in enumerate(self._tables):
+            own = [c for c in self._coordinates if c.kind == "column" and c.group == group]
+            scale = np.array([max(abs(c.low), abs(c.high)) or 1.0 for c in own])
+            self._slots.append(Clusters(table[self._rows[group]], np.array([c.log for c in own]), scale))
+        return True
+
+    # -- recording what is done with a batch of boxes ------------------------------------------
+
+    def _record(self) -> None:
+        """Record the work on a batch of boxes: narrow ranges, then slopes; both give tightened ends."""
+        scout = Encloser(Tape(), self.program, certain=self._certain)
+        seen = scout.run(self.program.nodes, self._order, self._root())
+        self.positive = [seen[g].sign > 0 and sense > 0 for g, sense in zip(self._goals, self._senses, strict=True)]
+        tape = Tape()
+        ends, middles, halves, leaves = [], [], [], []
+        for k, c in enumerate(self._coordinates):
+            side = 1 if c.low >= 0 else -1 if c.high <= 0 else 0
+            pair, middle = (tape.leaf(side), tape.leaf(side)), tape.leaf(side)
+            ends.append(pair)
+            middles.append(middle)
+            halves.append(tape.leaf(1))
+            sign = 1 if c.low > 0 else -1 if c.high < 0 else 0
+            leaves.append(Enclosed(pair, (middle, middle), c.log, {k: (1.0, 1.0)}, sign, pair, pair, c.least))
+        levels = [tape.leaf() for _ in self._goals]
+        widths = [tape.leaf(1) for _ in self._goals]
+        caps = [tape.leaf(1 if positive else 0) for positive in self.positive]
+        masks = {void: tape.leaf() for void in dict.fromkeys(x.void for x in self._limits if x.void)}
+        self._masks = list(masks)
+
+        encloser = Encloser(tape, self.program, known=scout.record)
+        cuts = self._cuts()
+        for goal, sense, cap in zip(self._goals, self._senses, caps, strict=True):
+            cuts.setdefault(goal, []).append(Cut(cap, sense, loose=0.0))
+        inputs = [leaves[x] if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
+        found = encloser.run(self.program.nodes, self._order, inputs, cuts)
+        rows = [self._goal_row(encloser, found, k, levels[k]) for k in range(len(self._goals))]
+        for limit in self._limits:
+            rows += self._limit_rows(encloser, found, limit, masks)
+        for k in self._refusals:
+            surely = encloser.do("subtract", found[k].narrow[0], 0.5)
+            rows.append(Row(surely, surely, surely, {}))
+
+        step = _Step(
+            encloser, ends, halves, self._coordinates, [self._group_of(c) for c in self._coordinates], self.limits.pad
+        )
+        handed = [x for pair in ends for x in pair] + levels + caps + list(masks.values())
+        back = encloser.carried_back(self.program.nodes, self._order, found)
+        place = {x: self.program.input_nodes[k] for k, x in enumerate(self._inputs) if isinstance(x, int)}
+        self._narrowing = tape.kernel(handed, step.narrowed(rows, levels, [back[place[k]] for k in range(len(ends))]))
+        self._sloping = tape.kernel(handed + middles + halves + widths, step.sloped(rows, levels, widths, self._groups))
+
+    @property
+    def _groups(self) -> int:
+        """How many things can be split: variables, ladders, slots, and last the regions."""
+        return len(self._variables) + len(self._ladders) + len(self._tables) + 1
+
+    def _group_of(self, c: Coordinate) -> int:
+        first = {"variable": 0, "ladder": len(self._variables), "column": len(self._variables) + len(self._ladders)}
+        return first[c.kind] + c.group
+
+    def _goal_row(self, encloser: Encloser, found: Mapping[int, Enclosed], k: int, level: Ref) -> Row:
+        v, do = found[self._goals[k]], encloser.do
+        if self.positive[k]:
+            ends = (do("log", v.uncut[0]), do("log", v.range[0]), do("log", v.center[0]))
+            slopes = encloser.logarithmic(v)
+        elif self._senses[k] > 0:
+            ends, slopes = (v.uncut[0], v.range[0], v.center[0]), encloser.linear(v)
+        else:
+            ends = (do("negative", v.uncut[1]), do("negative", v.range[1]), do("negative", v.center[1]))
+            slopes = {q: encloser.negative(s) for q, s in encloser.linear(v).items()}
+        least, anywhere, center = (do("subtract", x, level) for x in ends)
+        return Row(least, anywhere, center, slopes)
+
+    def _limit_rows(
+        self, encloser: Encloser, found: Mapping[int, Enclosed], x: LimitSides, masks: Mapping[Any, Ref]
+    ) -> list[Row]:
+        value = found[x.value]
+        bound = found[x.bound] if isinstance(x.bound, int) else Enclosed.constant(x.bound)
+        void = masks[x.void] if x.void else None
+        rows = []
+        if x.sense in ("at_most", "equal"):
+            rows.append(self._limit_row(encloser, value, bound, x, void))
+        if x.sense in ("at_least", "equal"):
+            rows.append(self._limit_row(encloser, bound, value, x, void))
+        return rows
+
+    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> Row:
+        """Return small <= large as a row: log(small/large), or their difference over their size."""
+        do, scale, limits = e.do, x.scale, self.limits
+        share = limits.guard_tolerance if x.guard else limits.row_tolerance
+        if small.sign > 0 and large.sign > 0 and scale <= max(small.least, large.least):
+            ends = []
+            for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
+                ends.append(do("subtract", do("log", do("divide", a[0], b[1])), share))
+            slopes = e.merged(e.logarithmic(small), e.logarithmic(large), e.subtract)
+            return Row(ends[0], ends[1], ends[2], slopes, void)
+        size = do("maximum", do("absolute", large.center[0]), do("maximum", do("absolute", small.center[0]), scale))
+        factor = do("divide", 1.0, size)
+        pair = (factor, factor)
+        tolerance = do("multiply", share, do("maximum", e.largest(large.range), scale))
+        ends = []
+        for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
+            ends.append(do("subtract", do("subtract", a[0], b[1]), tolerance))
+        ends[1:] = [do("multiply", factor, x) for x in ends[1:]]
+        slopes = e.merged(e.linear(small), e.linear(large), e.subtract)
+        return Row(ends[0], ends[1], ends[2], {k: e.multiply(pair, s) for k, s in slopes.items()}, void)
+
+    # -- the tree ------------------------------------------------------------------------------
+
+    def prove(self, ends: np.ndarray, confirm: Callable[[Point], bool], deadline: float = INF) -> Outcome:
+        """Prove that no feasible design lies in any region: below an end in every objective.
+
+        Parameters
+        ----------
+        ends : array (regions, objectives)
+            In SI, with the sign turned where an objective is to be large; infinite where it does not bound a region.
+        confirm : callable
+            Takes a design that may refute the claim and tells whether it does.
+        deadline : float
+            On the clock of ``time.monotonic``.
+        """
+        if self.empty:
+            return Outcome(True, 0)
+        with np.errstate(all="ignore"):
+            logs = np.where(ends > 0, np.log(np.maximum(ends, TINY)), -INF)  # nothing positive lies below 0
+            levels = np.where(self.positive, logs, ends)
+            finite = np.where(np.isfinite(levels), levels, np.nan)
+            spread = [np.ptp(x[~np.isnan(x)]) if not np.isnan(x).all() else 0.0 for x in finite.T]
+            scale = np.array([x if x > 0 else 1.0 for x in spread])
+            regions = Clusters(levels, np.zeros(levels.shape[1], dtype=bool), scale)
+            return self._grow(regions, confirm, deadline)
+
+    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float) -> Outcome:
+        limits, tries = self.limits, self.limits.tries
+        pool, nodes, stuck = [self._begin(regions)], 0, 0
+        while pool:
+            if time.monotonic() > deadline or nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
+                return Outcome(False, nodes)
+            batch = _batch(pool, limits.chunk)
+            nodes += len(batch)
+            boxes, scores, middle = self._tightened(batch, regions)
+            if not len(boxes):
+                continue
+            widths = self._widths(boxes, regions)
+            small = ~np.any(widths > 0, axis=0) | self._single(boxes)
+            # Once more: what is too small to be split has been tightened only now.
+            left = self._tightened(boxes.take(small), regions)[0] if small.any() else boxes.take(small)
+            single = self._single(left)
+            hopeful = np.argsort(middle)[:tries]
+            few = [left.take(np.flatnonzero(~single)[:tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
+            # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
+            for point in map(self._point, Boxes.joined([left.take(single), *few]).each()):
+                if confirm(point):
+                    return Outcome(False, nodes, point)
+            stuck += int(np.count_nonzero(~single))
+            if stuck > limits.most_stuck:
+                return Outcome(False, nodes)
+            if not small.all():
+                pool.append(self._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
+        return Outcome(not stuck, nodes)
+
+    def _begin(self, regions: Clusters) -> Boxes:
+        """Return boxes that cover everything, split blindly to a useful number."""
+        real = [c.low for c in self._coordinates if c.kind == "variable"]
+        real += [c.high for c in self._coordinates if c.kind == "variable"]
+        whole = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
+        boxes = Boxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
+        while len(boxes) < self.limits.first:
+            widths = self._widths(boxes, regions)
+            if not np.any(widths > 0):
+                break
+            group = np.argmax(widths, axis=0)
+            fixed = widths.max(axis=0) <= 0
+            boxes = Boxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
+        return boxes
+
+    def _tightened(self, boxes: Boxes, regions: Clusters) -> tuple[Boxes, np.ndarray, np.ndarray]:
+        """Return what is left of boxes, how much each group spreads the rows, and the largest row at the middle."""
+        result = self._narrowing.run(self._handed(boxes, regions, False))
+        boxes, _ = self._placed(boxes, regions, result)
+        if not len(boxes):
+            return boxes, np.zeros((self._groups, 0)), np.zeros(0)
+        count = len(boxes)
+        result = self._sloping.run(self._handed(boxes, regions, True))
+        boxes, kept = self._placed(boxes, regions, result)
+        scores = np.array([np.broadcast_to(x, count)[kept] for x in result[-self._groups - 1 : -1]])
+        # A spread without a bound counts as large, but not so that widths no longer matter.
+        return boxes, np.where(np.isfinite(scores), scores, FAR), np.broadcast_to(result[-1], count)[kept]
+
+    def _handed(self, boxes: Boxes, regions: Clusters, slopes: bool) -> list[np.ndarray]:
+        """Return the arrays that a kernel takes, in its order."""
+        v, m = len(self._variables), len(self._ladders)
+        nodes, region = boxes.whole[2 * m : -1], boxes.whole[-1]
+        tables = [(slot.low[:, node], slot.high[:, node]) for slot, node in zip(self._slots, nodes, strict=True)]
+        ends = []
+        for c in self._coordinates:
+            if c.kind == "variable":
+                ends.append((boxes.real[c.group], boxes.real[v + c.group]))
+            elif c.kind == "ladder":
+                values = self._ladders[c.group]
+                ends.append((values[boxes.whole[c.group]], values[boxes.whole[m + c.group]]))
+            else:
+                low, high = tables[c.group]
+                ends.append((low[c.column], high[c.column]))
+        handed = [x for pair in ends for x in pair]
+        levels = regions.high[:, region]
+        handed += list(levels)
+        for level, positive, sense in zip(levels, self.positive, self._senses, strict=True):
+            handed.append(np.exp(level) if positive else sense * level)
+        for void in self._masks:
+            lacking = np.zeros(len(boxes), dtype=bool)
+            for k in void:
+                c = self._coordinates[k]
+                lacking |= self._slots[c.group].lacking[c.column, nodes[c.group]]
+            handed.append(lacking)
+        if slopes:
+            pairs = list(zip(self._coordinates, ends, strict=True))
+            handed += [np.sqrt(low * high) if c.log else 0.5 * (low + high) for c, (low, high) in pairs]
+            handed += [0.5 * (np.log(high / low) if c.log else high - low) for c, (low, high) in pairs]
+            widths = levels - regions.low[:, region]
+            handed += list(np.where(np.isfinite(widths), widths, 0.0))
+        return handed
+
+    def _placed(self, boxes: Boxes, regions: Clusters, result: Sequence[Any]) -> tuple[Boxes, np.ndarray]:
+        """Return the boxes that are not dead, between their new ends, and which of the old ones they are."""
+        count, n = len(boxes), len(self._coordinates)
+        low = [np.broadcast_to(x, count) for x in result[1 : 1 + n]]
+        high = [np.broadcast_to(x, count) for x in result[1 + n : 1 + 2 * n]]
+        dead = np.broadcast_to(result[0], count) > 0
+        for a, b in zip(low, high, strict=True):
+            dead |= a > b
+        alive = np.flatnonzero(~dead)
+        low, high = [x[alive] for x in low], [x[alive] for x in high]
+        floor = np.array([np.broadcast_to(x, count)[alive] for x in result[1 + 2 * n : 1 + 2 * n + len(self._goals)]])
+        v, m = len(self._variables), len(self._ladders)
+        real, whole = boxes.real[:, alive], boxes.whole[:, alive]
+        kept = np.ones(len(alive), dtype=bool)
+        for k, c in enumerate(self._coordinates):
+            if c.kind == "variable":
+                real[c.group], real[v + c.group] = low[k], high[k]
+            elif c.kind == "ladder":
+                values = self._ladders[c.group]
+                reach = self.limits.snap * np.maximum(np.abs(low[k]), np.abs(high[k]))
+                first = np.maximum(np.searchsorted(values, low[k] - reach), whole[c.group])
+                last = np.minimum(np.searchsorted(values, high[k] + reach, side="right") - 1, whole[m + c.group])
+                kept &= first <= last
+                whole[c.group], whole[m + c.group] = first, last
+        for group, slot in enumerate(self._slots):
+            own = [k for k, c in enumerate(self._coordinates) if c.kind == "column" and c.group == group]
+            least, most = np.array([low[k] for k in own]), np.array([high[k] for k in own])
+            reach = self.limits.snap * np.maximum(np.abs(least), np.abs(most))
+            whole[2 * m + group] = slot.narrowed(whole[2 * m + group], least - reach, most + reach)
+            kept &= whole[2 * m + group] >= 0
+        floor = np.where(np.isnan(floor), -INF, floor)
+        whole[-1] = regions.narrowed(whole[-1], floor, np.full(floor.shape, INF))
+        kept &= whole[-1] >= 0
+        return Boxes(real[:, kept], whole[:, kept]), alive[kept]
+
+    def _widths(self, boxes: Boxes, regions: Clusters) -> np.ndarray:
+        """Return how wide each group of a box is; 0 where it cannot be split."""
+        v, m = len(self._variables), len(self._ladders)
+        result = np.zeros((self._groups, len(boxes)))
+        for c in self._coordinates:
+            if c.kind == "column":
+                continue
+            if c.kind == "variable":
+                low, high = boxes.real[c.group], boxes.real[v + c.group]
+            else:
+                values = self._ladders[c.group]
+                low, high = values[boxes.whole[c.group]], values[boxes.whole[m + c.group]]
+            width = np.log(high / low) if c.log else (high - low) / max(c.high - c.low, 1e-300)
+            thin = self.limits.thin if c.kind == "variable" else 0.0
+            result[self._group_of(c)] = np.where(width > thin, width, 0.0)
+        for group, slot in enumerate(self._slots):
+            result[v + m + group] = slot.spread[boxes.whole[2 * m + group]]
+        result[-1] = regions.spread[boxes.whole[-1]]
+        return result
+
+    def _single(self, boxes: Boxes) -> np.ndarray:
+        """Tell which boxes are a single design in all that the question sees; regions may be many."""
+        v, m = len(self._variables), len(self._ladders)
+        single: np.ndarray = np.all(boxes.real[:v] == boxes.real[v:], axis=0)
+        single &= np.all(boxes.whole[:m] == boxes.whole[m : 2 * m], axis=0)
+        for slot, nodes in zip(self._slots, boxes.whole[2 * m : -1], strict=True):
+            single &= slot.left[nodes] < 0
+        return single
+
+    def _split(self, boxes: Boxes, scores: np.ndarray, widths: np.ndarray, regions: Clusters) -> Boxes:
+        """Return boxes split where the rows are spread most, once, or more often where there are few."""
+        while True:
+            score = np.where(widths > 0, scores + 1e-9 * widths, -1.0)
+            group = np.argmax(score, axis=0)
+            fixed = score.max(axis=0) < 0
+            scores[group, np.arange(len(boxes))] *= 0.5
+            boxes = Boxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
+            if len(boxes) >= self.limits.few or fixed.any():
+                return boxes
+            scores, widths = np.concatenate([scores, scores], axis=1), self._widths(boxes, regions)
+
+    def _halved(self, boxes: Boxes, group: np.ndarray, regions: Clusters) -> Boxes:
+        """Return all left halves, then all right halves."""
+        v, m = len(self._variables), len(self._ladders)
+        left = Boxes(boxes.real.copy(), boxes.whole.copy())
+        right = Boxes(boxes.real.copy(), boxes.whole.copy())
+        for c in self._coordinates:
+            at = np.flatnonzero(group == self._group_of(c)) if c.kind != "column" else np.empty(0, dtype=np.int64)
+            if not len(at):
+                continue
+            if c.kind == "variable":
+                low, high = boxes.real[c.group, at], boxes.real[v + c.group, at]
+                middle = np.sqrt(low * high) if c.log else 0.5 * (low + high)
+                left.real[v + c.group, at] = right.real[c.group, at] = middle
+            else:
+                values = self._ladders[c.group]
+                first, last = boxes.whole[c.group, at], boxes.whole[m + c.group, at]
+                low, high = values[first], values[last]
+                middle = np.sqrt(low * high) if c.log else 0.5 * (low + high)
+                cut = np.clip(np.searchsorted(values, middle, side="right") - 1, first, last - 1)
+                left.whole[m + c.group, at], right.whole[c.group, at] = cut, cut + 1
+        for k, tree in enumerate([*self._slots, regions]):
+            at = np.flatnonzero(group == v + m + k)
+            node = boxes.whole[2 * m + k, at]
+            left.whole[2 * m + k, at], right.whole[2 * m + k, at] = tree.left[node], tree.right[node]
+        return Boxes.joined([left, right])
+
+    def _point(self, box: Boxes) -> Point:
+        """Return a design in the middle of a box, of rows and makeable values."""
+        model, v, m = self.instance.model, len(self._variables), len(self._ladders)
+        values = [0.0] * self.program.n_inputs
+        for k, given in enumerate(self._inputs):
+            if not isinstance(given, int):
+                values[k] = given
+                continue
+            c = self._coordinates[given]
+            if c.kind == "variable":
+                low, high = float(box.real[c.group, 0]), float(box.real[v + c.group, 0])
+                values[k] = math.sqrt(low * high) if c.log else 0.5 * (low + high)
+            elif c.kind == "ladder":
+                values[k] = float(self._ladders[c.group][int(box.whole[[c.group, m + c.group], 0].sum()) // 2])
+        first = len(model.variables)
+        digits: dict[str, int] = {}
+        for slot in self.instance.selection.slots:
+            group = self._table_of.get(slot.slot)
+            row = 0
+            if group is not None:
+                node = int(box.whole[2 * m + group, 0])
+                row = int(self._rows[group][self._slots[group].first[node]])
+            digits[slot.slot] = row
+            for k, entry in enumerate(model.data_inputs, start=first):
+                if entry.kind == "part" and entry.name == slot.slot:
+                    values[k] = float(slot.columns["|".join(entry.columns)][row])
+        return Point(np.array(values[:first]), values[first:], digits)
+
+
+def _between(values: np.ndarray, low: float, high: float, snap: float) -> np.ndarray:
+    reach = snap * max(abs(low), abs(high))
+    return (values >= low - reach) & (values <= high + reach)
+
+
+def _batch(pool: list[Boxes], chunk: int) -> Boxes:
+    """Take boxes from the end of the pool: one chunk, or less where there are fewer."""
+    taken, count = [], 0
+    while pool and count < chunk:
+        taken.append(pool.pop())
+        count += len(taken[-1])
+    boxes = Boxes.joined(taken)
+    if len(boxes) > chunk:
+        pool.append(boxes.take(slice(chunk, None)))
+        boxes = boxes.take(slice(0, chunk))
+    return boxes

@@ -1,0 +1,76 @@
+"""Objectives of a question: chosen by name, with ties settled by weights."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from synth.errors import InputError
+from synth.model.model import Model
+from synth.question.instance import Instance
+
+
+def chosen_objectives(model: Model, asked: Any) -> dict[str, str]:
+    """Return the objectives by name with their sense: those asked for, or the family's defaults.
+
+    Raises
+    ------
+    InputError
+        When a name is unknown, a sense is not min or max, or there is none at all.
+    """
+    declared = model.declaration.objectives
+    if asked is None:
+        chosen = {o.name: o.sense for o in declared.values() if o.default}
+        if not chosen:
+            raise InputError(
+                "objectives", None, "at least one of " + ", ".join(declared or model.quantity_sx), ("objectives",)
+            )
+        return chosen
+    if isinstance(asked, str):
+        asked = [asked]
+    pairs = asked.items() if isinstance(asked, Mapping) else [(name, None) for name in asked]
+    result: dict[str, str] = {}
+    for word, sense in pairs:
+        name = model.name_of(str(word), "objectives", list(model.quantity_sx), "a quantity")
+        if sense is None:
+            if name not in declared:
+                raise InputError(
+                    f"objectives: {name}",
+                    None,
+                    f"a sense, for example {{{name}: min}}; declared are {', '.join(declared)}",
+                    ("objectives", name),
+                )
+            sense = declared[name].sense
+        if sense not in ("min", "max"):
+            raise InputError(f"objectives: {name}", sense, "min or max", ("objectives", name))
+        if name in result:
+            raise InputError("objectives", word, "each objective once", ("objectives", str(word)))
+        result[name] = str(sense)
+    if not result:
+        raise InputError("objectives", None, "at least one of " + ", ".join(declared), ("objectives",))
+    return result
+
+
+def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
+    """Return the chosen objectives, then what settles ties: other objectives, then the variables."""
+    result = dict(chosen)
+    for default in (True, False):
+        for objective in model.declaration.objectives.values():
+            if objective.default == default and objective.name not in result:
+                result[objective.name] = objective.sense
+    for variable in model.variables:
+        result.setdefault(variable.name, "min")
+    return result
+
+
+def _weights(instance: Instance, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
+    values = dict.fromkeys(chosen, 1.0)
+    for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
+        number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan
+        if not (math.isfinite(number) and number >= 0):
+            raise InputError(f"weights: {name}", weight, "a number that is not negative", ("weights", name))
+        values[name] = float(number)
+    if not any(values.values()):
+        raise InputError("weights", dict(asked), "at least one weight above 0", ("weights",))
+    return list(values.values())

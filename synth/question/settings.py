@@ -1,0 +1,105 @@
+"""How a question is searched: one record, checked where it is made."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from synth.errors import InputError, whole_number
+from synth.input_limits import INPUT_LIMITS
+from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_finite, is_gap, read_keys
+
+Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
+LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchSettings:
+    """How a question is searched.
+
+    Parameters
+    ----------
+    points : int
+        At most this many designs.
+    gap : float
+        Relative improvement in every objective that need not be excluded.
+    workers : int
+        Threads or processes.
+    seed : int
+        Of all random choices.
+    time_limit : float, optional
+        Seconds after which what is found so far is returned.
+
+    Raises
+    ------
+    InputError
+        One of them is none of these.
+    """
+
+    points: int = 30
+    gap: float = 1e-3
+    workers: int = 1
+    seed: int = 0
+    time_limit: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no setting of a search."""
+        self._hold("points", whole_number(self.points, "points", INPUT_LIMITS.points, path=("points",)))
+        if not is_gap(self.gap):
+            raise InputError("gap", self.gap, GAP_EXPECTED, ("gap",))
+        self._hold("gap", float(self.gap))
+        self._hold("workers", whole_number(self.workers, "workers", INPUT_LIMITS.workers, path=("workers",)))
+        self._hold("seed", whole_number(self.seed, "seed", INPUT_LIMITS.seed, least=0, path=("seed",)))
+        limit = self.time_limit
+        if limit is not None and not (is_finite(limit) and limit > 0):
+            raise InputError("time_limit", limit, "a positive number of seconds", ("time_limit",))
+
+    def _hold(self, name: str, value: float) -> None:
+        object.__setattr__(self, name, value)
+
+    def since(self, begun: float) -> SearchSettings:
+        """Return the same with what is left of the time limit, which began at a time as of ``time.monotonic``."""
+        if self.time_limit is None:
+            return self
+        return replace(self, time_limit=max(self.time_limit - (time.monotonic() - begun), LEAST_SECONDS))
+
+    def within(self, seconds: float | None) -> SearchSettings:
+        """Return the same with another time limit; None: without any."""
+        return replace(self, time_limit=seconds)
+
+    @classmethod
+    def from_json(cls, content: Mapping[str, Any], where: str = "settings") -> SearchSettings:
+        """Return the settings that a spec states; where it states none they are the usual ones.
+
+        Parameters
+        ----------
+        content : mapping
+            Keys of a spec; those that say what is asked may stand there as well.
+        where : str
+            The name of it, for messages.
+
+        Raises
+        ------
+        InputError
+            When a key is unknown, or a value is not of its kind.
+        """
+        read = read_keys(content, where, SEARCHED)
+        return cls(**{name: value for name, value in read.items() if value is not None})
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the settings as a spec states them."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
+
+
+def check_progress(progress: Any) -> None:
+    """Refuse what cannot be told how far a search is.
+
+    Raises
+    ------
+    InputError
+        It is no function.
+    """
+    if progress is not None and not callable(progress):
+        raise InputError("progress", progress, "a function of one mapping, or none")

@@ -1,0 +1,285 @@
+"""Spec files: a design question (or a given design) written as YAML or JSON, read strictly."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from synth.errors import InputError, at
+from synth.files import read_bytes
+from synth.question.spec_keys import (
+    ASKED,
+    FIELDS,
+    SEARCHED,
+    Described,
+    asks_several,
+    hint_at_key,
+    read_keys,
+    shown_families,
+)
+
+if TYPE_CHECKING:
+    from synth.question.request import Request
+    from synth.question.settings import SearchSettings
+
+LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A design question as it stands in a file; what was not written is None (or an empty mapping).
+
+    ``family`` is a name, "any", or a tuple of names and of mappings with ``family`` and what concerns it alone.
+    ``file`` is the path as it was given and ``folder`` the place that relative catalogue paths start from.
+    """
+
+    family: Any
+    options: Mapping[str, str]
+    requirements: Mapping[str, Any]
+    objectives: Any
+    limits: Mapping[str, Any]
+    fix: Mapping[str, Any]
+    parts: Mapping[str, Any]
+    catalogs: Any
+    weights: Mapping[str, float]
+    robust: Mapping[str, Any]
+    values: Mapping[str, Any] | None
+    points: int | None
+    gap: float | None
+    grid: bool | None
+    seed: int | None
+    time_limit: float | None
+    workers: int | None
+    file: str
+    folder: Path
+
+    @property
+    def compares(self) -> bool:
+        """Tell whether several families are asked."""
+        return asks_several(self.family)
+
+    @property
+    def shown_family(self) -> str:
+        """Return the family or the families in words."""
+        return shown_families(self.family)
+
+    def merged(self, **flags: Any) -> Spec:
+        """Return the spec with some of its keys replaced; flags that are None change nothing.
+
+        Parameters
+        ----------
+        **flags
+            Keys of a spec, for example ``points=10``.
+
+        Raises
+        ------
+        InputError
+            When a key is unknown or a value is not of its kind.
+        """
+        given = {key: value for key, value in flags.items() if value is not None}
+        for key, value in given.items():
+            if key not in FIELDS:
+                raise InputError("flag", key, hint_at_key(key))
+            with at(key):
+                given[key] = FIELDS[key](f"--{key.replace('_', '-')}", value)
+        return replace(self, **given)
+
+    def request(self) -> Request:
+        """Return what the spec asks of its one family."""
+        from synth.model.registry import load  # NumPy comes with it; --help does without
+        from synth.question.request import Request
+
+        asked = self.stated(ASKED)
+        family, options = asked.pop("family"), asked.pop("options", {})
+        requirements = asked.pop("requirements", {})
+        return Request.of(load(family, **options), requirements, folder=self.folder, **asked)
+
+    def settings(self, **usual: Any) -> SearchSettings:
+        """Return how the spec is searched; ``usual`` counts where it states nothing."""
+        from synth.question.settings import SearchSettings
+
+        return SearchSettings(**{**usual, **self.stated(SEARCHED)})
+
+    def stated(self, keys: Collection[str]) -> dict[str, Any]:
+        """Return what the spec states under some keys, without those under which it states nothing."""
+        values = {name: getattr(self, name) for name in keys}
+        return {name: value for name, value in values.items() if value is not None and value != {}}
+
+
+def spec_from_mapping(content: Any, file: str, folder: Path) -> Spec:
+    """Check a mapping that was read from a file (or came another way) and make a Spec of it.
+
+    Parameters
+    ----------
+    content : object
+        What stands in the file.
+    file : str
+        Its name, for messages.
+    folder : Path
+        Folder that relative catalogue paths start from.
+
+    Raises
+    ------
+    InputError
+        When a key is unknown or missing, or a value is not of its kind.
+    """
+    return Spec(**read_keys(content, file, FIELDS), file=file, folder=folder)
+
+
+# ---- reading the file -----------------------------------------------------------------------------------------------
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML without its surprises: no duplicate keys, no aliases, no octal or base-60 numbers, no dates."""
+
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012  (PyYAML's own habit)
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.events.AliasEvent):
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise yaml.composer.ComposerError(None, None, "an alias (*name); write the value out", mark)
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        seen: set[str] = set()
+        for key, _ in node.value:
+            if isinstance(key, yaml.ScalarNode):
+                if key.value in seen:
+                    raise yaml.constructor.ConstructorError(
+                        None, None, f"the key {key.value} a second time; write each key once", key.start_mark
+                    )
+                seen.add(key.value)
+        return super().construct_mapping(node, deep=deep)
+
+
+for _tag, _pattern, _first in (
+    ("bool", r"true|True|TRUE|false|False|FALSE|yes|Yes|YES|no|No|NO|on|On|ON|off|Off|OFF", "tTfFyYnNoO"),
+    ("null", r"~|null|Null|NULL|", ["~", "n", "N", ""]),
+    ("int", r"[-+]?[0-9]+", "-+0123456789"),
+    ("float", r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?", "-+.0123456789"),
+):
+    _StrictLoader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first))
+
+
+def _decimal(loader: yaml.SafeLoader, node: Any) -> int:
+    return int(loader.construct_scalar(node))  # PyYAML's own would read 010 as eight
+
+
+_StrictLoader.add_constructor("tag:yaml.org,2002:int", _decimal)
+
+
+def read_spec(path: str | Path) -> Spec:
+    """Read a spec, or a DESIGN.yaml, strictly.
+
+    Parameters
+    ----------
+    path : str or Path
+        A YAML file, or a JSON file with the ending ``.json``.
+
+    Returns
+    -------
+    Spec
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is not YAML (JSON), has unknown or doubled keys, or a value of the wrong kind.
+    """
+    content = read_content(path, "spec")
+    shown = str(path)
+    if content is None:
+        raise InputError(shown, Described("an empty file"), "a spec: lines such as 'family: multi_plate_clutch'")
+    return spec_from_mapping(content, shown, Path(path).parent)
+
+
+def read_content(path: str | Path, what: str) -> Any:
+    """Read a YAML file (JSON, with the ending ``.json``) strictly; what it means is for the caller to judge.
+
+    Parameters
+    ----------
+    path : str or Path
+    what : str
+        What the file is, for messages.
+
+    Returns
+    -------
+    object
+        None for an empty file.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read, is not YAML (JSON), or has doubled keys.
+    """
+    file, shown = Path(path), str(path)
+    text = _read_text(file, shown, what)
+    return _parse_json(text, shown) if file.suffix.lower() == ".json" else _parse_yaml(text, shown)
+
+
+def _read_text(file: Path, shown: str, what: str) -> str:
+    raw = read_bytes(file, what, most=LARGEST_FILE)
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = "\0"
+    if "\0" in text:
+        raise InputError(what, shown, "a text file in UTF-8; this one is binary or in another encoding")
+    return text
+
+
+def _parse_json(text: str, shown: str) -> Any:
+    if not text.strip():
+        return None
+
+    def pairs(entries: list[tuple[str, Any]]) -> dict[str, Any]:
+        result: dict[str, Any] = {}
+        for key, value in entries:
+            if key in result:
+                raise InputError(shown, key, "each key once; this one stands twice")
+            result[key] = value
+        return result
+
+    def constant(word: str) -> Any:
+        raise InputError(shown, word, "finite numbers")
+
+    try:
+        return json.loads(text, object_pairs_hook=pairs, parse_constant=constant)
+    except InputError:
+        raise
+    except json.JSONDecodeError as error:
+        raise InputError(f"{shown}, line {error.lineno}", Described(error.msg), "JSON") from error
+    except RecursionError as error:
+        raise InputError(shown, Described("brackets nested too deeply"), "JSON of a spec") from error
+    except ValueError as error:  # of a number
+        raise InputError(shown, Described("a number of thousands of digits"), "numbers that can be meant") from error
+
+
+def _parse_yaml(text: str, shown: str) -> Any:
+    try:
+        # The loader is a SafeLoader that reads less than its parent, not more.
+        return yaml.load(text, Loader=_StrictLoader)
+    except RecursionError as error:
+        raise InputError(shown, Described("brackets nested too deeply"), "YAML of a spec") from error
+    except (yaml.YAMLError, ValueError, OverflowError) as error:
+        mark = getattr(error, "problem_mark", None)
+        where = shown if mark is None else f"{shown}, line {mark.line + 1}"
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        problem = problem.replace("but found another document", "a second document after ---")
+        raise InputError(where, Described(problem), _yaml_advice(text, mark, problem)) from error
+
+
+def _yaml_advice(text: str, mark: Any, problem: str) -> str:
+    """Return what to type instead, for the slips that happen."""
+    lines = text.splitlines()
+    line = lines[mark.line] if mark is not None and mark.line < len(lines) else ""
+    if "\t" in line[: len(line) - len(line.lstrip())] or "'\\t'" in problem:
+        return "spaces instead of tabs at the beginning of the line"
+    if re.search(r":\s*[>&*%@`!|]", line):
+        return "quotes around a text that begins with a sign, for example outer_diameter: '>= 200 mm'"
+    return "YAML: one 'name: value' on a line, indented with spaces"

@@ -1,0 +1,94 @@
+"""How a front is put together: designs in order of rank, what its status is, and what its search tells in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.feasibility import Status
+from synth.pareto import rank
+from synth.results.certificate import Certificate
+from synth.results.design import Design, Frame
+from synth.results.front import ParetoFront
+from synth.results.statistics import SearchStatistics
+
+
+def ranked(
+    designs: Sequence[Design], objectives: Mapping[str, str], weights: Sequence[float], complete: bool = False
+) -> tuple[list[int], list[Design]]:
+    """Return designs in order of rank, with rank, score and note.
+
+    Parameters
+    ----------
+    designs : list of Design
+    objectives : mapping
+        Names and senses.
+    weights : list of float
+        One per objective.
+    complete : bool
+        Whether there are no other non-dominated designs.
+
+    Returns
+    -------
+    tuple
+        The positions that the designs had, and the designs.
+    """
+    if not designs:
+        return [], []
+    ranking = rank(objectives, np.array([[d.values[n] for n in objectives] for d in designs]), weights, complete)
+    return ranking.order, [
+        replace(designs[k], rank=place, score=float(ranking.scores[k]), note=ranking.notes[k])
+        for place, k in enumerate(ranking.order, start=1)
+    ]
+
+
+def front_of(
+    question: Any,
+    frame: Frame,
+    designs: Sequence[Design],
+    certificate: Certificate,
+    statistics: SearchStatistics,
+    settings: Mapping[str, Any],
+    *,
+    complete: bool,
+    explanation: Mapping[str, Any] | None = None,
+    interrupted: str = "",
+) -> ParetoFront:
+    """Return the front of a question that was searched; its status follows from designs and certificate.
+
+    Parameters
+    ----------
+    question : Instance
+    frame : Frame
+    designs : list of Design
+        In order of rank.
+    certificate : Certificate
+    statistics : SearchStatistics
+    settings : mapping
+        As they were asked for.
+    complete : bool
+        Whether all non-dominated designs are listed.
+    explanation : mapping, optional
+        Why there is no design.
+    interrupted : str
+        What stopped the search; nothing where it was finished.
+    """
+    if designs:
+        status = Status.OPTIMAL if certificate.kind == "global" else Status.FEASIBLE
+    else:
+        status = Status.NOT_SOLVED if interrupted else Status.INFEASIBLE
+    return ParetoFront(
+        frame=frame,
+        designs=list(designs),
+        status=status,
+        complete=complete and not interrupted,
+        statistics=statistics,
+        certificate=certificate,
+        explanation=explanation,
+        settings=settings,
+        interrupted=interrupted,
+        question=question,
+    )

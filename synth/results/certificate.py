@@ -1,0 +1,78 @@
+"""The certificate: how far a result is proven."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from synth.units import parse_unit
+
+
+def in_words(amounts: Mapping[str, float], units: Mapping[str, str]) -> str:
+    """Return amounts in SI with their units, as a remark in brackets; nothing where there are none.
+
+    Examples
+    --------
+    >>> in_words({"lift": 2e-6}, {"lift": "mm"})
+    ' (lift: 0.002 mm)'
+    """
+    told = []
+    for name, amount in amounts.items():
+        unit = parse_unit(units.get(name, "-"))
+        # A difference of temperatures is one in kelvin.
+        word = "K" if unit.offset else units.get(name, "-")
+        told.append(f"{name}: {amount / float(unit.ratio):.3g}" + ("" if word == "-" else f" {word}"))
+    return f" ({', '.join(told)})" if told else ""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How far a front is proven.
+
+    ``kind`` is ``global`` (valid bounds prove the gap), ``exhaustive`` (every combination that no valid
+    bound excludes was solved from several starts) or ``heuristic``. ``gap`` is what bounds prove, whatever the kind;
+    None where they prove nothing, or there is no design. ``budget`` is the time, in seconds, that ended the search
+    where it was the default budget; such a search may end otherwise on another machine.
+
+    ``resolution`` tells, in SI, by how much a design must be better in an objective for the claim to speak of it, where
+    that is no share of its value because it may be zero or negative, or is to be made large; ``units`` are theirs.
+    """
+
+    kind: str
+    gap: float | None
+    combinations: int
+    excluded_by_bound: int
+    solved: int
+    unresolved: int = 0
+    budget: float | None = None
+    resolution: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def amounts(self) -> str:
+        """Return in words what the gap stands for where it is no share of the value."""
+        return in_words(self.resolution, self.units)
+
+    def sentence(self) -> str:
+        """Return the certificate in words."""
+        n = f"{self.combinations:,}".replace(",", " ")
+        if self.kind == "global" and self.gap is None:
+            return f"proven: none of the {n} combinations of parts and counts can meet the requirements"
+        if self.kind == "global":
+            return (
+                f"proven: over all {n} combinations of parts and counts no design improves one listed here "
+                f"by more than {100 * (self.gap or 0):.3g} % in every objective{self.amounts()}"
+            )
+        end = "" if self.budget is None else f"; more time than the budget of {self.budget:g} s may prove more"
+        if self.kind == "exhaustive":
+            return (
+                f"exhaustive: of {n} combinations {self.excluded_by_bound} are excluded by bounds; every other one "
+                f"was solved from several starts ({self.unresolved} boxes could not be closed by bounds, "
+                f"which prove a gap of {_percent(self.gap)}{self.amounts()}{end})"
+            )
+        gap = f"gap {_percent(self.gap)}{self.amounts()}{end}"
+        return f"not proven: stopped before all of {n} combinations were covered; {gap}"
+
+
+def _percent(gap: float | None) -> str:
+    return "unknown" if gap is None or not math.isfinite(gap) else f"{100 * gap:.3g} %"

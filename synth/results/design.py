@@ -1,0 +1,142 @@
+"""One design as it is returned and saved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from synth.feasibility import Status
+from synth.files import yaml_text
+from synth.units import format_quantity, from_si, header
+
+
+class PartRow(Mapping[str, Any]):
+    """One catalogue row that fills a slot: designation, columns in SI, source, confidence, table.
+
+    ``str()`` is the designation.
+    """
+
+    def __init__(self, table: str, digest: str, columns: Mapping[str, Any]) -> None:
+        self._columns = {**columns, "table": table, "hash": digest}
+
+    def __getitem__(self, key: str) -> Any:
+        return self._columns[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __str__(self) -> str:
+        return str(self._columns["designation"])
+
+    def __repr__(self) -> str:
+        return f"PartRow({self._columns['table']}: {self})"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the designs of one front share: how to show them and how to state them again.
+
+    ``restated`` holds what a DESIGN.yaml must repeat so that a check sees the same question: limits, catalogs.
+    """
+
+    family: str
+    title: str
+    options: Mapping[str, str]
+    requirements: Mapping[str, str]
+    requirement_values: Mapping[str, float]
+    not_asked: tuple[str, ...]
+    objectives: Mapping[str, str]
+    units: Mapping[str, str]
+    kinds: Mapping[str, str]
+    limit_units: Mapping[str, str]
+    limit_senses: Mapping[str, str]
+    restated: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Design:
+    """One evaluated design.
+
+    ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
+    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells
+    which values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds, for a
+    design that was just evaluated, quantities on the way to others by name in SI, which hooks read. ``robust`` tells,
+    where that was asked, how the design stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and
+    ``yield_high``, ``worst_limit``, and per limit its worst point.
+    """
+
+    frame: Frame
+    values: Mapping[str, float]
+    parts: Mapping[str, PartRow]
+    choices: Mapping[str, str]
+    objectives: Mapping[str, float]
+    limits: Mapping[str, tuple[float, float]]
+    residuals: Mapping[str, float]
+    utilisation: Mapping[str, float | None]
+    status: Status
+    elasticity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    gap: float | None = None
+    rank: int | None = None
+    score: float | None = None
+    note: str = ""
+    alternatives: tuple[str, ...] = ()
+    off_grid: Mapping[str, str] = field(default_factory=dict)
+    outside: Mapping[str, str] = field(default_factory=dict)
+    advice: tuple[str, ...] = ()
+    violated: tuple[str, ...] = ()
+    not_checked: tuple[str, ...] = ()
+    robust: Mapping[str, Any] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
+
+    def to_spec(self) -> dict[str, Any]:
+        """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""
+        frame = self.frame
+        named = [n for n, kind in frame.kinds.items() if kind in ("variable", "count")]
+        values: dict[str, str] = {n: format_quantity(self.values[n], frame.units[n], None) for n in named}
+        values.update(self.choices)
+        spec: dict[str, Any] = {"family": frame.family}
+        if frame.options:
+            spec["options"] = dict(frame.options)
+        spec["requirements"] = dict(frame.requirements)
+        spec.update(frame.restated)
+        spec["values"] = values
+        spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
+        return spec
+
+    def yaml(self) -> str:
+        """Return the text of a DESIGN.yaml."""
+        return yaml_text(self.to_spec())
+
+
+def _order(frame: Frame) -> tuple[list[str], list[str]]:
+    """Return the quantities that stand before choices and parts, and those that stand behind."""
+    early = [n for n, kind in frame.kinds.items() if n not in frame.objectives and kind in ("variable", "count")]
+    early.sort(key=lambda n: frame.kinds[n] != "variable")
+    late = [n for n, kind in frame.kinds.items() if n not in frame.objectives and kind == "derived"]
+    return [*frame.objectives, *early], late
+
+
+def design_columns(frame: Frame, choices: Iterable[str], slots: Iterable[str]) -> list[str]:
+    """Return headers of what tables say of a design: objectives, sizes, choices, parts, derived, utilisation."""
+    early, late = _order(frame)
+    columns = [header(n, frame.units[n]) for n in early] + [*choices] + [*slots]
+    return columns + [header(n, frame.units[n]) for n in late] + [f"utilisation: {n}" for n in frame.limit_units]
+
+
+def design_row(frame: Frame, design: Design) -> list[Any]:
+    """Return what belongs under ``design_columns``; None where there is no value."""
+    early, late = _order(frame)
+    row: list[Any] = [shown_value(design.values[n], frame.units[n]) for n in early]
+    row += [*design.choices.values(), *(str(part) for part in design.parts.values())]
+    row += [shown_value(design.values[n], frame.units[n]) for n in late]
+    return row + [design.utilisation.get(n) for n in frame.limit_units]
+
+
+def shown_value(value: float, unit: str) -> float | None:
+    """Return an SI value in the unit of its column; None where it does not exist."""
+    return float(from_si(value, unit)) if math.isfinite(value) else None

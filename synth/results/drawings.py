@@ -1,0 +1,19 @@
+"""Drawings that reports draw of a result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+REPORTS = "clutchsynth.reports"
+
+
+def report(name: str) -> Callable[..., Any] | None:
+    """Return a report by its registered name; None where it is not installed."""
+    from importlib.metadata import entry_points
+
+    for point in entry_points(group=REPORTS):
+        if point.name == name:
+            found: Callable[..., Any] = point.load()
+            return found
+    return None

@@ -1,0 +1,151 @@
+"""Results: designs and fronts, immutable, and the tables that are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.feasibility import Status
+from synth.files import csv_text
+from synth.output_folder import FRONT, save_result
+from synth.results.front_record import digest_of, front_record, record_text
+from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.results.statistics import SearchStatistics
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.results.verification import Verification
+from synth.results.certificate import Certificate
+from synth.results.design import Design, Frame, design_columns, design_row
+
+
+@dataclass(frozen=True)
+class ParetoFront:
+    """The ranked non-dominated designs for one requirement.
+
+    ``question`` is the instance it answers, ``record`` and ``folder`` what it was read from: of these three a front
+    that was just computed has the first, one that was loaded the others.
+    """
+
+    frame: Frame
+    designs: list[Design]
+    status: Status
+    complete: bool
+    statistics: SearchStatistics
+    certificate: Certificate
+    explanation: Mapping[str, Any] | None
+    settings: Mapping[str, Any]
+    interrupted: str = ""
+    question: Any = field(default=None, repr=False, compare=False)
+    record: Mapping[str, Any] | None = field(default=None, repr=False, compare=False)
+    folder: Path | None = field(default=None, repr=False, compare=False)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, with units in the headers."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self.table()
+        frame = pd.DataFrame(rows, columns=columns)
+        return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
+
+    def save(self, folder: str | Path) -> Path:
+        """Write designs.csv, front.json and one design_NN.yaml per design, all or none; return the folder.
+
+        A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, self.files(), FRONT, bool(self.interrupted))
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        width = max(2, len(str(len(self.designs))))
+        found = {"designs.csv": self._csv(), "front.json": record_text(front_record(self))}
+        if any(design.robust for design in self.designs):
+            found["robust.csv"] = csv_text(*limits_table(self.designs))
+        for design in self.designs:
+            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
+        return found
+
+    def verify(self, problem: Any = None, catalogs: Any = None, time_limit: float = 120.0) -> Verification:
+        """Check the front without help of the search: the record, every design, and the claim of the certificate.
+
+        Parameters
+        ----------
+        problem : family name, DesignProblem subclass or instance, optional
+            For a loaded front of a problem of your own.
+        catalogs : folder or mapping, optional
+            Own tables that were in memory; those that were files are read again.
+        time_limit : float
+            Seconds for the proof.
+
+        Returns
+        -------
+        Verification
+            ``holds``, ``findings``, ``proven_gap`` and a ``sentence()``.
+
+        Raises
+        ------
+        InputError
+            When the problem or its tables cannot be had.
+        """
+        import synth  # it knows who checks; results do not
+
+        return synth.verify(self, problem, catalogs, time_limit)
+
+    def improve(
+        self,
+        time_limit: float | None = None,
+        problem: Any = None,
+        catalogs: Any = None,
+        workers: int = 1,
+        progress: Callable[[Mapping[str, Any]], None] | None = None,
+    ) -> ParetoFront:
+        """Go on with the search from the designs of this front; the result is never worse.
+
+        Parameters
+        ----------
+        time_limit : float, optional
+            Seconds; by default the search goes on as long as one from the start would.
+        problem : family name, DesignProblem subclass or instance, optional
+            For a loaded front of a problem of your own.
+        catalogs : folder or mapping, optional
+            Own tables that were in memory; those that were files are read again.
+        workers, progress
+            As for ``synthesize``.
+
+        Returns
+        -------
+        ParetoFront
+
+        Raises
+        ------
+        InputError
+            When the question cannot be posed again.
+        """
+        import synth  # it knows who searches; results do not
+
+        return synth.improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
+
+    def table(self) -> tuple[list[str], list[list[Any]]]:
+        """Return headers with units, and one row per design; None where there is no value."""
+        first = self.designs[0] if self.designs else None
+        columns = ["rank", "score", "status", "gap", "note", "alternatives"]
+        columns += design_columns(self.frame, first.choices if first else (), first.parts if first else ())
+        rows: list[list[Any]] = [
+            [d.rank, d.score, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *design_row(self.frame, d)]
+            for d in self.designs
+        ]
+        if any(d.robust for d in self.designs):
+            columns += COLUMNS
+            rows = [[*row, *rating_row(d)] for row, d in zip(rows, self.designs, strict=True)]
+        return columns, rows
+
+    def _csv(self) -> str:
+        return csv_text(*self.table())
+
+    @staticmethod
+    def digest_of(content: Mapping[str, Any]) -> str:
+        """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
+        return digest_of(content)

@@ -1,0 +1,1 @@
+"""Designs under uncertainty: robust counterpart, worst case, yield."""

@@ -1,0 +1,165 @@
+"""Rating: how designs fare under scatter."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.errors import InputError
+from synth.files import csv_text
+from synth.model.registry import load
+from synth.output_folder import RATING, save_result
+from synth.question.catalogs import catalogs_for
+from synth.question.request import Request
+from synth.question.settings import Progress, SearchSettings, check_progress
+from synth.question.uncertainty import read_block
+from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.robust.counterpart import nominal
+from synth.robust.rating import PROVEN, Rater
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Ratings:
+    """Designs with what a range does to them; each ``design.robust`` tells it.
+
+    ``asked`` is the block in full; ``interrupted`` tells why designs are missing, where some are.
+    """
+
+    designs: list[Design]
+    asked: Mapping[str, Any]
+    missing: int = 0
+    interrupted: str = ""
+
+    def sentence(self) -> str:
+        """Return how many designs keep their limits over the range, and how far that is certain."""
+        return told_of(self.designs, self.asked["samples"])
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, with units in the headers."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self._table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        told = {
+            "family": self.designs[0].frame.family if self.designs else None,
+            "robust": dict(self.asked),
+            "rated": len(self.designs),
+            "missing": self.missing,
+            "interrupted": self.interrupted,
+            "sentence": self.sentence(),
+            "designs": [{"rank": d.rank, **d.robust} for d in self.designs],
+        }
+        return {
+            "rating.csv": csv_text(*self._table()),
+            "robust.csv": csv_text(*limits_table(self.designs)),
+            "rating.json": json.dumps(told, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
+        }
+
+    def save(self, folder: str | Path) -> Path:
+        """Write rating.csv, robust.csv and rating.json; return the folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, self.files(), RATING, bool(self.interrupted))
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        if not self.designs:
+            return ["rank", *COLUMNS], []
+        first = self.designs[0]
+        columns = ["rank", *COLUMNS, *design_columns(first.frame, first.choices, first.parts)]
+        return columns, [[d.rank, *rating_row(d), *design_row(d.frame, d)] for d in self.designs]
+
+
+def told_of(designs: Sequence[Design], samples: int) -> str:
+    """Return in words how designs stand the range."""
+    rated = [d for d in designs if d.robust]
+    if not rated:
+        return "no design was rated"
+    holding = [d for d in rated if d.robust["holds"]]
+    proven = sum(d.robust["proof"] == PROVEN for d in holding)
+    of = "1 design" if len(rated) == 1 else f"{len(rated)} designs"
+    if not holding:
+        return f"none of {of} keeps all limits over the whole range"
+    keeps = "keeps" if len(holding) == 1 else "keep"
+    how = "proven" if proven == len(holding) else f"{proven} of them proven, else at the corners and {samples} samples"
+    if not proven:
+        how = f"not proven: at the corners and at {samples} samples"
+    return f"{len(holding)} of {of} {keeps} all limits over the whole range ({how})"
+
+
+def taken_off(count: int) -> str:
+    """Return in words how many designs are missing because they do not stand the range."""
+    designs = "1 design was" if count == 1 else f"{count} designs were"
+    return f"{designs} taken off: not all limits hold over the whole range"
+
+
+def rate(
+    source: ParetoFront | Design | Sequence[Design],
+    robust: Any = None,
+    *,
+    problem: Any = None,
+    catalogs: Any = None,
+    progress: Progress | None = None,
+    time_limit: float | None = None,
+) -> Ratings:
+    """Tell how designs stand what scatters around them.
+
+    Parameters
+    ----------
+    source : ParetoFront, Design or list of Design
+        From ``synthesize``, ``load_front`` or ``evaluate``.
+    robust : mapping, optional
+        What scatters, as for ``synthesize``; by default what the question of the front says.
+    problem, catalogs : optional
+        As for ``ParetoFront.verify``: for designs of a problem, or with tables, of one's own.
+    progress : callable, optional
+        Called with a mapping: stage, done, incumbents.
+    time_limit : float, optional
+        Seconds after which the designs rated so far are returned.
+
+    Returns
+    -------
+    Ratings
+
+    Raises
+    ------
+    InputError
+        When the block is not understood, or there are no designs.
+    """
+    settings = SearchSettings(time_limit=time_limit)
+    check_progress(progress)
+    designs = (
+        list(source.designs)
+        if isinstance(source, ParetoFront)
+        else [source]
+        if isinstance(source, Design)
+        else list(source)
+    )
+    if not designs:
+        raise InputError("front", "no designs", "a front with designs")
+    frame = designs[0].frame
+    asked = read_block(frame.restated.get("robust") if robust is None else robust)
+    question = source.question if isinstance(source, ParetoFront) else None
+    if question is not None and problem is None:
+        problem, catalogs = nominal(question.problem), question.catalogs if catalogs is None else catalogs
+    own = nominal(load(frame.family, **frame.options) if problem is None else load(problem))
+    tables = catalogs_for(own, frame.restated.get("catalogs") if catalogs is None else catalogs)
+    limits = frame.restated.get("limits") or {}
+    request = Request(problem=own, requirements=frame.requirements, catalogs=tables, limits=limits)
+    rater = Rater(request, asked)
+    deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
+    found, stopped = rater.rate(designs, progress, deadline)
+    rated = [replace(d, robust=r) for d, r in zip(designs, found, strict=False)]
+    return Ratings(rated, asked.block(), len(designs) - len(rated), stopped)

@@ -1,0 +1,164 @@
+"""Designs that stand what scatters around them: rated, or made so that their limits hold over a whole range."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from synth.feasibility import Status
+from synth.question.instance import Instance
+from synth.question.settings import Progress
+from synth.question.uncertainty import LIMITS, Uncertainty
+from synth.results import Design, ParetoFront
+from synth.results.assembly import ranked
+from synth.robust.rating import Rater
+from synth.robust.uncertainty import check_rows
+from synth.tuning import RobustLimits, Tuning
+
+SHORTEST, GRACE = 1e-3, 2.0  # seconds
+NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
+
+
+# ---- fronts ---------------------------------------------------------------------------------------------------------
+
+
+class Asks(Protocol):
+    """A question that was checked: see ``synth.search.front_search``."""
+
+    @property
+    def instance(self) -> Instance:
+        """The model with its requirements and restrictions."""
+        ...
+
+    @property
+    def tuning(self) -> Tuning:
+        """What its search goes by."""
+        ...
+
+    def within(self, seconds: float | None) -> Asks:
+        """Return the same with another time limit; None: without any."""
+        ...
+
+    def answer(self, progress: Progress | None = None, known: Sequence[Design] = ()) -> ParetoFront:
+        """Search the designs."""
+        ...
+
+
+def robust_front(
+    pose: Callable[[Uncertainty], Asks],
+    rater: Rater,
+    progress: Progress | None = None,
+    time_limit: float | None = None,
+    known: Sequence[Design] = (),
+    first: ParetoFront | None = None,
+) -> ParetoFront:
+    """Search designs and rate them; where limits are to hold over the range, until they do.
+
+    Designs that keep all limits that were posed, but not everywhere in the range, tell where they fail: there those
+    limits are posed as well, and the search begins again from what is known. What still fails in the end is taken off
+    the front. Each question asked leaves out limits at most, so that its bounds hold for all robust designs.
+
+    Parameters
+    ----------
+    pose : callable
+        Returns the question with the limits posed that a block asks for.
+    rater : Rater
+        Rates designs of the nominal problem.
+    progress, time_limit
+        As for ``synthesize``.
+    known : list of Design
+        Where to look first.
+    first : ParetoFront, optional
+        The answer to the first question, where it is known.
+    """
+    deadline = math.inf if time_limit is None else time.monotonic() + time_limit
+
+    def ask(asked: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
+        question = pose(asked)
+        check_rows(rater.things, question.instance.selection.slots)
+        if front is None:
+            left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
+            front = question.within(left).answer(progress, known)
+        # Designs that nobody rated are of little use: that takes a moment even where the time is over.
+        ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
+        more = len(question.instance.model.limits) - len(rater.model.limits)
+        return _Answer(asked, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
+
+    got, searches = ask(rater.asked, known, first), 1
+    while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
+        try:
+            better = ask(got.asked.with_scenarios(got.scenarios()), got.front.designs)
+        except KeyboardInterrupt:
+            got = replace(got, stopped="interrupted")
+            break
+        searches += 1
+        # A search that was not finished counts only where it brought more designs that hold.
+        got = replace(got, stopped=better.stopped) if better.stopped and better.holding <= got.holding else better
+    return got.told(searches)
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """A front with the ratings of its designs, and what stopped the work if something did."""
+
+    asked: Uncertainty
+    front: ParetoFront
+    ratings: list[dict[str, Any]]
+    stopped: str
+    posed: int  # limits beside those of the problem
+    limits: RobustLimits
+
+    @property
+    def failing(self) -> list[int]:
+        """Return the places of the designs that do not keep all limits."""
+        return [j for j, told in enumerate(self.ratings) if not told["holds"]]
+
+    @property
+    def holding(self) -> int:
+        """Return how many designs keep all limits."""
+        return len(self.ratings) - len(self.failing)
+
+    def scenarios(self) -> dict[str, list[tuple[float, ...]]]:
+        """Return the points at which limits fail, the worst first, and a few of each limit."""
+        found: dict[str, list[tuple[float, tuple[float, ...]]]] = {}
+        for j in self.failing:
+            for name, limit in self.ratings[j]["limits"].items():
+                if not limit["holds"]:
+                    worst = math.inf if limit["residual"] is None else limit["residual"]
+                    found.setdefault(name, []).append((worst, tuple(limit["position"])))
+        few = {name: sorted(points, key=lambda x: -x[0])[: self.limits.scenarios] for name, points in found.items()}
+        return {name: [point for _, point in points] for name, points in few.items()}
+
+    def told(self, searches: int) -> ParetoFront:
+        """Return the front: its designs tell how they stand the range, its question repeats what scatters."""
+        front, block = self.front, self.asked.block()
+        counts = {"searches": searches, "rated": len(self.ratings), "samples": self.asked.samples}
+        if self.asked.mode == LIMITS:
+            counts |= {"limits_posed": self.posed, "taken_off": len(self.failing)}
+        frame = replace(front.frame, restated={**front.frame.restated, "robust": block})
+        known = [*self.ratings, *({} for _ in range(len(front.designs) - len(self.ratings)))]
+        done = replace(
+            front,
+            frame=frame,
+            designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
+            statistics=replace(front.statistics, robust=counts),
+            settings={**front.settings, "robust": block},
+            interrupted=self.stopped,
+        )
+        return _without(done, self.failing) if self.asked.mode == LIMITS and self.failing else done
+
+
+def _without(front: ParetoFront, failing: Sequence[int]) -> ParetoFront:
+    """Return a front without some of its designs, ranked again."""
+    kept = [d for j, d in enumerate(front.designs) if j not in failing]
+    chosen = dict(front.frame.objectives)
+    weights = front.settings.get("weights") or {}
+    _, kept = ranked(kept, chosen, [weights.get(n, 1.0) for n in chosen])
+    if not kept:
+        # Nothing says that there is no robust design; there is none here that anything could be proven of.
+        certificate = replace(front.certificate, kind="heuristic", gap=None, resolution={}, units={})
+        return replace(front, designs=[], complete=False, status=Status.NOT_SOLVED, certificate=certificate)
+    return replace(front, designs=kept, complete=False)

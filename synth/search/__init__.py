@@ -1,0 +1,1 @@
+"""The search: branch and bound, heuristics, fronts."""

@@ -1,0 +1,178 @@
+"""The tree that goes on where a first effort has left boxes open: what promises most comes first.
+
+A first effort takes the boxes that were split last, so that few wait at a time; what it leaves open tells little. Here
+the boxes from which a design could gain most are split first, so that the gap that is proven becomes smaller all the
+time, whenever it ends.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.effort import SearchEffort
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import Covered, further
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.primal_heuristics import Seeker
+from synth.search.pruning import Purpose, Tabled, reaches_beyond
+
+
+@dataclass(frozen=True, kw_only=True)
+class Progress:
+    """What tells whether boxes keep closing.
+
+    Parameters
+    ----------
+    highest : int
+        The level of the boxes with most room.
+    waiting : int
+        Boxes that wait.
+    extent : float
+        How much of everything they hold: it only falls, while their number may stand still for long.
+    """
+
+    highest: int
+    waiting: int
+    extent: float
+
+    def after(self, known: Progress, closing: float) -> Progress | None:
+        """Return the least that is known now, where less is open than was known; None where nothing has closed.
+
+        Of the extent a share of at least ``closing`` counts. Less than that adds up, because nothing is returned then.
+        """
+        as_many = self.highest >= known.highest and self.waiting >= known.waiting
+        if as_many and self.extent > (1 - closing) * known.extent:
+            return None
+        return Progress(
+            highest=min(self.highest, known.highest),
+            waiting=min(self.waiting, known.waiting),
+            extent=min(self.extent, known.extent),
+        )
+
+
+class OpenBoxes:
+    """Boxes that wait, in levels of how much better than needed each could be.
+
+    Parameters
+    ----------
+    form : Formulation
+    purpose : Purpose
+    most : int
+        When more boxes wait, those of the lowest level are taken first.
+    """
+
+    def __init__(self, form: Formulation, purpose: Purpose, most: int) -> None:
+        self.form, self.purpose, self.most, self.tree = form, purpose, most, form.tuning.tree
+        self.levels: list[list[Boxes]] = [[] for _ in range(self.tree.levels)]
+        self.counts = np.zeros(self.tree.levels, dtype=np.int64)
+
+    def __len__(self) -> int:
+        return int(self.counts.sum())
+
+    def add(self, boxes: Boxes) -> None:
+        """Take boxes; those of no use are dropped."""
+        room = self.purpose.room(self.form.phi_of(boxes.bounds), boxes.cell)
+        useful = room > 0
+        boxes, room = boxes.take(useful), room[useful]
+        with np.errstate(all="ignore"):
+            doublings = np.log2(room / float(self.purpose.slack.min()))
+        highest = self.tree.levels - 1
+        level = np.clip(
+            np.nan_to_num(self.tree.levels_per_doubling * doublings, nan=highest, posinf=highest), 0, highest
+        )
+        level = np.ceil(level).astype(int)
+        for k in np.unique(level).tolist():
+            own = boxes.take(level == k)
+            self.levels[k].append(own)
+            self.counts[k] += len(own)
+            if len(self.levels[k]) > self.tree.level_batches:
+                self.levels[k] = [Boxes.joined(self.levels[k])]
+
+    def next(self) -> Boxes:
+        """Take a batch of the boxes with most room; of those with least where too many wait."""
+        filled = np.flatnonzero(self.counts)
+        taken, count = list[Boxes](), 0
+        for k in (filled if len(self) > self.most else filled[::-1]).tolist():
+            level = self.levels[k]
+            while level and count < self.tree.batch:
+                own = level.pop()
+                if count + len(own) > self.tree.batch:
+                    left = count + len(own) - self.tree.batch
+                    level.append(own.take(slice(0, left)))
+                    own = own.take(slice(left, None))
+                taken.append(own)
+                count += len(own)
+                self.counts[k] -= len(own)
+        return Boxes.joined(taken)
+
+    @property
+    def batches(self) -> list[Boxes]:
+        """All that wait."""
+        return [b for own in self.levels for b in own]
+
+    def progress(self) -> Progress:
+        """Return how much is open."""
+        extent = sum(self.form.extent(b) for b in self.batches)
+        return Progress(highest=self.highest, waiting=len(self), extent=extent)
+
+    @property
+    def highest(self) -> int:
+        """The level of the boxes with most room; -1 where none waits."""
+        return int(np.flatnonzero(self.counts).max(initial=-1))
+
+
+def best_first(
+    form: Formulation,
+    boxes: Boxes,
+    purpose: Tabled,
+    clock: Clock,
+    rng: np.random.Generator,
+    effort: SearchEffort,
+    over: Callable[[], bool] | None = None,
+) -> Covered:
+    """Go on with boxes that are open until they are closed, no longer close, or the budget of time is spent.
+
+    Parameters
+    ----------
+    form, boxes, purpose, clock, rng
+        As for :func:`synth.search.branch_and_bound.cover`.
+    effort : SearchEffort
+    over : callable, optional
+        Tells whether the budget is spent; by default it begins with the call.
+
+    Returns
+    -------
+    Covered
+        ``spent`` where it was the budget that ended it.
+    """
+    end = time.monotonic() + effort.seconds
+    over = (lambda: time.monotonic() > end) if over is None else over
+    every = reaches_beyond(purpose, form.bounded)
+    form.focus()
+    seeker, looked, spent = Seeker(form, purpose, rng, every), 0, False
+    boxes = boxes if every else form.lean(boxes)
+    waiting, stuck = OpenBoxes(form, purpose, effort.most_waiting), boxes.take(slice(0, 0))
+    waiting.add(boxes)
+    least, idle, mark = waiting.progress(), 0, effort.spell
+    while len(waiting):
+        clock.check([*waiting.batches, stuck])
+        if over():
+            spent = True
+            break
+        if looked >= mark:
+            mark = looked + effort.spell
+            closed = waiting.progress().after(least, effort.closing)
+            idle, least = (idle + 1, least) if closed is None else (0, closed)
+            if idle >= effort.patience or len(stuck) > effort.most_stuck:
+                break
+        children, small, seen = further(form, waiting.next(), purpose, seeker, every, np.inf)
+        looked += seen
+        waiting.add(children)
+        stuck = Boxes.joined([stuck, small]) if len(small) else stuck
+    left = Boxes.joined([stuck, *waiting.batches])
+    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)

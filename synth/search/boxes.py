@@ -1,0 +1,58 @@
+"""Boxes of a search tree: cells of combinations with ranges of variables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """A batch of boxes: the cell of combinations of each, its ends, and lower bounds of the objectives.
+
+    The bounds are those of all objectives, or of the first ones where the others do not matter.
+
+    ``scores`` tell how much each variable and factor still blurs limits and objectives; ``tag`` which of
+    several questions a box belongs to, when they share a batch.
+    """
+
+    cell: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    bounds: np.ndarray
+    scores: np.ndarray
+    tag: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.cell)
+
+    def take(self, rows: np.ndarray | slice) -> Boxes:
+        """Return some of the boxes, by mask or positions."""
+        return Boxes(
+            self.cell[rows], self.low[rows], self.high[rows], self.bounds[rows], self.scores[rows], self.tag[rows]
+        )
+
+    @staticmethod
+    def joined(batches: Sequence[Boxes]) -> Boxes:
+        """Return several batches as one."""
+        if len(batches) == 1:
+            return batches[0]
+        return Boxes(
+            np.concatenate([b.cell for b in batches]),
+            np.concatenate([b.low for b in batches]),
+            np.concatenate([b.high for b in batches]),
+            np.concatenate([b.bounds for b in batches]),
+            np.concatenate([b.scores for b in batches]),
+            np.concatenate([b.tag for b in batches]),
+        )
+
+
+@dataclass(frozen=True)
+class Subtrees:
+    """What some generations of boxes leave: halves to go on with, boxes too small to be split, how many were seen."""
+
+    halves: Boxes
+    small: Boxes
+    looked: int

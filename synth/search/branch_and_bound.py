@@ -1,0 +1,192 @@
+"""The tree that proves: one best design, or a whole front at once.
+
+Boxes of everything that may be designed are tightened, compared with the designs known, and split, until
+every box is empty or *covered*: no design in it could be better than each known design by more than the
+slack in some objective. What is then known is a front of which no design can be improved by more than the slack in
+every objective, because whatever improves it would itself be covered by a known design that dominates it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.search.archive import Candidate
+from synth.search.boxes import Boxes, Subtrees
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.primal_heuristics import Seeker
+from synth.search.pruning import Cover, Purpose, Tabled, reaches_beyond
+
+
+@dataclass(frozen=True)
+class Covered:
+    """What a cover left open, how many boxes were looked into, and why it stopped.
+
+    ``full``: enough is known; ``spent``: its time was over.
+    """
+
+    open: Boxes
+    looked: int
+    full: bool = False
+    spent: bool = False
+
+    @property
+    def closed(self) -> bool:
+        """Tell whether everything is covered."""
+        return not len(self.open) and not self.full
+
+
+def cover(
+    form: Formulation,
+    boxes: Boxes,
+    purpose: Tabled,
+    clock: Clock,
+    rng: np.random.Generator,
+    effort: float = np.inf,
+    enough: int | None = None,
+) -> Covered:
+    """Cover everything that boxes may hold by known designs.
+
+    Parameters
+    ----------
+    form : Formulation
+    boxes : Boxes
+        Where to search.
+    purpose : Tabled
+        Feasible designs go there, and into the archive of the formulation.
+    clock : Clock
+    rng : Generator
+    effort : float
+        Boxes that may be looked into.
+    enough : int, optional
+        Stop when more designs than this are known.
+
+    Returns
+    -------
+    Covered
+    """
+    tree, every = form.tuning.tree, reaches_beyond(purpose, form.bounded)
+    form.focus()
+    seeker, looked = Seeker(form, purpose, rng, every), 0
+    boxes = boxes if every else form.lean(boxes)
+    nothing = boxes.take(slice(0, 0))
+    queue, fresh, stuck = nothing, [boxes], nothing
+    while (len(queue) or fresh) and looked <= effort:
+        if not len(queue):
+            queue = _most_open(form, _latest(fresh, tree.generation), purpose)
+            if not len(queue):
+                continue
+        clock.check([queue, *fresh, stuck])
+        if enough is not None and len(form.archive) > enough:
+            return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
+        batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
+        children, small, seen = further(form, batch, purpose, seeker, every, effort - looked)
+        looked += seen
+        if len(small):
+            stuck = Boxes.joined([stuck, small])
+        if len(children):
+            fresh.append(children)
+    left = Boxes.joined([queue, *fresh, stuck])
+    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+
+
+def further(
+    form: Formulation, batch: Boxes, purpose: Tabled, seeker: Seeker, every: bool, effort: float
+) -> tuple[Boxes, Boxes, int]:
+    """Tighten boxes, look for designs in them and split them.
+
+    Parameters
+    ----------
+    form, purpose
+        As for :func:`cover`.
+    batch : Boxes
+    seeker : Seeker
+    every : bool
+        Whether the purpose speaks of more than the first objectives.
+    effort : float
+        Boxes that may be looked into.
+
+    Returns
+    -------
+    tuple
+        What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
+    """
+    looked, none = len(batch), batch.take(slice(0, 0))
+    batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
+    batch = batch.take(purpose.room(form.phi_of(batch.bounds), batch.cell) > 0)
+    if not len(batch):
+        return none, none, looked
+    seeker.look(batch)
+    stuck = []
+    for _ in range(2 if len(batch) < form.tuning.tree.small_batch else 1):
+        # A small batch costs as much as a larger one, so that it is split twice at once.
+        batch, small = form.split(batch)
+        if len(small):
+            stuck.append(seeker.settle(small))
+    grown = _grown(form, batch, purpose, seeker, effort - looked) if not every else None
+    if grown is not None:
+        looked += grown.looked
+        batch = grown.halves
+        if len(grown.small):
+            stuck.append(seeker.settle(grown.small))
+    return batch, Boxes.joined(stuck) if stuck else none, looked
+
+
+def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:
+    """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
+    levels = form.tuning.tree.generations
+    if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
+        return None
+    tables = purpose.tables(form)
+    return None if tables is None else form.grow(boxes, tables, levels)
+
+
+def best(
+    form: Formulation,
+    boxes: Boxes,
+    column: int,
+    plain: np.ndarray,
+    slack: float,
+    clock: Clock,
+    rng: np.random.Generator,
+    start: Candidate | None = None,
+    effort: float = np.inf,
+) -> tuple[Candidate | None, Covered]:
+    """Find the least phi of one objective, the others capped, and prove it within the slack.
+
+    Designs of the archive of the formulation, and ``start``, are known already.
+    """
+    purpose = Cover([column], np.array([slack]), plain, form.new_archive([column]))
+    if len(form.archive):
+        purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
+    if start is not None:
+        purpose.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
+    found = cover(form, boxes, purpose, clock, rng, effort)
+    return (purpose.known[0] if len(purpose.known) else None), found
+
+
+def _latest(fresh: list[Boxes], generation: int) -> Boxes:
+    """Take the next generation off the end of a list: the boxes that were split last, so that few wait at a time."""
+    taken: list[Boxes] = []
+    count = 0
+    while fresh and count < generation:
+        taken.append(fresh.pop())
+        count += len(taken[-1])
+    if count > generation:
+        fresh.append(taken[-1].take(slice(0, count - generation)))
+        taken[-1] = taken[-1].take(slice(count - generation, None))
+    return Boxes.joined(taken[::-1])
+
+
+def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> Boxes:
+    """Return boxes with most room first; covered ones are dropped."""
+    lower = form.phi_of(waiting.bounds)
+    space = purpose.room(lower, waiting.cell)
+    keep = np.flatnonzero(space > 0)
+    # While no design is known, all room is infinite; then low bounds promise most.
+    low = lower[:, purpose.columns].mean(axis=1)
+    key = np.where(np.isfinite(space), -space, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
+    order = keep[np.argsort(key, kind="stable")] if len(keep) > form.tuning.tree.batch else keep
+    return waiting.take(order)

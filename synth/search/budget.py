@@ -1,0 +1,33 @@
+"""The time a search may take, and how it tells how far it has come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from synth import deadline
+from synth.deadline import Stopped
+from synth.search.boxes import Boxes
+
+__all__ = ["Clock", "Stopped"]
+
+
+@dataclass
+class Clock:
+    """The time that is left, the boxes that are open, and the way to say how far the search has come."""
+
+    deadline: float = np.inf
+    report: Callable[[int], None] = lambda open_boxes: None
+    open: list[Boxes] = field(default_factory=list)
+    beyond: Sequence[np.ndarray] = ()  # lower corners, in phi, of what is open and in no box yet
+
+    def check(self, boxes: Sequence[Boxes] = ()) -> None:
+        """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""
+        self.open = list(boxes)
+        self.report(sum(len(b) for b in boxes))
+        if time.monotonic() > self.deadline:
+            raise Stopped("time limit")
+        deadline.check()

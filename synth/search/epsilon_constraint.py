@@ -1,0 +1,143 @@
+"""Two objectives, one step at a time: the best in the second while the first is capped ever lower.
+
+A box from which both objectives could still be good is capped by nothing: whatever a known design excludes is a corner
+of it, not a side. Where limits leave little room such boxes make up most of a cover. With the first objective capped
+outright each step is a search for one best design, and a dozen of them cover a front.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.search.archive import Candidate
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import Covered, best, cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.polishing import settle_variables
+from synth.search.primal_heuristics import Seeker
+from synth.search.pruning import Cover, Staircase
+
+CAPPED, SOUGHT = 0, 1
+
+
+def cover_by_steps(
+    form: Formulation, pool: Boxes, purpose: Cover, clock: Clock, rng: np.random.Generator, effort: float
+) -> Covered:
+    """Cover everything by known designs, as ``cover`` does, for two objectives.
+
+    Most of the slack is for the proof of a step, the rest for the choice of the design that stands for it: the one that
+    reaches furthest in the other objective. Where little is left between the two ends it is covered at once: each step
+    would look at much the same boxes.
+
+    Parameters
+    ----------
+    form : Formulation
+    pool : Boxes
+        Everything that may hold a feasible design.
+    purpose : Cover
+        Its slack is what counts; designs go into the archive of the formulation.
+    clock : Clock
+    rng : Generator
+    effort : float
+        Boxes that each step may look into.
+
+    Returns
+    -------
+    Covered
+        What steps left open, without what was covered meanwhile.
+    """
+    tree, tie = form.tuning.tree, form.tuning.tolerances.tie
+    proof = tree.step_proof * purpose.slack[SOUGHT]
+    choice = purpose.slack[SOUGHT] - proof
+    plain = np.full(len(form.goals), np.inf)
+    corner = [form.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
+    clock.beyond = [np.array(corner)]
+    # The other end first: good designs there are often not far from good in both.
+    first, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
+    looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
+    Seeker(form, purpose, rng, False).beside(clock)
+    if end.closed and first is not None:
+        corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - purpose.slack[CAPPED])
+    while True:
+        # What is better in the capped objective than all steps so far is open, and as bad in the other as the last one.
+        clock.beyond = [np.array(corner), *(form.phi_of(b.bounds)[:, : len(corner)] for b in left)]
+        found, outcome = best(form, pool, SOUGHT, plain.copy(), proof, clock, rng, effort=effort)
+        looked += outcome.looked
+        left.append(form.lean(outcome.open))
+        if found is None:
+            break
+        if outcome.closed:
+            corner[SOUGHT] = max(corner[SOUGHT], found.phi[SOUGHT] - proof)
+        _stretch(form, found, choice)
+        phi = form.archive.phi
+        good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + tie)
+        plain[CAPPED] = phi[good, CAPPED].min() - purpose.slack[CAPPED]
+        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= tree.narrow * purpose.slack[CAPPED]:
+            # Nothing is better in the first objective than its end, so nothing useful is worse than that in the second.
+            between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - purpose.slack[SOUGHT], plain)
+            rest = Cover(purpose.columns, purpose.slack, between, form.archive)
+            outcome = cover(form, pool, rest, clock, rng, min(effort, 2 * outcome.looked))
+            looked += outcome.looked
+            if outcome.closed:
+                break
+            narrow = False
+    still = Boxes.joined(left)
+    return Covered(still.take(purpose.room(form.phi_of(still.bounds)) > 0), looked)
+
+
+def prove_by_steps(
+    form: Formulation, pool: Boxes, stairs: Staircase, clock: Clock, rng: np.random.Generator, effort: float
+) -> Covered:
+    """Prove the designs of a staircase, as a cover of it does, design by design; the ends first.
+
+    A design that is beaten is replaced by the best that its step allows, which is thereby proven itself.
+
+    Parameters
+    ----------
+    form, pool, clock, rng, effort
+        As for :func:`cover_by_steps`.
+    stairs : Staircase
+        Designs, of two objectives; those that need no proof are left out.
+
+    Returns
+    -------
+    Covered
+        What was left open.
+    """
+    nowhere, looked, left = np.full(len(form.goals), np.inf), 0, [form.lean(form.nothing())]
+
+    def least(k: int, plain: np.ndarray, phi: float) -> float:
+        nonlocal looked
+        found, outcome = best(form, pool, k, plain, stairs.slack[k], clock, rng, _bar(form, k, phi), effort)
+        looked += outcome.looked
+        left.append(form.lean(outcome.open))
+        if found is None or found.combination < 0:
+            return phi
+        stairs.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
+        return float(found.phi[k])
+
+    ends = [least(k, nowhere, min(c.phi[k] for c in stairs.designs)) for k in (CAPPED, SOUGHT)]
+    for design in stairs.unproven():
+        replaced = not any(c is design for c in stairs.designs)
+        if replaced or design.phi[CAPPED] <= ends[CAPPED] or design.phi[SOUGHT] <= ends[SOUGHT]:
+            continue
+        plain = nowhere.copy()
+        plain[CAPPED] = design.phi[CAPPED] - stairs.slack[CAPPED]
+        least(SOUGHT, plain, design.phi[SOUGHT])
+    return Covered(Boxes.joined(left), looked)
+
+
+def _bar(form: Formulation, k: int, phi: float) -> Candidate:
+    """Return what must be beaten: a value of one objective that no design stands for."""
+    return Candidate(-1, np.full(form.n, np.nan), np.where(np.arange(len(form.goals)) == k, phi, -np.inf))
+
+
+def _stretch(form: Formulation, found: Candidate, room: float) -> None:
+    """Add what the parts of a design reach in the first objective while the second gives way a little."""
+    given = np.where(np.arange(len(found.phi)) == SOUGHT, room, 0.0)
+    loose = Candidate(found.combination, found.variables, found.phi + given)
+    points = settle_variables(form, [loose], 2, [CAPPED])[0].variables[None, :]
+    combination = np.array([found.combination])
+    rows, phi = form.feasible_rows(points, combination)
+    form.archive.add(combination[rows], points[rows], phi[rows])

@@ -1,0 +1,50 @@
+"""The designs that a search has found, as records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from synth.model.model import Evaluation
+from synth.results import Design, Frame, PartRow
+
+if TYPE_CHECKING:
+    from synth.search.archive import Candidate
+    from synth.search.formulation import Formulation
+from synth.analysis.designs import _design, _told, part_row
+
+
+def found_designs(
+    form: Formulation,
+    frames: Sequence[Frame],
+    candidates: Sequence[Candidate],
+    result: Evaluation,
+    more: Sequence[Mapping[str, Any]],
+) -> list[Design]:
+    """Return the designs that a search has found, with what it knows of them.
+
+    Parameters
+    ----------
+    frames : list of Frame
+        One per candidate.
+    candidates : list of Candidate
+    result : Evaluation
+        Of the candidates.
+    more : list of mapping
+        Fields of Design, as for make_design.
+    """
+    points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    # Questions that are searched together have their model and limits in common.
+    told = _told(form.instance, result, points, range(len(candidates)))
+    known: dict[tuple[str, int], PartRow] = {}
+    designs = []
+    for frame, candidate, own, details in zip(frames, candidates, told, more, strict=True):
+        parts, _, choices = form.instance.combinations.describe(candidate.combination)
+        for slot, (table, number) in parts.items():
+            if (slot, number) not in known:
+                known[slot, number] = part_row(table, number)
+        rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
+        designs.append(_design(frame, own, rows, choices, details))
+    return designs

@@ -1,0 +1,85 @@
+"""Looks for designs where hardly any are known: in a few promising combinations to the bottom, not in all a little.
+
+Where sizes are coarse steps and limits are tight, most combinations whose continuous problem has a good optimum have no
+makeable design near it. A small tree over such combinations alone finds what rounding misses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.nlp.batch import Tasks
+from synth.search.branch_and_bound import cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.pruning import Cover
+
+
+def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator) -> None:
+    """Improve the best design known in each objective in turn, until nothing better comes.
+
+    It proves nothing.
+
+    Parameters
+    ----------
+    form : Formulation
+        Its archive holds what is known, at least one design, and takes what is found.
+    columns : list of int
+        Numbers of the objectives that are traded off.
+    slack : array (columns,)
+        In phi; less is no progress.
+    clock : Clock
+    rng : Generator
+    """
+    limits, failures = form.tuning.heuristics.dives, 0
+    for turn in range(limits.dives):
+        place = turn % len(columns)
+        k = columns[place]
+        best = form.archive.phi[:, k].min()
+        combinations = _promising(form, columns, k, float(slack[place]), rng)
+        if len(combinations):
+            nothing_capped = np.full(len(form.goals), np.inf)
+            purpose = Cover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
+            purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
+            cover(form, form.leaves(combinations), purpose, clock, rng, limits.boxes)
+        failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
+        if failures >= limits.patience * len(columns):
+            return
+
+
+def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, rng: np.random.Generator) -> np.ndarray:
+    """Return combinations near the designs known that could be better in one objective if all sizes were makeable.
+
+    The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
+    """
+    limits = form.tuning.heuristics.dives
+    combinations, start = _two_parts_away(form, rng, limits.solved)
+    weights = np.zeros((len(combinations), len(form.goals)))
+    weights[:, list(columns)] = limits.tie_weight
+    weights[:, k] = 1.0
+    free = np.full(weights.shape, np.inf)
+    tasks = Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0)
+    found = form.solve_many(tasks, combinations, start, rough=True)
+    reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
+    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
+    if not len(good):
+        return combinations[:0]
+    good = good[np.argsort(reach[good], kind="stable")]
+    chosen: np.ndarray = combinations[good[np.unique((rng.random(limits.promising) ** 2 * len(good)).astype(int))]]
+    return chosen
+
+
+def _two_parts_away(form: Formulation, rng: np.random.Generator, solved: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return random combinations that differ from a design known in at most two parts, with its variables."""
+    archive, radix = form.archive, np.array(form.instance.combinations.radix)
+    parents = rng.integers(len(archive), size=solved)
+    digits = np.stack(form.instance.combinations.digits(archive.combination[parents]), axis=1)
+    for _ in range(2):
+        part = rng.choice(np.flatnonzero(radix > 1), solved)
+        digits[np.arange(solved), part] = rng.integers(radix[part])
+    numbers = form.instance.combinations.composed(list(digits.T), solved)
+    combinations, first = np.unique(numbers, return_index=True)
+    keep = form.not_refused(combinations)
+    return combinations[keep], archive.variables[parents[first[keep]]]

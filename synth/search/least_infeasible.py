@@ -1,0 +1,109 @@
+"""A first answer to "why is nothing feasible": the nearest design and the limits it misses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from synth.model.constraint import Constraint
+from synth.nlp.batch import Tasks
+from synth.search.formulation import Formulation
+from synth.units import format_quantity
+
+
+def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
+    """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
+
+    Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
+    """
+    instance, limits = form.instance, form.tuning.heuristics.conflicts
+    total = instance.combinations.count
+    numbers = rng.choice(total, size=limits.tries, replace=False) if total > limits.tries else np.arange(total)
+    tried = np.empty(0, dtype=np.int64)
+    found: list[tuple[float, int, np.ndarray]] = []
+    for _ in range(limits.rounds):
+        numbers = np.setdiff1d(numbers, tried)
+        if not len(numbers):
+            break
+        tried = np.concatenate([tried, numbers])
+        found = sorted([*found, *_least_missed(form, numbers, rng)], key=lambda x: (x[0], x[1]))[: limits.parents]
+        near = [instance.combinations.neighbours(combination) for _, combination, _ in found]
+        numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
+        numbers = numbers if len(numbers) <= limits.tries else rng.choice(numbers, size=limits.tries, replace=False)
+    if not found:
+        return {"message": "no design could be evaluated; check the requirements for values far from each other"}
+    _, combination, variables = found[0]
+    return _told(form, combination, variables)
+
+
+def _least_missed(
+    form: Formulation, combinations: np.ndarray, rng: np.random.Generator
+) -> list[tuple[float, int, np.ndarray]]:
+    """Return how far each combination stays from feasible, where that could be found, with the design.
+
+    Limits that cannot all hold have many places where none of them gives way a little without another: combinations
+    that are few are tried from several starts.
+    """
+    limits = form.tuning.heuristics.conflicts
+    number = np.repeat(np.arange(len(combinations)), np.clip(limits.tries // len(combinations), 1, limits.starts))
+    every, goals = combinations[number], len(form.goals)
+    nothing = np.zeros((len(every), goals))
+    tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.goal_scales, elastic=1.0)
+    start = form.inside(form.leaves(every), rng.random((len(every), form.n)))
+    points = form.solve_many(tasks, every, start).variables if form.n else start
+    misses, before = _misses(form, points, every), _misses(form, start, every)
+    # Far from everything feasible a solver may end where nothing makes sense: there the place it began at is better.
+    worse = ~(misses <= before)
+    points, misses = np.where(worse[:, None], start, points), np.where(worse, before, misses)
+    order = np.lexsort((misses, number))
+    best = order[np.unique(number[order], return_index=True)[1]]  # of each combination
+    return [(float(misses[k]), int(every[k]), points[k]) for k in best if np.isfinite(misses[k])]
+
+
+def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
+    """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
+    result = form.evaluate(variables, combinations)
+    rows, never = [], form.tuning.heuristics.conflicts.never
+    for limit in form.constraints:
+        missed = np.nan_to_num(result.residuals[limit.name], nan=never) + (never if limit.guard else 0.0)
+        rows.append(np.where(result.holds[limit.name], 0.0, missed))
+    worst: np.ndarray = np.max([np.zeros(len(variables)), *rows], axis=0)
+    return worst
+
+
+def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping[str, Any]:
+    result = form.evaluate(variables[None, :], np.array([combination]))
+    conflicts = []
+    for limit in form.constraints:
+        value, bound = (float(x[0]) for x in result.limits[limit.name])
+        if not bool(result.holds[limit.name][0]):
+            conflicts.append(_conflict(limit, value, bound))
+    parts, counts, choices = form.instance.combinations.describe(combination)
+    model = form.model
+    nearest = {v.name: format_quantity(float(x), v.unit) for v, x in zip(model.variables, variables, strict=True)}
+    nearest |= {n: f"{v:g}" for n, v in counts.items()} | dict(choices)
+    names = ", ".join(c["limit"] for c in conflicts)
+    sentences = "; ".join(c["sentence"] for c in conflicts)
+    return {
+        "message": f"No combination is feasible. The nearest design found misses {names}: {sentences}.",
+        "conflicts": conflicts,
+        "nearest": nearest,
+        "parts": {slot: table.designations[row] for slot, (table, row) in parts.items()},
+    }
+
+
+def _conflict(limit: Constraint, value: float, bound: float) -> dict[str, Any]:
+    missed = abs(value - bound) / max(abs(bound), 1e-300)
+    shown, allowed = (format_quantity(x, limit.unit, 5) for x in (value, bound))
+    share = format_quantity(missed, "%", 3)
+    words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[limit.sense]
+    return {
+        "limit": limit.name,
+        "value": value,
+        "limit_value": bound,
+        "unit": limit.unit,
+        "missed_by": missed,
+        "sentence": f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {share})",
+    }

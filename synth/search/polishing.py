@@ -1,0 +1,288 @@
+"""What comes after the proof: ties settled, equal designs named, open combinations solved one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from synth import deadline
+from synth.nlp.batch import Tasks
+from synth.question.instance import Instance
+from synth.search.archive import Candidate
+from synth.search.boxes import Boxes
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.pruning import Purpose
+
+
+def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
+    """Make the design that is best in each objective exact: solve in all combinations that come near to it."""
+    archive, ties = form.archive, form.tuning.heuristics.settle.ties
+    for k in range(traded if form.n else 0):
+        near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * slack)
+        _, first = np.unique(archive.combination[near], return_index=True)
+        chosen = [archive[int(near[i])] for i in np.sort(first)[:ties]]
+        order = [k, *(j for j in range(traded) if j != k)]
+        exact = settle_discrete(form, settle_variables(form, chosen, 0, order), traded, order)
+        for c in settle_variables(form, exact, 0, order):
+            archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
+
+
+def settle_discrete(
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int], parts: bool = True
+) -> list[Candidate]:
+    """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
+
+    None of the first ``traded`` becomes larger. What the best design in one objective leaves free over a grid or among
+    parts, the other objectives decide that way. Parts stay where ``parts`` is False. All designs take their steps at
+    the same time; each goes where it would go alone.
+    """
+    if not candidates:
+        return []
+    combinations = np.array([c.combination for c in candidates], dtype=np.int64)
+    variables = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    phi = np.array([c.phi for c in candidates])
+    steps: list[int | None] = [int(k) for k in np.flatnonzero(form.gridded & (form.lower < form.upper))]
+    steps += [None] if parts else []
+    moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
+    for step in steps * form.tuning.heuristics.settle.moves:
+        # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
+        own = np.flatnonzero(idle < len(steps))
+        if not len(own):
+            break
+        known = combinations[own], variables[own], phi[own, :traded]
+        trials = _other_parts(form, *known) if step is None else _other_values(form, step, *known)
+        found = _better(phi[own], _feasible(form, *trials), traded, list(order), form.tuning.tolerances.tie)
+        better = own[found.whose]
+        idle[own] += 1
+        idle[better], moved[better] = 0, True
+        combinations[better], variables[better], phi[better] = found.combinations, found.variables, found.phi
+    return [
+        Candidate(int(combinations[k]), variables[k], phi[k]) if moved[k] else own for k, own in enumerate(candidates)
+    ]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Feasible points to put in place of designs, and whose each is."""
+
+    whose: np.ndarray
+    combinations: np.ndarray
+    variables: np.ndarray
+    phi: np.ndarray
+
+    def take(self, rows: np.ndarray) -> _Found:
+        """Return some of them, by mask or positions."""
+        return _Found(self.whose[rows], self.combinations[rows], self.variables[rows], self.phi[rows])
+
+
+def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
+    """Return the feasible ones of some points."""
+    rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
+    at_once = form.tuning.heuristics.settle.evaluated_at_once
+    for first in range(0, len(whose), at_once):
+        deadline.check()
+        part = slice(first, first + at_once)
+        own, values = form.feasible_rows(variables[part], combinations[part])
+        rows.append(first + own)
+        phi.append(values[own])
+    kept = np.concatenate(rows)
+    return _Found(whose[kept], combinations[kept], variables[kept], np.concatenate(phi))
+
+
+def _other_values(
+    form: Formulation, k: int, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with makeable values of one variable that promise to be as good: whose, combination, variables."""
+    grid = form.grids[k]
+    grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
+    own = [np.empty(0, dtype=np.int64)]
+    places = [np.empty(0, dtype=np.int64)]
+    for part in _slices(form, len(combinations), len(grid)):
+        deadline.check()
+        columns = list(variables[part].T[:, :, None])
+        columns[k] = grid[None, :]
+        rows, there = np.nonzero(form.promising(columns, combinations[part, None], phi[part]))
+        own.append(part.start + rows)
+        places.append(there)
+    whose = np.concatenate(own)
+    points = variables[whose]
+    points[:, k] = grid[np.concatenate(places)]
+    return whose, combinations[whose], points
+
+
+def _other_parts(
+    form: Formulation, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return designs with one other part that promise to be as good: whose, combination, variables."""
+    own, numbers = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for part in _slices(form, len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
+        deadline.check()
+        others = form.instance.combinations.neighbours(combinations[part])
+        keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
+        own.append(part.start + np.nonzero(keep)[0])
+        numbers.append(others[keep])
+    whose = np.concatenate(own)
+    return whose, np.concatenate(numbers), variables[whose]
+
+
+def _slices(form: Formulation, count: int, each: int) -> list[slice]:
+    """Return which of so many designs are tried at once, with so many points each."""
+    at_once = max(form.tuning.heuristics.settle.tried_at_once // max(each, 1), 1)
+    return [slice(first, first + at_once) for first in range(0, count, at_once)]
+
+
+def _better(own: np.ndarray, found: _Found, traded: int, order: list[int], tie: float) -> _Found:
+    """Return, per design with phi ``own``, the best point by the objectives in their order, where that is better."""
+    left = found.take(np.all(found.phi[:, :traded] <= own[found.whose, :traded] + tie, axis=1))
+    for j in order:
+        least = np.full(len(own), np.inf)
+        np.minimum.at(least, left.whose, left.phi[:, j])
+        left = left.take(left.phi[:, j] <= least[left.whose] + tie)
+    _, first = np.unique(left.whose, return_index=True)
+    left = left.take(first)
+    gain = (own[left.whose] - left.phi)[:, order]
+    decisive = np.argmax(np.abs(gain) > tie, axis=1)
+    return left.take(gain[np.arange(len(gain)), decisive] > tie)
+
+
+def settle_variables(
+    form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int] | None = None
+) -> list[Candidate]:
+    """Make objectives as small as possible in their order, while the first ``traded`` stay as good as they are.
+
+    ``order``: all objectives and then the variables, by default. For the traded ones this only takes what the gap
+    of the search left; parts, counts and makeable values stay.
+    """
+    if not form.n or not candidates:
+        return list(candidates)
+    tie = form.tuning.tolerances.tie
+    combinations = np.array([c.combination for c in candidates])
+    variables = np.array([c.variables for c in candidates])
+    phi = np.array([c.phi for c in candidates])
+    low = np.where(form.gridded, variables, form.lower)
+    high = np.where(form.gridded, variables, form.upper)
+    goals = len(form.goals)
+    caps = np.full(phi.shape, np.inf)
+    caps[:, :traded] = phi[:, :traded] + tie
+    for j in range(goals) if order is None else order:
+        moving = np.flatnonzero(np.any((high > low) & form.seen_by_goal[j], axis=1))
+        if not len(moving):
+            continue
+        tasks = Tasks(
+            weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
+            slopes=np.zeros((len(moving), goals)),
+            caps=caps[moving],
+            goal_scales=form.goal_scales,
+            t_weight=0.0,
+        )
+        answer = form.solve_many(tasks, combinations[moving], variables[moving], low[moving], high[moving])
+        rows, found = form.feasible_rows(answer.variables, combinations[moving])
+        for k in rows:
+            own = moving[k]
+            if np.all(found[k] <= caps[own] + tie) and found[k, j] < phi[own, j] - tie:
+                variables[own], phi[own] = answer.variables[k], found[k]
+        caps[:, j] = phi[:, j] + tie
+    return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
+
+
+def settle_ties(
+    form: Formulation, pool: Boxes, chosen: Sequence[Candidate], traded: int
+) -> list[tuple[Candidate, tuple[str, ...]]]:
+    """Settle what the traded objectives leave open, and name other combinations that are as good.
+
+    Returns
+    -------
+    list of (Candidate, tuple of str)
+        Per design the one that stands for it, and in what others that tie with it differ.
+    """
+    chosen = settle_discrete(form, chosen, traded, range(len(form.goals)))
+    chosen = settle_variables(form, chosen, traded)
+    result = []
+    for candidate, ties in zip(chosen, same_designs(form, pool, chosen, traded), strict=True):
+        current = min(ties, key=lambda c: tuple(np.round(c.phi[traded:], 9)), default=candidate)
+        others = [c.combination for c in ties if c.combination != current.combination]
+        result.append((current, tuple(_difference(form.instance, current.combination, other) for other in others)))
+    return result
+
+
+def _difference(instance: Instance, combination: int, other: int) -> str:
+    """Return in words in what another combination differs."""
+    own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
+    words = []
+    for slot in own[0]:
+        if own[0][slot] != its[0][slot]:
+            table, row = its[0][slot]
+            words.append(f"{slot} {table.designations[row]}")
+    words += [f"{n} {its[1][n]:g}" for n in own[1] if own[1][n] != its[1][n]]
+    words += [f"{n} {its[2][n]}" for n in own[2] if own[2][n] != its[2][n]]
+    return ", ".join(words)
+
+
+def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate], traded: int) -> list[list[Candidate]]:
+    """Return, per design, those of all combinations that reach the same traded objectives with the same dimensions."""
+    found: list[list[Candidate]] = [[] for _ in candidates]
+    if not len(pool) or not candidates:
+        return found
+    tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.settle.ties
+    phi = np.array([c.phi for c in candidates])
+    points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+    caps = np.full(phi.shape, np.inf)
+    caps[:, :traded] = phi[:, :traded] + tie
+    start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
+    cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
+    cell[:, :apart] = form.cell_of(own)[:, :apart]
+    questions = form.instance.combinations.digits(own)[:apart]
+    boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
+    tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    while len(boxes):
+        boxes = form.contract(boxes, caps[boxes.tag], passes=1)
+        single = form.cells.single(boxes.cell)
+        numbers = _members(form, boxes.cell[single], most)
+        tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
+        combinations += numbers
+        boxes, _ = form.split(boxes.take(~single))
+    whose, every = np.concatenate(tags), np.concatenate(combinations)
+    # A cell may hold questions that are the same in all that counts: theirs are no other designs.
+    keep = np.ones(len(whose), dtype=bool)
+    for digit, its in zip(form.instance.combinations.digits(every)[:apart], questions, strict=True):
+        keep &= digit == its[whose]
+    whose = whose[keep]
+    same = _feasible(form, whose, every[keep], points[whose])
+    for k in np.flatnonzero(np.all(np.abs(same.phi - phi[same.whose])[:, :traded] <= tie, axis=1)):
+        if len(found[same.whose[k]]) < most:
+            found[same.whose[k]].append(Candidate(int(same.combinations[k]), same.variables[k], same.phi[k]))
+    return found
+
+
+def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray]:
+    """Return combinations of each of some cells that cannot be split, most of which have one: at most so many."""
+    if np.all(form.cells.size(cells) == 1):
+        return list(form.cells.combination(cells)[:, None])
+    return [form.cells.members(cell, most) for cell in cells]
+
+
+def solve_everywhere(
+    form: Formulation, combinations: np.ndarray, purpose: Purpose, clock: Clock, rng: np.random.Generator
+) -> None:
+    """Solve the continuous problem of every combination from several starts and in several directions."""
+    columns, goals, limits = purpose.columns, len(form.goals), form.tuning.heuristics.settle
+    directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
+    for number in range(0, len(combinations), limits.batch):
+        own = combinations[number : number + limits.batch]
+        for _ in range(limits.starts):
+            share = rng.random((len(own), form.n))
+            start = form.lower + share * (form.upper - form.lower)
+            for direction in directions if len(columns) > 1 else [np.ones(1)]:
+                clock.check()
+                weights = np.zeros((len(own), goals))
+                weights[:, columns] = np.maximum(direction, 1e-3)
+                tasks = Tasks(
+                    weights, np.zeros((len(own), goals)), np.tile(purpose.plain, (len(own), 1)), form.goal_scales, 0.0
+                )
+                points = form.makeable(form.solve_many(tasks, own, start).variables if form.n else start)
+                rows, phi = form.feasible_rows(points, own)
+                form.archive.add(own[rows], points[rows], phi[rows])
+                purpose.take(own[rows], points[rows], phi[rows])

@@ -1,0 +1,447 @@
+"""Looks for designs: in boxes that nothing known covers, and beside designs that are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from synth.margins import below
+from synth.nlp.batch import Solutions, Tasks
+from synth.pareto import spread_subset
+from synth.search.archive import Candidate, rows_of
+from synth.search.boxes import Boxes
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.polishing import settle_variables
+from synth.search.pruning import Purpose
+
+
+class Seeker:
+    """Looks for designs in boxes that nothing known covers."""
+
+    def __init__(self, form: Formulation, purpose: Purpose, rng: np.random.Generator, every: bool) -> None:
+        self.form, self.purpose, self.rng, self.every = form, purpose, rng, every
+        self.limits = form.tuning.heuristics.seeker
+        self.nlps = self.limits.most_problems // 4
+        self.rounds = self.failures = 0
+
+    def look(self, batch: Boxes) -> None:
+        """Try the boxes with most room, all along the front; after rounds without success, only now and then."""
+        self.rounds += 1
+        limits, form = self.limits, self.form
+        if self.failures >= limits.patience and self.rounds % (self.failures - limits.patience + 2):
+            return
+        if form.n and not len(form.archive):
+            self._conflicts(batch)
+        phi = form.phi_of(batch.bounds)
+        space, along = self.purpose.room(phi, batch.cell), phi[:, self.purpose.columns[0]]
+        found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
+        if form.n and self._worth_solving():
+            most = limits.most_problems if len(self.purpose.columns) > 1 else limits.least_problems
+            chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
+            chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
+            good = self._solve(chosen)
+            more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
+            self.nlps = more if 4 * good > len(chosen) else fewer
+            found += good
+        if found and len(self.purpose.columns) == 1:
+            self.settle_best(0, self.purpose.columns)
+        self.failures = 0 if found else self.failures + 1
+
+    def _worth_solving(self) -> bool:
+        """Tell whether boxes are worth a solver: points say as much once designs are known, but along a whole front.
+
+        Before that, optima tell what is worth splitting. Of a whole front they are worth it as long as designs are
+        looked for; then points are enough where values are makeable, unless a proof goes on for long: boxes do not
+        close around a design that is not known.
+        """
+        form, purpose = self.form, self.purpose
+        found = len(form.archive) > 0 and form.propagation.taught >= self.limits.lessons
+        pointed_at = self._known_before and self.rounds <= self.limits.long_proof
+        return form.conflict or not found or (len(purpose.columns) > 1 and not pointed_at)
+
+    @property
+    def _known_before(self) -> bool:
+        """Tell whether makeable designs were chosen before: what is better than they are points show."""
+        return self.purpose.proves and bool(self.form.gridded.any())
+
+    @property
+    def content(self) -> bool:
+        """Tell whether hardly any designs seem to be left, so that boxes may go further before the next look.
+
+        Where few designs of a front are known they are hard to find, and each spares many boxes.
+        """
+        archive = self.form.archive
+        scarce = len(archive.columns) > 1 and len(archive) < self.limits.scarce
+        return self._known_before or (self.failures >= self.limits.patience and not scarce)
+
+    def settle_best(self, traded: int, order: Sequence[int]) -> None:
+        """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
+
+        The first ``traded`` objectives stay as good as they are; the others follow in ``order``.
+        """
+        exact = settle_variables(self.form, self.purpose.leading(self.form.archive), traded, order)
+        if exact:
+            combinations, points, _ = rows_of(exact)
+            self.offer(points, combinations)
+
+    def _conflicts(self, batch: Boxes) -> None:
+        """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
+        form = self.form
+        boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
+        combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
+        nothing = np.zeros((len(boxes), len(form.goals)))
+        caps = np.tile(self.purpose.plain, (len(boxes), 1))
+        tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
+        found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
+        # The closer limits come to agreeing, the more boxes it takes to show that they do not.
+        form.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
+        if not form.gridded.any():
+            self.offer(found.variables, combinations)
+
+    def _learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
+        """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
+        importance = np.ones(len(found.t))
+        if self.form.conflict:
+            room = self.purpose.room(found.phi, self.form.cell_of(combinations))
+            excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
+            importance = np.maximum(excess, float(self.purpose.slack.min())) ** -2.0
+        self.form.learn(tasks, found, importance)
+
+    def settle(self, small: Boxes) -> Boxes:
+        """Look into boxes too small to split; return those that may still hold something nothing known covers."""
+        form = self.form
+        self.offer(form.inside(small, 0.5), form.combination(small))
+        rest = small.take(self.purpose.room(form.phi_of(small.bounds), small.cell) > 0)
+        # What is left is feasible by the tolerance alone, or nearly so.
+        _, stood_for = self.on_edge(form.inside(rest, 0.5), form.combination(rest), len(rest))
+        low, high = form.ends(rest)
+        # A single point is settled by its evaluation; a small box only nearly so.
+        left = np.any(high - low > 1e-12 * np.abs(high), axis=1)
+        phi = form.phi_of(rest.bounds)
+        # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
+        left[stood_for] = True
+        worth = np.zeros(phi.shape[1])
+        worth[self.purpose.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.purpose.slack, 0.0)
+        phi[stood_for] += worth
+        return rest.take(left & (self.purpose.room(phi, rest.cell) > 0))
+
+    def _tightened(self, boxes: Boxes) -> Boxes:
+        caps = self.purpose.caps(self.form.phi_of(boxes.bounds), boxes.cell)
+        return self.form.contract(boxes, caps, every_goal=self.every)
+
+    def _probe(self, boxes: Boxes) -> int:
+        """Evaluate points of a random combination of each box; gridded variables are fixed in its middle first."""
+        form = self.form
+        single = form.cells.single(boxes.cell).all()
+        if not single:
+            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+        if form.gridded.any():
+            middle, (low, high) = form.makeable(form.inside(boxes, 0.5)), form.ends(boxes)
+            boxes = replace(boxes, low=np.where(form.gridded, middle, low), high=np.where(form.gridded, middle, high))
+        if form.gridded.any() or not single:
+            boxes = self._tightened(boxes)
+        return self._keep(boxes)[0]
+
+    def _keep(self, boxes: Boxes) -> tuple[int, np.ndarray]:
+        """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
+        found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
+        for share in (self.limits.inside, 0.5) if len(boxes) else ():
+            points = self.form.makeable(self.form.inside(boxes, share))
+            new, rows = self._offered(points, self.form.combination(boxes))
+            hit[rows] = True
+            found += new
+        missed = np.flatnonzero(thin & ~hit)
+        if len(missed):
+            new, rows = self.on_edge(points[missed], self.form.combination(boxes.take(missed)), self.limits.rounded_off)
+            hit[missed[rows]] = True
+            found += new
+        return found, hit
+
+    def _thin(self, boxes: Boxes) -> np.ndarray:
+        """Tell in which boxes limits that all but exclude each other leave a variable no choice.
+
+        What is feasible there is so by the tolerance alone. Without it such a sliver would be split endlessly along
+        the other variables.
+        """
+        low, high = self.form.ends(boxes)
+        floor = self.limits.thin * np.maximum(np.abs(high), np.abs(low))
+        narrow: np.ndarray = np.any((low < high) & (high - low <= floor), axis=1)
+        return narrow
+
+    def offer(self, points: np.ndarray, combinations: np.ndarray) -> int:
+        """Take what is feasible; return how many designs no known one covered."""
+        return self._offered(points, combinations)[0]
+
+    def _offered(self, points: np.ndarray, combinations: np.ndarray) -> tuple[int, np.ndarray]:
+        """Do the same; return also the rows that are feasible."""
+        rows, phi = self.form.feasible_rows(points, combinations)
+        return self._taken(points[rows], combinations[rows], phi[rows]), rows
+
+    def _taken(self, points: np.ndarray, combinations: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many no known one covered."""
+        if not len(points):
+            return 0
+        used = self.purpose.take(combinations, points, phi)
+        self.form.archive.add(combinations, points, phi)
+        return used
+
+    def on_edge(self, points: np.ndarray, combinations: np.ndarray, most: int) -> tuple[int, np.ndarray]:
+        """Take what stands for points that are feasible by the full tolerance alone.
+
+        That is the best design near to it, of the same parts and makeable values, that keeps the limits more closely.
+        Only where there is none the point is taken as it is. It then counts as worse than it is, by more than what the
+        tolerance is worth, so that it takes the place of no design that does without.
+
+        Parameters
+        ----------
+        points, combinations : array (points, variables), array (points,)
+        most : int
+            So many are looked at, those that promise most.
+
+        Returns
+        -------
+        tuple
+            How many designs no known one covered, and the positions of the points that something stands for.
+        """
+        form, columns = self.form, self.purpose.columns
+        rows, phi = form.edge_rows(points, combinations)
+        if not len(rows):
+            return 0, rows
+        space = self.purpose.room(phi[rows], form.cell_of(combinations[rows]))
+        rows, space = rows[space > 0], space[space > 0]
+        rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
+        marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
+        fresh = {mark: row for mark, row in zip(marks, rows.tolist(), strict=True) if mark not in form.kept_closely}
+        new = 0
+        if fresh:
+            own = np.array(list(fresh.values()))
+            base = np.full((len(own), len(form.goals)), np.inf)
+            base[:, columns] = phi[own][:, columns]
+            slopes = np.where(np.isfinite(base), 1.0, 0.0)
+            tasks = Tasks(self.limits.tie_weight * slopes, slopes, base, form.goal_scales, 1.0)
+            low, high = (np.where(form.gridded, points[own], ends) for ends in (form.lower, form.upper))
+            answer = form.solve_many(tasks, combinations[own], points[own], low, high)
+            new, kept = self._offered(answer.variables, combinations[own])
+            form.kept_closely.update((mark, k in set(kept.tolist())) for k, mark in enumerate(fresh))
+        alone = rows[[not form.kept_closely[mark] for mark in marks]]
+        worse = phi[alone] + form.tuning.tolerances.edge_worth
+        return new + self._taken(points[alone], combinations[alone], worse), rows
+
+    def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
+        """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
+        form = self.form
+        near = form.makeable(points)
+        self.offer(near, combinations)
+        if form.n:
+            _, phi = form.feasible_rows(points, combinations)
+            self._reach(combinations, points, phi[:, self.purpose.columns])
+
+    def beside(self, clock: Clock) -> None:
+        """Exchange one part at a time of the designs known, and try known parts elsewhere on the front.
+
+        The continuous problems of whole neighbourhoods are solved at once, round by round until nothing new comes.
+        It proves nothing: the better the designs known, the less is left for boxes to cover.
+        """
+        form, archive = self.form, self.form.archive
+        if not form.n or form.instance.combinations.count == 1 or not len(archive):
+            return
+        expanded: set[int] = set()
+        placed: set[tuple[int, bytes]] = set()
+        for _ in range(self.limits.rounds):
+            clock.check(clock.open)
+            # Every part of a design that nobody asked about yet, one at a time ...
+            fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
+            some = spread_subset(archive.phi[fresh][:, self.purpose.columns], self.limits.parents)
+            fresh = [fresh[int(k)] for k in some]
+            parents = [archive[k] for k in fresh]
+            expanded.update(c.combination for c in parents)
+            found = self._reach(*self._exchanged(parents)) if parents else 0
+            # ... and all parts known to be good at all places of the front.
+            if len(self.purpose.columns) > 1:
+                found += self._reach(*self._elsewhere(placed)) + self._ends(placed)
+            if not found:
+                return
+
+    def _most_solved(self) -> int:
+        return self.limits.solved if self.form.batch_nlp().compiled else self.limits.solved_over_arrays
+
+    def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return combinations that differ from a parent in one part, with its variables and phi."""
+        form = self.form
+        made = [form.instance.combinations.neighbours(c.combination) for c in parents]
+        combinations, rows = np.concatenate(made), np.repeat(np.arange(len(made)), [len(x) for x in made])
+        _, first = np.unique(combinations, return_index=True)
+        first = first[form.not_refused(combinations[first])]
+        if len(first) > self._most_solved():
+            first = self.rng.choice(first, self._most_solved(), replace=False)
+        rows = rows[first]
+        variables, phi = np.array([c.variables for c in parents]), np.array([c.phi for c in parents])
+        base: np.ndarray = phi[rows][:, self.purpose.columns]
+        return combinations[first], variables[rows], base
+
+    def _elsewhere(self, placed: set[tuple[int, bytes]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return known combinations with places of the front to try them at."""
+        archive, columns = self.form.archive, self.purpose.columns
+        phi = archive.phi[:, columns]
+        places = corners(phi, self.limits.targets)
+        chosen = spread_subset(phi, self.limits.families)
+        tried = [
+            (int(k), place)
+            for k in chosen
+            for place in places
+            if (int(archive.combination[k]), place.tobytes()) not in placed
+        ][: self._most_solved()]
+        placed.update((int(archive.combination[k]), place.tobytes()) for k, place in tried)
+        rows = np.array([k for k, _ in tried], dtype=np.int64)
+        bases = np.array([place for _, place in tried]).reshape(len(tried), len(columns))
+        return archive.combination[rows], archive.variables[rows], bases
+
+    def _ends(self, placed: set[tuple[int, bytes]]) -> int:
+        """Try what is one part away from the design that is best in an objective, for that objective alone."""
+        archive, found = self.form.archive, 0
+        for k in self.purpose.columns:
+            parent = archive[int(np.argmin(archive.phi[:, k]))]
+            key = (parent.combination, bytes([k]))
+            if key not in placed:
+                placed.add(key)
+                combinations, start, _ = self._exchanged([parent])
+                own = np.append(combinations, parent.combination)
+                weights = np.zeros((len(own), len(self.form.goals)))
+                weights[:, self.purpose.columns] = self.limits.tie_weight
+                weights[:, k] = 1.0
+                caps = np.tile(self.purpose.plain, (len(own), 1))
+                tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
+                found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
+        return found
+
+    def _reach(self, combinations: np.ndarray, start: np.ndarray, base: np.ndarray) -> int:
+        """Solve from each base straight up, or for the one objective; return how many designs are new."""
+        if not len(combinations):
+            return 0
+        return self._solved(self._upwards(base), combinations, start)
+
+    def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
+        """Solve many problems over the whole range of the variables; return how many designs are new."""
+        form, columns = self.form, self.purpose.columns
+        found = form.solve_many(tasks, combinations, start)
+        self._learn(tasks, combinations, found)
+        if not form.gridded.any():
+            return self.offer(found.variables, combinations)
+        phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
+        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
+        cell = form.cell_of(combinations[good])
+        space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
+        good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
+        if not len(good):
+            return 0
+        return self.round_off(form.leaves(combinations[good]), found.variables[good], tasks.take(good))
+
+    def _upwards(self, base: np.ndarray) -> Tasks:
+        """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
+        form, columns = self.form, self.purpose.columns
+        count, goals = len(base), len(form.goals)
+        slopes, weights = np.zeros((count, goals)), np.zeros((count, goals))
+        caps = np.tile(self.purpose.plain, (count, 1))
+        if len(columns) == 1:
+            weights[:, columns] = 1.0
+        else:
+            slope = self.purpose.slack / self.purpose.slack.max()
+            known = np.isfinite(base)
+            caps[:, columns] = np.where(known, base, np.inf)
+            slopes[:, columns] = np.where(known, slope, 0.0)
+            weights[:, columns] = np.where(known, self.limits.tie_weight / slope, 1.0)
+        return Tasks(weights, slopes, caps, form.goal_scales, 1.0 if len(columns) > 1 else 0.0)
+
+    def _solve(self, boxes: Boxes) -> int:
+        """Solve the continuous problems of a random combination of each box: straight up from its lower bounds."""
+        form, columns = self.form, self.purpose.columns
+        if not len(boxes):
+            return 0
+        if not form.cells.single(boxes.cell).all():
+            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+            boxes = self._tightened(boxes)
+            if not len(boxes):
+                return 0
+        tasks = self._upwards(form.phi_of(boxes.bounds)[:, columns])
+        combinations = form.combination(boxes)
+        low, high = form.ends(boxes)
+        settled = form.gridded & (low == high)
+        low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
+        answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
+        self._learn(tasks, combinations, answer)
+        whole = np.all(settled == form.gridded, axis=1)
+        found = self.offer(answer.variables[whole], combinations[whole])
+        rest = np.flatnonzero(~whole)
+        if not len(rest):
+            return found
+        return found + self.round_off(boxes.take(rest), answer.variables[rest], tasks.take(rest))
+
+    def round_off(self, boxes: Boxes, variables: np.ndarray, tasks: Tasks) -> int:
+        """Try the makeable points around continuous optima, of which ``tasks`` are the problems.
+
+        Where what limits leave is so narrow that no point hits it, what is not gridded is solved for again.
+        """
+        form = self.form
+        low, high, source = roundings(form, variables)
+        bounds = np.full((len(low), boxes.bounds.shape[1]), -np.inf)
+        around = self._tightened(replace(boxes.take(source), low=low, high=high, bounds=bounds, tag=source))
+        found, hit = self._keep(around)
+        if form.gridded.all():
+            return found
+        missed = np.ones(len(variables), dtype=bool)
+        missed[around.tag[hit]] = False
+        narrow = around.take(missed[around.tag])
+        narrow = narrow.take(self.purpose.room(form.phi_of(narrow.bounds), narrow.cell) > 0)
+        if not len(narrow):
+            return found
+        low, high = form.ends(narrow)
+        low, high = np.where(form.gridded, low, form.lower), np.where(form.gridded, high, form.upper)
+        combinations = form.combination(narrow)
+        answer = form.solve_many(tasks.take(narrow.tag), combinations, form.inside(narrow, 0.5), low, high)
+        return found + self.offer(answer.variables, combinations)
+
+
+def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
+    limits, snap = form.tuning.heuristics.seeker, form.tuning.tolerances.snap
+    reach = limits.reach if (2 * limits.reach) ** int(form.gridded.sum()) <= limits.most_roundings else 1
+    steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
+    steps = steps.reshape(form.n, -1).T
+    count = len(steps)
+    low = np.tile(form.propagation.low[: form.n], (len(variables) * count, 1))
+    high = np.tile(form.propagation.high[: form.n], (len(variables) * count, 1))
+    for k, grid in enumerate(form.grids):
+        if len(grid):
+            place = np.searchsorted(grid, below(variables[:, k], snap))[:, None] + steps[None, :, k]
+            low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()
+    return low, high, np.repeat(np.arange(len(variables)), count)
+
+
+def corners(phi: np.ndarray, count: int) -> np.ndarray:
+    """Return ends from which to look for designs between known ones, at most so many.
+
+    Two objectives: the lower corners of the widest steps between neighbours. More: known designs, well spread.
+    """
+    if phi.shape[1] != 2 or len(phi) < 2:
+        spread: np.ndarray = phi[spread_subset(phi, count)]
+        return spread
+    steps = phi[np.argsort(phi[:, 0], kind="stable")]
+    low = np.stack([steps[:-1, 0], steps[1:, 1]], axis=1)
+    width = np.max((steps[1:, 0] - steps[:-1, 0], steps[:-1, 1] - steps[1:, 1]), axis=0)
+    chosen: np.ndarray = low[np.sort(np.argsort(-width, kind="stable")[:count])]
+    return chosen
+
+
+def spread_choice(along: np.ndarray, space: np.ndarray, count: int) -> np.ndarray:
+    """Return positions of boxes with much room, spread along an objective."""
+    if len(space) <= count:
+        return np.arange(len(space))
+    order = np.argsort(along, kind="stable")
+    group = np.arange(len(order)) * count // len(order)
+    by_space = np.lexsort((-space[order], group))
+    first = np.searchsorted(group[by_space], np.arange(count))
+    chosen: np.ndarray = order[by_space[first]]
+    return chosen

@@ -1,0 +1,265 @@
+"""What a search is for: to cover everything by known designs, or to prove some designs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from synth.bounds.compiled_subtrees import CapTables
+from synth.search.archive import Archive, Candidate
+from synth.search.formulation import Formulation
+
+
+class Purpose(Protocol):
+    """What a search is for: which designs would still be of use."""
+
+    columns: list[int]
+    slack: np.ndarray
+    plain: np.ndarray
+    proves: bool  # designs that have been looked for, so that hardly any better ones are left
+
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return, per box with these lower bounds of phi, what a design must keep to be of use.
+
+        ``cell`` (boxes, factors) tells which combinations a box holds; only where several questions are answered
+        together does it matter.
+        """
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return how much better than needed a box could be: the least distance to a cap, 0 if it is of no use."""
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return the designs that are best, where there is one objective: they are made as good as they can be."""
+
+    def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many were of use."""
+
+
+class Tabled(Purpose, Protocol):
+    """A purpose whose caps compiled code may read from tables."""
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what :meth:`caps` and :meth:`room` say as tables; None where they cannot say it."""
+
+
+class Cover:
+    """Cover everything: for each possible design a known one that is at most the slack worse in every objective.
+
+    Parameters
+    ----------
+    columns : list of int
+        Numbers of the objectives that are traded off; one of them: its best design is sought.
+    slack : array (columns,)
+        In phi.
+    plain : array (objectives,)
+        Caps of phi that every design must keep; infinite where there is none.
+    known : Archive
+        Designs known, no one better than another in all the objectives traded.
+    """
+
+    proves = False
+
+    def __init__(self, columns: Sequence[int], slack: np.ndarray, plain: np.ndarray, known: Archive) -> None:
+        self.columns, self.slack, self.plain, self.known = list(columns), slack, plain, known
+        self.tie = known.tuning.tolerances.tie
+
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
+        caps = np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
+        own = self.known.caps(lower[:, self.columns], self.slack)
+        caps[:, self.columns] = np.minimum(caps[:, self.columns], own)
+        return caps
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return how much better than the designs known a box could be."""
+        if not len(lower):
+            return np.empty(0)
+        with np.errstate(all="ignore"):
+            distance = self.known.caps(lower[:, self.columns], self.slack) - lower[:, self.columns]
+            result = np.where(np.isnan(distance), np.inf, distance).min(axis=1)
+            broken = np.any(lower > self.plain[: lower.shape[1]] + self.tie, axis=1)
+        return np.where(broken, 0.0, result)
+
+    def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many no known one covered."""
+        keep = np.all(phi <= self.plain + self.tie, axis=1)
+        combinations, variables, phi = combinations[keep], variables[keep], phi[keep]
+        new = int((self.room(phi) > 0).sum())
+        self.known.add(combinations, variables, phi)
+        return new
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return the best design of an archive in the one objective."""
+        allowed = np.flatnonzero(np.all(archive.phi <= self.plain + self.tie, axis=1))
+        k = self.columns[0]
+        return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what the caps are as tables, for one objective or two."""
+        columns, bounded = self.columns, form.bounded
+        if reaches_beyond(self, bounded) or len(columns) > 2:
+            return None
+        plain = self.plain[:bounded] + self.tie
+        if len(columns) == 1:
+            least = (self.known.phi[:, columns[0]] - self.slack[0]).min(initial=np.inf)
+            plain[columns[0]] = min(plain[columns[0]], least)
+        known = _covered_from(form, self.known, self.slack) if len(columns) == 2 else ()
+        return CapTables(columns, form.values_of(plain), known=known)
+
+
+class Staircase:
+    """Prove some designs: nothing is better than one of them by more than the slack in every objective.
+
+    Those that are best in one objective are proven in that objective alone. A design that is beaten is replaced.
+    What a known design covers can beat none of them either, as no known design dominates one of them: this settles
+    boxes that miss a step by no more than limits are loosened.
+
+    Parameters
+    ----------
+    designs : list of Candidate
+        None of them dominated by a known one.
+    columns : list of int
+        Numbers of the objectives.
+    slack : array (columns,)
+        In phi.
+    known : Archive
+    proven : set of bytes
+        phi of designs that need no proof any more.
+    """
+
+    proves = True
+
+    def __init__(
+        self,
+        designs: Sequence[Candidate],
+        columns: Sequence[int],
+        slack: np.ndarray,
+        known: Archive,
+        proven: Collection[bytes] = (),
+    ) -> None:
+        self.designs, self.columns, self.slack, self.known = list(designs), list(columns), slack, known
+        self.plain, self.tie = np.full(known.phi.shape[1], np.inf), known.tuning.tolerances.tie
+        self._proven = proven
+        self._set()
+
+    def finished(self) -> list[Candidate]:
+        """Return the designs, the best known in each objective among them, none dominated by a known one.
+
+        What has been proven of a design holds for one that dominates it, and of the best in an objective for the
+        best known.
+        """
+        known = self.known.phi[:, self.columns]
+        result = [self.known[int(k)] for k in dict.fromkeys(np.argmin(known, axis=0).tolist())]
+        for c in self.designs:
+            rows = np.flatnonzero(beating(known, c.phi[self.columns], self.tie))
+            result.append(self.known[int(rows[0])] if len(rows) else c)
+        return result
+
+    def unproven(self) -> list[Candidate]:
+        """Return the designs that need a proof."""
+        return [c for c in self.designs if c.phi.tobytes() not in self._proven]
+
+    def _set(self) -> None:
+        phi = np.array([c.phi[self.columns] for c in self.designs])
+        steps = [phi[[c.phi.tobytes() not in self._proven for c in self.designs]] - self.slack]
+        for k in range(len(self.columns)):
+            row = np.full((1, len(self.columns)), np.inf)
+            row[0, k] = phi[:, k].min() - self.slack[k]
+            steps.append(row)
+        self.steps = np.concatenate(steps)
+
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return, per box with these lower bounds of phi, what a design must keep to beat one of the designs."""
+        caps = np.full(lower.shape, np.inf)
+        own = lower[:, self.columns]
+        below = self._below_two(own) if len(self.columns) == 2 else self._below(own)
+        caps[:, self.columns] = np.minimum(below, self.known.caps(own, self.slack))
+        return caps
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return how far below one of the designs a box could be."""
+        own = lower[:, self.columns]
+        with np.errstate(all="ignore"):
+            distance = (self.caps(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)
+        room: np.ndarray = np.maximum(distance, 0.0)
+        return room
+
+    def _below(self, own: np.ndarray) -> np.ndarray:
+        """Return, per box, the largest step in each objective among those that the box could be below."""
+        result, at_once = np.full(own.shape, -np.inf), self.known.tuning.arrays.steps
+        for first in range(0, len(own), at_once):
+            part = own[first : first + at_once]
+            below = np.all(part[:, None, :] < self.steps[None, :, :], axis=2)
+            for k in range(own.shape[1]):
+                result[first : first + at_once, k] = np.where(below, self.steps[None, :, k], -np.inf).max(axis=1)
+        return result
+
+    def _below_two(self, own: np.ndarray) -> np.ndarray:
+        """Do the same for two objectives: steps in order of the first fall in the second."""
+        first, highest = self._in_order()
+        from_here = np.searchsorted(first, own[:, 0], side="right")  # steps above the box in the first objective
+        up_to = len(first) - np.searchsorted(highest[::-1], own[:, 1], side="right")  # ... and in the second
+        alive = from_here < up_to
+        last = np.minimum(up_to, len(first)) - 1
+        result = np.full(own.shape, -np.inf)
+        result[alive, 0] = first[last[alive]]
+        result[alive, 1] = highest[from_here[alive]]
+        return result
+
+    def _in_order(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the steps of two objectives in order, and the largest second among each and all later ones."""
+        steps = self.steps[np.argsort(self.steps[:, 0], kind="stable")]
+        return steps[:, 0], np.maximum.accumulate(steps[::-1, 1])[::-1]
+
+    def tables(self, form: Formulation) -> CapTables | None:
+        """Return what the caps are as tables, for two objectives."""
+        columns = self.columns
+        if reaches_beyond(self, form.bounded) or len(columns) != 2:
+            return None
+        (first, highest), known = self._in_order(), _covered_from(form, self.known, self.slack)
+        steps = form.signed(columns[0], first), form.signed(columns[1], highest)
+        return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
+
+    def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
+        """Replace designs that are beaten; return how many were."""
+        own = phi[:, self.columns]
+        least = np.array([c.phi[self.columns] for c in self.designs])
+        beats = beating(own[:, None, :], least[None, :, :], self.tie)
+        worth = np.where(beats, (own / self.slack).sum(axis=1)[:, None], np.inf)
+        for k, j in enumerate(np.argmin(least, axis=0)):
+            lower = own[:, k] < least[j, k] - self.slack[k]
+            if lower.any():
+                worth[:, j] = np.where(lower, own[:, k], np.inf)
+        beaten = np.flatnonzero(np.isfinite(worth).any(axis=0))
+        for j in beaten:
+            row = int(np.argmin(worth[:, j]))
+            self.designs[j] = Candidate(int(combinations[row]), variables[row].copy(), phi[row])
+        if len(beaten):
+            self._set()
+        return len(beaten)
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return nothing: a staircase is one of several objectives."""
+        return []
+
+
+def beating(rows: np.ndarray, phi: np.ndarray, tie: float) -> np.ndarray:
+    """Tell which rows (..., objectives) are as good as phi in all, and better in some by more than rounding."""
+    better: np.ndarray = np.all(rows <= phi, axis=-1) & np.any(rows < phi - tie, axis=-1)
+    return better
+
+
+def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """Return what designs cover of two objectives, in signed values."""
+    pairs = zip((0, 1), known.covering(slack), strict=True)
+    first, second = known.columns
+    return tuple(
+        (form.signed((second, first)[k], at), form.signed((first, second)[k], least)) for k, (at, least) in pairs
+    )
+
+
+def reaches_beyond(purpose: Purpose, bounded: int) -> bool:
+    """Tell whether a search speaks of more than the first objectives."""
+    return max(purpose.columns) >= bounded or bool(np.any(np.isfinite(purpose.plain[bounded:])))

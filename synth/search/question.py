@@ -1,0 +1,129 @@
+"""A question as it is posed to the search."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from synth.bounds.propagation import Lessons
+from synth.model.problem import DesignProblem
+from synth.question.count_domain import stated
+from synth.question.instance import Instance
+from synth.question.objectives import _weights, chosen_objectives
+from synth.question.request import Request
+from synth.question.settings import Progress, SearchSettings
+from synth.results import Design, ParetoFront
+from synth.robust.counterpart import posed
+from synth.search.front_search import FrontSearch
+from synth.tuning import TUNING, Tuning
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """A request that has been checked against its model: everything that can be wrong with it has been said.
+
+    ``chosen`` are the objectives with their sense, ``weights`` those of all of them. ``alike``: how many questions of
+    its kind are asked; code that is compiled for one serves them all. ``tuning``: what its search goes by.
+    """
+
+    request: Request
+    settings: SearchSettings
+    instance: Instance
+    chosen: Mapping[str, str]
+    weights: Mapping[str, float]
+    alike: int = 1
+    tuning: Tuning = TUNING
+
+    def within(self, seconds: float | None) -> Question:
+        """Return the same with another time limit; None: without any."""
+        return replace(self, settings=self.settings.within(seconds))
+
+    def record(self) -> dict[str, Any]:
+        """Return what a front keeps of the question beside its frame, as files keep it."""
+        return {
+            "points": self.settings.points,
+            "gap": self.settings.gap,
+            "grid": self.request.grid,
+            "seed": self.settings.seed,
+            "weights": self.weights,
+            "parts": self.request.rules(),
+            "limits": stated(self.request.limits),
+            "fix": stated(self.request.fix),
+        }
+
+    def answer(
+        self,
+        progress: Progress | None = None,
+        known: Sequence[Design] = (),
+        explained: bool = True,
+        lessons: Lessons | None = None,
+        given: ParetoFront | None = None,
+    ) -> ParetoFront:
+        """Search the designs.
+
+        ``known`` are designs of a similar question, where to look first, ``lessons`` what its search has learned. They
+        prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
+        where nothing is feasible. ``given`` is the front of an earlier search of this very question, to go on from.
+        """
+        search = self.search(progress, known, lessons)
+        if given is not None:
+            search.begin_from(given)
+        return search.run(list(self.weights.values()), self.record(), explained)
+
+    def experience(self) -> tuple[ParetoFront, Lessons | None]:
+        """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
+        search = self.search()
+        front = search.run(list(self.weights.values()), self.record(), explained=False)
+        # What was learned where nothing was feasible does not help where something is.
+        return front, search.form.propagation.lessons() if front.designs and not search.in_conflict else None
+
+    def search(
+        self, progress: Progress | None = None, known: Sequence[Design] = (), lessons: Lessons | None = None
+    ) -> FrontSearch:
+        """Return the search that answers."""
+        return FrontSearch(
+            self.instance, self.chosen, self.settings, progress, known=known, alike=self.alike, lessons=lessons,
+            tuning=self.tuning,
+        )  # fmt: skip
+
+
+def pose(
+    request: Request, settings: SearchSettings, problem: DesignProblem | None = None, tuning: Tuning = TUNING
+) -> Question:
+    """Check a request against its model.
+
+    Parameters
+    ----------
+    request : Request
+    settings : SearchSettings
+    problem : DesignProblem, optional
+        Its problem with the limits posed over the range of what scatters, where that is done already.
+    tuning : Tuning
+        What its search goes by.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the request, in one sentence.
+    """
+    if problem is None:
+        problem = posed(request.problem, request.robust, request.limits)
+    instance = Instance(replace(request, problem=problem))
+    chosen = chosen_objectives(instance.model, request.objectives)
+    weights = dict(zip(chosen, _weights(instance, chosen, request.weights), strict=True))
+    return Question(
+        request=request, settings=settings, instance=instance, chosen=chosen, weights=weights, tuning=tuning
+    )
+
+
+def one_best(
+    instance: Instance, objective: str, settings: SearchSettings, effort: int, tuning: Tuning = TUNING
+) -> ParetoFront:
+    """Return the best design for one objective, for questions that the engine asks itself.
+
+    Where there is none nothing is explained; what ``effort`` boxes leave open is left open.
+    """
+    chosen = chosen_objectives(instance.model, [objective])
+    search = FrontSearch(instance, chosen, settings, effort=effort, tuning=tuning)
+    return search.run([1.0], {"points": settings.points, "gap": settings.gap}, explained=False)

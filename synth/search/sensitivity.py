@@ -1,0 +1,314 @@
+"""What a limit or requirement costs: per cent of an objective per per cent, from the multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.feasibility import residual
+from synth.model.model import Evaluation, Model
+from synth.model.numbers import numeric
+from synth.nlp.batch import Tasks
+from synth.question.instance import Instance
+from synth.search.archive import Candidate
+from synth.search.formulation import Formulation
+from synth.special import expanded
+
+NOISE = 1e-6
+TIGHT = 1e-5
+
+
+@dataclass(frozen=True)
+class Optima:
+    """Designs made as good as their parts allow in one objective, and what moves it there.
+
+    Parameters
+    ----------
+    variables : array (designs, variables)
+        SI; gridded ones are continuous.
+    phi : array (designs,)
+        The objective as the search measures it.
+    converged : array of bool (designs,)
+        Whether the solver confirms the optimum.
+    multipliers : array (designs, limits)
+    limits : array (designs, limits)
+        d phi / d log of each limit; not-a-number where the limit is zero or void.
+    requirements : array (designs, requirements)
+        d phi / d log of each requirement, where limits that no variable moves let it change at all.
+    ends : array (designs, variables)
+        d phi / d log of the end of its range that a variable is at; 0 inside.
+    """
+
+    variables: np.ndarray
+    phi: np.ndarray
+    converged: np.ndarray
+    multipliers: np.ndarray
+    limits: np.ndarray
+    requirements: np.ndarray
+    ends: np.ndarray
+
+
+def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int) -> list[dict[str, dict[str, float]]]:
+    """Return, per design, the elasticity of each chosen objective to every limit and requirement.
+
+    The other chosen objectives are held at their values, parts and counts are fixed, gridded
+    variables are taken as continuous. What a default makes of a requirement moves with it.
+    Objectives that are not positive, and designs where the solver does not confirm the optimum,
+    have none.
+
+    Parameters
+    ----------
+    form : Formulation
+    candidates : list of Candidate
+    chosen : int
+        How many objectives, from the first, are traded off.
+    """
+    results: list[dict[str, dict[str, float]]] = [{} for _ in candidates]
+    if not candidates:
+        return results
+    names = [x.name for x in form.constraints]
+    combinations = np.array([c.combination for c in candidates])
+    start = np.array([c.variables for c in candidates])
+    phi = np.array([c.phi for c in candidates])
+    positions = requirement_positions(form)
+    speaking = np.array([_speaking_of(form, position) for position in positions.values()], dtype=bool)
+    result = form.evaluate(start, combinations)
+    tight, sizes = _tight(form, result), _sizes(form, result)
+    # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
+    _, follows = _shares(form, combinations)
+    spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
+    logs = np.array(form.rows().log_cuts, dtype=bool)
+    for k in range(chosen):
+        if not form.log_goals[k]:
+            continue
+        found = optima(form, combinations, start, phi, chosen, k, sizes)
+        counts = np.concatenate(
+            [logs & (np.abs(found.limits) > NOISE), (np.abs(found.requirements) > NOISE) & ~spoken], axis=1
+        )
+        numbers = np.concatenate([found.limits, found.requirements], axis=1).tolist()
+        labels = [*names, *positions]
+        for i in np.flatnonzero(found.converged).tolist():
+            results[i][form.names[k]] = {labels[j]: numbers[i][j] for j in np.flatnonzero(counts[i]).tolist()}
+    return results
+
+
+def optima(
+    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int,
+    sizes: np.ndarray | None = None,
+) -> Optima:  # fmt: skip
+    """Make designs as good as their parts allow in one objective, and return what moves it there.
+
+    Parameters
+    ----------
+    form : Formulation
+    combinations, start : array (designs,), (designs, variables)
+    phi : array (designs, objectives)
+        The chosen objectives but the one numbered ``k`` are held at these.
+    chosen, k : int
+    sizes : array (designs, limits), optional
+        Those of ``sides`` at the start, where they are known.
+    """
+    tasks = held(form, phi, chosen, k)
+    # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
+    answer = form.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
+    data = form.instance.data(combinations)
+    sizes = _sizes(form, form.instance.evaluate(start, data)) if sizes is None else sizes
+    bounds = _bounds(form, answer.variables, data)
+    logs = np.array(form.rows().log_cuts, dtype=bool)
+    signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
+    with np.errstate(all="ignore"):
+        limits = signs * answer.cut_multipliers * np.where(logs, 1.0, bounds / sizes)
+    limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
+    positions = requirement_positions(form)
+    slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
+    requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
+    solved = np.flatnonzero(answer.converged)
+    if len(solved):
+        known = np.empty((len(solved), len(data)))
+        for j, x in enumerate(data):
+            known[:, j] = x[solved] if np.ndim(x) else x
+        points = answer.variables[solved]
+        own, at_ends = slopes(
+            form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
+        )
+        ends[solved] = at_ends * points
+        places = list(positions.values())
+        share, _ = _shares(form, combinations[solved])
+        slope = _sum_of_shares(share, own[:, places])
+        requirements[solved] = slope * known[:, places]
+    return Optima(
+        answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
+    )  # fmt: skip
+
+
+def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndarray | None = None) -> Tasks:
+    """Return problems of one objective that hold the other chosen ones; ``moved`` is that of :class:`Tasks`."""
+    count, goals = phi.shape
+    caps = np.full((count, goals), np.inf)
+    caps[:, :chosen] = phi[:, :chosen] + form.tuning.tolerances.tie
+    caps[:, k] = np.inf
+    return Tasks(
+        np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0, moved=moved
+    )
+
+
+def requirement_positions(form: Formulation) -> dict[str, int]:
+    """Return the requirements in force with the number of their data input."""
+    return {e.name: k for k, e in enumerate(form.model.data_inputs) if e.kind == "requirement"}
+
+
+def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
+    questions: dict[int, int] = {}
+    kinds, numbers = list[dict[str, dict[str, float]]](), list[int]()
+    for combination in combinations.tolist():
+        instance = form.instance.of(combination)
+        if id(instance) not in questions:
+            questions[id(instance)] = len(kinds)
+            kinds.append(_followers_of(form, instance))
+        numbers.append(questions[id(instance)])
+    place = {name: q for q, name in enumerate(requirement_positions(form))}
+    share = np.zeros((len(kinds), len(place), len(place)))
+    follows = np.zeros(share.shape, dtype=bool)
+    for own, moved in enumerate(kinds):
+        for name, others in moved.items():
+            for other, by in others.items():
+                share[own, place[name], place[other]] = by
+                follows[own, place[name], place[other]] = True
+    return share[numbers], follows[numbers]
+
+
+def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Return the slope to each requirement and what moves with it, from those to each alone (designs, requirements)."""
+    own = np.arange(slopes.shape[1])
+    total: np.ndarray = 0.0 + share[:, own, own] * slopes
+    # One after another, in the order in which they are declared: sums of numbers depend on it.
+    for other in own[np.any(share, axis=(0, 1))]:
+        more = share[:, :, other] * slopes[:, [other]]
+        more[:, other] = 0.0
+        total += more
+    return total
+
+
+def _followers_of(form: Formulation, instance: Instance) -> dict[str, dict[str, float]]:
+    """Return what moves with each requirement of a question; worked out once."""
+    known = form.followers.get(id(instance))
+    if known is None:
+        known = form.followers[id(instance)] = followers(instance)
+    return known
+
+
+def followers(instance: Instance) -> dict[str, dict[str, float]]:
+    """Return, per requirement, what moves with it and by how much: itself, and those whose default is made of it."""
+    model, declared = instance.model, instance.model.declaration.requirements
+    active = {name: r for name, r in declared.items() if r.sx is not None}
+    moved: dict[str, dict[str, float]] = {name: {name: 1.0} for name in active}
+    values = {**{str(active[n].sx): v for n, v in instance.requirements.items()}, **instance.row_values}
+    slopes: dict[str, list[tuple[str, Any, list[str]]]] = model.function("slopes of defaults", lambda: _slopes(model))
+    for name, made in slopes.items():
+        if name in instance.given:
+            continue
+        for other, function, names in made:
+            slope = float(function.call([values[n] for n in names])[0])
+            if slope:
+                for origin in moved:
+                    share = moved[origin].get(other, 0.0)
+                    if share:
+                        moved[origin][name] = moved[origin].get(name, 0.0) + share * slope
+    return moved
+
+
+def _slopes(model: Model) -> dict[str, list[tuple[str, Any, list[str]]]]:
+    """Return, per requirement whose default is made of others, the functions that give its slopes to each."""
+    active = {name: r for name, r in model.declaration.requirements.items() if r.sx is not None}
+    result: dict[str, list[tuple[str, Any, list[str]]]] = {}
+    for name, r in active.items():
+        if r.default is not None and not isinstance(r.default, float):
+            expression = expanded(r.default, model.calls)
+            slopes = {other: ca.gradient(expression, earlier.sx) for other, earlier in active.items()}
+            result[name] = [(other, *numeric(slope)) for other, slope in slopes.items() if not slope.is_zero()]
+    return result
+
+
+def _gradient(form: Formulation) -> Any:
+    """Return the derivatives of the Lagrangian to data inputs and variables: of point, data and multipliers."""
+    rows, program, n = form.rows(), form.model.program, form.n
+    x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
+    values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
+    bounds, sizes = ca.SX.sym("bounds", len(rows.cuts)), ca.SX.sym("sizes", len(rows.cuts))
+    cut_rows = []
+    for j, cut in enumerate(rows.cuts):
+        value, limit = values[cut.value], bounds[j] if cut.limit is None else values[cut.limit]
+        row = ca.log(value / limit) if rows.log_cuts[j] else (value - limit) / sizes[j]
+        cut_rows.append(-row if cut.sense == "at_least" else row)
+    phi = []
+    for j, goal in enumerate(rows.goals):
+        form_of = ca.log(values[goal.node]) if rows.log_goals[j] else values[goal.node]
+        phi.append(goal.sign * form_of)
+    cut_weights, goal_weights = ca.SX.sym("cuts", len(cut_rows)), ca.SX.sym("goals", len(phi))
+    total = ca.dot(cut_weights, ca.vertcat(*cut_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
+    wanted = [ca.gradient(total, data), ca.gradient(total, x)]
+    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
+
+    def evaluate(
+        own: Formulation, points: np.ndarray, known: np.ndarray, size: np.ndarray, cuts: np.ndarray,
+        goals: np.ndarray, k: int,
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        clean = np.where(np.isnan(known), 1.0, known)
+        units = np.where(rows.log_goals, 1.0, own.goal_scales)
+        weights = np.where(np.isfinite(goals), goals, 0.0) / units
+        weights[:, k] += 1.0 / units[k]
+        limits = np.tile(own.bounds, (len(points), 1))
+        # One call for all designs, a column each.
+        found = function(points.T, clean.T, limits.T, size.T, np.where(cuts == 0, 0.0, cuts).T, weights.T)
+        slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in found)
+        return slopes, ends
+
+    return evaluate
+
+
+def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
+    return _sizes(form, form.instance.evaluate(variables, data)), _bounds(form, variables, data)
+
+
+def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
+    """Return the size of every limit as its row measures it (designs, limits)."""
+    sizes = np.empty((len(result.feasible), len(form.cuts)))
+    for j, x in enumerate(form.constraints):
+        value, limit = result.limits[x.name]
+        size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), x.scale)
+        sizes[:, j] = np.where(np.isfinite(size), size, 1.0)
+    return sizes
+
+
+def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+    """Return the limits themselves (designs, limits)."""
+    moving = [cut.limit for cut in form.cuts if cut.limit is not None]
+    limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))
+    with np.errstate(all="ignore"):
+        found = iter(limits([*variables.T, *data]))
+    bounds = np.empty((len(variables), len(form.cuts)))
+    for j, cut in enumerate(form.cuts):
+        bounds[:, j] = cut.bound if cut.limit is None else next(found)
+    return bounds
+
+
+def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
+    """Return which limits that no variable can move are active (designs, limits)."""
+    fixed = form.unmoved(gridded=True)
+    tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
+    for j in np.flatnonzero(fixed):
+        x = form.constraints[j]
+        tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < TIGHT
+    return tight
+
+
+def _speaking_of(form: Formulation, position: int) -> np.ndarray:
+    """Return which limits depend on a data input."""
+    marked = form.model.program.dependence([form.n + position])
+    return np.array([any(marked[k] for k in x.nodes) for x in form.constraints], dtype=bool)

@@ -1,0 +1,30 @@
+"""Designs of a similar question as ideas: solved again for this one, they are where a search begins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.results import Design
+from synth.search.formulation import Formulation
+from synth.search.primal_heuristics import Seeker
+from synth.search.pruning import Purpose
+
+
+def recall(form: Formulation, purpose: Purpose, designs: Sequence[Design], rng: np.random.Generator) -> bool:
+    """Put designs of a similar question into the archive, as they are or solved again; tell whether any is feasible.
+
+    Each goes straight up from the objectives it had: what the new question takes from it or gives to it, it loses or
+    gains in all objectives alike.
+    """
+    names = [v.name for v in form.model.variables]
+    rows = [(c, d) for d in designs if (c := form.instance.combinations.find(d)) is not None]
+    combinations = np.array([c for c, _ in rows], dtype=np.int64)
+    keep = form.not_refused(combinations) if len(rows) else np.zeros(0, dtype=bool)
+    points = np.array([[d.values.get(n, np.nan) for n in names] for _, d in rows]).reshape(len(rows), form.n)
+    keep &= np.all(np.isfinite(points), axis=1)
+    combinations, points = combinations[keep], np.clip(points[keep], form.lower, form.upper)
+    if len(combinations):
+        Seeker(form, purpose, rng, False).again(combinations, points)
+    return bool(len(form.archive))

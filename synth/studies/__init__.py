@@ -1,0 +1,1 @@
+"""Studies: what-if, near-optimal designs, prices, infeasibility, comparison of families."""

@@ -1,0 +1,1 @@
+"""Families compared by the same requirement."""

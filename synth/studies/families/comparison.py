@@ -1,0 +1,201 @@
+"""What a comparison of several families gives: one ranked front, and a line for each family that lost and why."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.feasibility import Status
+from synth.files import csv_text
+from synth.output_folder import FRONT, save_result
+from synth.results import Certificate, Design, ParetoFront, design_columns, design_row
+from synth.results.loading import COMPARISON
+from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class FamilyOutcome:
+    """How one family came out.
+
+    ``outcome`` is listed (it has designs on the common front), beaten, infeasible, refused (it does not understand the
+    sheet, lacks something, or refuses a value) or stopped; ``sentence`` says why. ``front`` is its own front, where it
+    was searched, ``listed`` how many of its designs are on the common one, ``meanings`` what the objectives mean in it.
+    """
+
+    family: str
+    title: str
+    outcome: str
+    sentence: str
+    listed: int = 0
+    front: ParetoFront | None = None
+    beaten_by: Design | None = None
+    meanings: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One front over the designs of several families.
+
+    ``designs`` are in rank order; ``families`` names, design by design, the family as ``outcomes`` does.
+    """
+
+    objectives: Mapping[str, str]
+    designs: list[Design]
+    families: list[str]
+    outcomes: list[FamilyOutcome]
+    certificate: Certificate
+    settings: Mapping[str, Any]
+    interrupted: str = ""
+    seconds: float = 0.0
+
+    @property
+    def status(self) -> Status:
+        """Return how the comparison stands, as a front does."""
+        if self.designs:
+            return Status.OPTIMAL if self.certificate.kind == "global" else Status.FEASIBLE
+        return Status.NOT_SOLVED if self.interrupted else Status.INFEASIBLE
+
+    def sentence(self) -> str:
+        """Return how far the common front is proven."""
+        searched = sum(x.front is not None for x in self.outcomes)
+        those = "the family" if searched == 1 else f"the {searched} families"
+        n = f"{self.certificate.combinations:,}".replace(",", " ")
+        if self.certificate.kind == "global" and self.designs:
+            return (
+                f"proven: over all {n} combinations of parts and counts of {those} searched no design improves one "
+                f"listed here by more than {100 * (self.certificate.gap or 0):.3g} % in every objective"
+                f"{self.certificate.amounts()}"
+            )
+        if self.certificate.kind == "global":
+            return f"proven: none of the {n} combinations of parts and counts of {those} searched is feasible"
+        if self.interrupted:
+            return f"not proven: stopped ({self.interrupted}) before every family was searched to the end"
+        return f"not proven ({self.certificate.kind}): the certificate of each family says how far it is"
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, with units in the headers; what a family does not have is empty."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self._table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def families_frame(self) -> pd.DataFrame:
+        """Return one row per family."""
+        import pandas as pd
+
+        columns, rows = self._family_table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes into its folder: file name -> text."""
+        width = max(2, len(str(len(self.designs))))
+        found = {
+            "designs.csv": csv_text(*self._table()),
+            "families.csv": csv_text(*self._family_table()),
+            COMPARISON: self._json(),
+        }
+        if any(d.robust for d in self.designs):
+            found["robust.csv"] = csv_text(*limits_table(self.designs))
+        for design in self.designs:
+            found[f"design_{design.rank:0{width}d}.yaml"] = design.yaml()
+        return found
+
+    def family_files(self) -> dict[str, str]:
+        """Return the files of each family's own front, in a folder of its name."""
+        return {
+            f"{outcome.family}/{name}": text
+            for outcome in self.outcomes
+            if outcome.front is not None
+            for name, text in outcome.front.files().items()
+        }
+
+    def save(self, folder: str | Path) -> Path:
+        """Write designs.csv, families.csv, comparison.json, design_NN.yaml, and each family's own front in a folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, {**self.files(), **self.family_files()}, FRONT, bool(self.interrupted))
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        known = [
+            dict(zip(design_columns(d.frame, d.choices, d.parts), design_row(d.frame, d), strict=True))
+            for d in self.designs
+        ]
+        every = sorted({c: None for columns in known for c in columns}, key=lambda c: c.startswith("utilisation: "))
+        rated = any(d.robust for d in self.designs)
+        rows: list[list[Any]] = [
+            [
+                d.rank, d.score, name, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *map(own.get, every),
+                *(rating_row(d) if rated else ()),
+            ]
+            for d, name, own in zip(self.designs, self.families, known, strict=True)
+        ]  # fmt: skip
+        columns = ["rank", "score", "family", "status", "gap", "note", "alternatives", *every]
+        return [*columns, *(COLUMNS if rated else ())], rows
+
+    def _family_table(self) -> tuple[list[str], list[list[Any]]]:
+        columns = ["family", "title", "outcome", "listed", "why", "designs", "certificate", "gap", "combinations"]
+        columns += [f"best {n}" for n in self.objectives] + [f"meaning of {n}" for n in self.objectives]
+        rows: list[list[Any]] = []
+        for x in self.outcomes:
+            told: list[Any] = [None] * 4
+            if x.front is not None:
+                own = x.front.certificate
+                told = [len(x.front.designs), own.kind, own.gap, own.combinations]
+            best = [best_value(x.front, n, sense) for n, sense in self.objectives.items()]
+            meanings = [x.meanings.get(n) for n in self.objectives]
+            rows.append([x.family, x.title, x.outcome, x.listed, x.sentence, *told, *best, *meanings])
+        return columns, rows
+
+    def _json(self) -> str:
+        content = {
+            "format": FORMAT,
+            "objectives": dict(self.objectives),
+            "status": self.status.value,
+            "interrupted": self.interrupted,
+            "certificate": self.certificate.__dict__,
+            "sentence": self.sentence(),
+            "settings": dict(self.settings),
+            "seconds": self.seconds,
+            "families": [
+                {
+                    "family": x.family,
+                    "title": x.title,
+                    "outcome": x.outcome,
+                    "why": x.sentence,
+                    "listed": x.listed,
+                    "folder": None if x.front is None else x.family,
+                    "beaten_by": None if x.beaten_by is None else x.beaten_by.rank,
+                }
+                for x in self.outcomes
+            ],
+            "designs": [
+                {
+                    "rank": d.rank,
+                    "score": d.score,
+                    "family": name,
+                    "note": d.note,
+                    "objectives": dict(d.objectives),
+                    **({"robust": dict(d.robust)} if d.robust else {}),
+                }
+                for d, name in zip(self.designs, self.families, strict=True)
+            ],
+        }
+        return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def best_value(front: ParetoFront | None, name: str, sense: str) -> str | None:
+    """Return the best value of an objective on a front with its unit; None where there is no design."""
+    if front is None or not front.designs:
+        return None
+    values = [d.values[name] for d in front.designs]
+    return format_quantity(min(values) if sense == "min" else max(values), front.frame.units[name])

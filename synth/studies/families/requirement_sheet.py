@@ -1,0 +1,319 @@
+"""One requirement sheet and the families it is shown to: who can serve it, and why the others cannot.
+
+A family states with ``DesignProblem.understands`` which of its requirements mean what they mean in every family. A name
+that it does not understand makes it step back; nothing that was asked is overlooked.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from synth.declaration import Declaration
+from synth.errors import InputError, at
+from synth.input_limits import INPUT_LIMITS
+from synth.model.problem import DesignProblem
+from synth.model.registry import families, load
+from synth.question import request, uncertainty
+from synth.question.catalogs import as_catalogs
+from synth.question.names import as_mapping
+from synth.question.request import Request
+from synth.tables.catalogs import Catalogs
+from synth.units import parse_unit
+
+ANY = "any"
+KEYS = ("options", "requirements", "limits", "fix", "parts", "robust")
+EXAMPLES = {
+    **request.EXAMPLES,
+    "options": "{'friction_basis': 'worst_case'}",
+    "robust": "{'friction': '+-10 %'}",
+}
+LEAST_OBJECTIVES, MOST_OBJECTIVES = 2, 3
+
+Sheet = Mapping[str, Mapping[str, Any]]
+
+
+@dataclass
+class Applicant:
+    """A family, what concerns it alone, and why it cannot serve (``misfits``, as predicates)."""
+
+    label: str
+    title: str
+    own: Sheet
+    problem: DesignProblem
+    declaration: Declaration
+    misfits: list[str] = field(default_factory=list)
+
+    def robust(self, sheet: Sheet) -> dict[str, Any]:
+        """Return what scatters: by the sheet of all, and its own."""
+        return {**sheet["robust"], **self.own["robust"]}
+
+    def request(self, sheet: Sheet, catalogs: Catalogs, **ranked: Any) -> Request:
+        """Return what it is asked: the sheet of all and its own, and by what designs are ranked."""
+        asked: dict[str, Any] = {key: {**sheet[key], **self.own[key]} for key in ("limits", "fix", "parts")}
+        requirements = {**sheet["requirements"], **self.own["requirements"]}
+        return Request.of(self.problem, requirements, catalogs, self.robust(sheet) or None, **asked, **ranked)
+
+
+def sheet_of(**given: Any) -> Sheet:
+    """Return a sheet of what was given; what is None is not asked.
+
+    Raises
+    ------
+    InputError
+        When something is no mapping.
+    """
+    read = {key: as_mapping(given.get(key), key, EXAMPLES[key]) for key in KEYS}
+    return {key: {str(n): v for n, v in mapping.items() if v is not None} for key, mapping in read.items()}
+
+
+def understood() -> dict[str, tuple[str, list[str]]]:
+    """Return, per requirement that families understand in common, its unit and the registered families that do."""
+    result: dict[str, tuple[str, list[str]]] = {}
+    for family in families():
+        problem = load(family)
+        declared = problem.model(frozenset(), as_catalogs(None)).declaration.requirements
+        for name in problem.understands:
+            result.setdefault(name, (declared[name].unit, []))[1].append(family)
+    return dict(sorted(result.items(), key=lambda item: (-len(item[1][1]), item[0])))
+
+
+def applicants(asked: Any, sheet: Sheet, catalogs: Catalogs) -> list[Applicant]:
+    """Return the families that are asked, each with the reasons for which it cannot serve.
+
+    Parameters
+    ----------
+    asked : "any", or list of names, DesignProblem subclasses, instances, or mappings with ``family``
+    sheet : mapping
+        What all are asked.
+    catalogs : Catalogs
+
+    Raises
+    ------
+    InputError
+        When a name means nothing to any family, or none can serve.
+    """
+    entries: Sequence[Any] = families() if isinstance(asked, str) and asked == ANY else asked
+    if isinstance(entries, (str, Mapping)) or not isinstance(entries, Sequence) or not entries:
+        raise InputError("family", asked, f"'{ANY}', or a list of families", ("family",))
+    if len(entries) > INPUT_LIMITS.families:
+        raise InputError("family", f"{len(entries)} entries", f"at most {INPUT_LIMITS.families}", ("family",))
+    found = []
+    for k, entry in enumerate(entries):
+        with at("family", k):
+            found.append(_applicant(entry, sheet, catalogs))
+    _tell_apart(found)
+    _check_names(found, sheet)
+    _check_own(found, sheet)
+    _check_tables(found, catalogs)
+    for one in found:
+        one.misfits += _misfits(one, sheet)
+    return found
+
+
+def refuse_all(found: Sequence[Applicant], sheet: Sheet) -> None:
+    """Raise where no family can serve, with the reasons of the one that comes nearest."""
+    if all(one.misfits for one in found):
+        near = min(found, key=lambda one: sum(m.count(",") + 1 for m in one.misfits))
+        shown = ", ".join(sheet["requirements"]) or None
+        reasons = " and ".join(near.misfits)
+        expected = f"a sheet that one of the families can serve; the nearest is {near.label}, but it {reasons}"
+        raise InputError("requirements", shown, expected, ("requirements",))
+
+
+def _applicant(entry: Any, sheet: Sheet, catalogs: Catalogs) -> Applicant:
+    """Read one entry of the list of families."""
+    family, own = entry, sheet_of()
+    if isinstance(entry, Mapping):
+        family = entry.get("family")
+        for key in entry:
+            if key not in ("family", *KEYS):
+                raise InputError("family", key, f"family, {', '.join(KEYS)}", (str(key),))
+        own = sheet_of(**{key: entry[key] for key in KEYS if key in entry})
+    problem = load(family)
+    if own["options"]:
+        problem = type(problem)(**{**problem.options, **own["options"]})
+    declaration = problem.model(frozenset(), catalogs).declaration
+    one = Applicant(problem.name, problem.title or problem.name, own, problem, declaration)
+    shared = {n: v for n, v in sheet["options"].items() if n not in problem.options}
+    if shared and all(n in one.declaration.options for n in shared):
+        one.problem = type(problem)(**{**shared, **problem.options})
+        try:
+            one.declaration = one.problem.model(frozenset(), catalogs).declaration
+        except InputError as error:
+            one.problem = problem
+            one.misfits.append(f"refuses an option ({error})")
+    return one
+
+
+def _tell_apart(found: Sequence[Applicant]) -> None:
+    """Give numbers to families that stand there twice, with other options for instance."""
+    for label in {one.label for one in found}:
+        same = [one for one in found if one.label == label]
+        for number, one in enumerate(same[1:], start=2):
+            one.label = f"{label}_{number}"
+
+
+def _check_names(found: Sequence[Applicant], sheet: Sheet) -> None:
+    """Refuse names that mean nothing to any of the families."""
+    for key in KEYS:
+        known = {n for one in found for n in _known(one, key)}
+        for name in sheet[key]:
+            if name in known:
+                continue
+            expected = f"a name that one of the families knows{_hint(name, known)}"
+            if key in ("requirements", "robust") and any(name in one.declaration.names() for one in found):
+                expected = (
+                    "a requirement that families understand in common, by name; what concerns one family alone is "
+                    "stated under that family"
+                )
+            raise InputError(key, name, expected, (key, name))
+
+
+def _hint(word: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
+    return f" (did you mean {' or '.join(close)}?)" if close else ""
+
+
+def _check_own(found: Sequence[Applicant], sheet: Sheet) -> None:
+    """Refuse names under a family that mean nothing to it, and blocks of what scatters that mean nothing to any."""
+    for one in found:
+        names = one.declaration.names()
+        for key in ("requirements", "limits", "fix", "parts", "robust"):
+            # Under a family what concerns it alone may stand as well, by symbols too.
+            known = {*_known(one, key), *(one.declaration.requirements if key in ("requirements", "robust") else ())}
+            for word in one.own[key]:
+                name = uncertainty.name_in_block(word, names) if key == "robust" else names.get(word, word)
+                if name not in known:
+                    expected = f"a name that {one.label} knows{_hint(word, known)}"
+                    raise InputError(f"family {one.label}: {key}", word, expected)
+        if one.own["robust"]:
+            uncertainty.read_remaining(one.robust(sheet), f"family {one.label}: robust")
+
+
+def _known(one: Applicant, key: str) -> Iterable[str]:
+    d = one.declaration
+    quantities = {name for name, _, _ in d.quantities()}
+    understands = [n for n in one.problem.understands if n in d.requirements]
+    columns = {f"{slot}.{column}" for slot, part in d.slots.items() for column in part.columns}
+    return {
+        "options": d.options,
+        "requirements": understands,
+        "limits": quantities,
+        "fix": quantities | set(d.choices) | set(d.slots),
+        "parts": d.slots,
+        "robust": {*uncertainty.KEYS, *understands, *d.variables, *columns},
+    }[key]
+
+
+def _check_tables(found: Sequence[Applicant], catalogs: Catalogs) -> None:
+    parts = [part for one in found for d in [one.declaration] for part in [*d.slots.values(), *d.rows.values()]]
+    used = {part.table for part in parts}
+    for name in catalogs.added:
+        if name not in used:
+            right = f"a table that one of the families uses ({', '.join(sorted(used))})"
+            raise InputError("catalogs", name, right, ("catalogs", name))
+
+
+def _misfits(one: Applicant, sheet: Sheet) -> list[str]:
+    """Return why a family cannot serve a sheet, as predicates."""
+    reasons, d = [], one.declaration
+    words = {
+        "requirements": "does not understand",
+        "limits": "has no quantity",
+        "fix": "has nothing to fix as",
+        "parts": "has no slot",
+        "options": "has no option",
+        "robust": "has nothing that scatters as",
+    }
+    for key, lacks in words.items():
+        strange = [n for n in sheet[key] if n not in _known(one, key)]
+        if strange:
+            reasons.append(f"{lacks} {', '.join(strange)}")
+    names = d.names()
+    given = {*sheet["requirements"], *(names.get(n, n) for n in one.own["requirements"])}
+    lacking = [r.name for r in d.requirements.values() if r.default is None and not r.optional and r.name not in given]
+    if lacking:
+        reasons.append(f"needs {', '.join(lacking)}")
+    return reasons
+
+
+# ---- what they are compared by --------------------------------------------------------------------------------------
+
+
+def common_objectives(found: Sequence[Applicant], asked: Any) -> dict[str, str]:
+    """Return the objectives that all families that can serve have, and note who lacks one that was asked for.
+
+    Nothing asked: what all offer; those that are defaults in most families come first, two at least if there are.
+
+    Raises
+    ------
+    InputError
+        When there is none, or a name or sense is not one.
+    """
+    serving = [one for one in found if not one.misfits]
+    if asked is None:
+        return _offered_by_all(serving)
+    if isinstance(asked, str):
+        asked = [asked]
+    pairs = list(asked.items()) if isinstance(asked, Mapping) else [(name, None) for name in asked]
+    if not pairs:
+        raise InputError("objectives", None, "at least one", ("objectives",))
+    result: dict[str, str] = {}
+    for name, sense in pairs:
+        if name in result:
+            raise InputError("objectives", name, "each objective once", ("objectives", str(name)))
+        result[name] = _sense(serving, str(name), sense)
+    for one in serving:
+        has = _units(one)
+        lacking = [name for name in result if name not in has]
+        if lacking:
+            one.misfits.append(f"has no quantity {', '.join(lacking)} to be compared by")
+    return result
+
+
+def _units(one: Applicant) -> dict[str, str]:
+    return {name: unit for name, unit, _ in one.declaration.quantities()}
+
+
+def _sense(serving: Sequence[Applicant], name: str, sense: Any) -> str:
+    has = [one for one in serving if name in _units(one)]
+    if not has:
+        known = {n for one in serving for n in _units(one)}
+        close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
+        hint = f"; did you mean {' or '.join(close)}?" if close else ""
+        raise InputError("objectives", name, f"a quantity of the families, by name{hint}", ("objectives", name))
+    kinds = {parse_unit(_units(one)[name]).kind for one in has}
+    if len(kinds) > 1:
+        right = "a quantity that is measured alike in all families"
+        raise InputError("objectives", name, right, ("objectives", name))
+    if sense is None:
+        offered = {one.declaration.objectives[name].sense for one in has if name in one.declaration.objectives}
+        if len(offered) != 1:
+            right = f"a sense, for example {{{name}: min}}"
+            raise InputError(f"objectives: {name}", None, right, ("objectives", name))
+        return offered.pop()
+    if sense not in ("min", "max"):
+        raise InputError(f"objectives: {name}", sense, "min or max", ("objectives", name))
+    return str(sense)
+
+
+def _offered_by_all(serving: Sequence[Applicant]) -> dict[str, str]:
+    first, *others = [one.declaration for one in serving]
+    votes: dict[str, int] = {}
+    for name, objective in first.objectives.items():
+        same = [d.objectives.get(name) for d in others]
+        units = {parse_unit(_units(one)[name]).kind for one in serving if name in _units(one)}
+        if all(o is not None and o.sense == objective.sense for o in same) and len(units) == 1:
+            votes[name] = objective.default + sum(o.default for o in same if o is not None)
+    if not votes:
+        names = ", ".join(one.label for one in serving)
+        raise InputError(
+            "objectives", None, f"quantities that {names} have in common, as they offer no objective in common"
+        )
+    ranked = sorted(votes, key=lambda n: -votes[n])
+    defaults = [n for n in ranked if votes[n] == len(serving)]
+    chosen = ranked[: max(LEAST_OBJECTIVES, min(len(defaults), MOST_OBJECTIVES))]
+    return {name: first.objectives[name].sense for name in chosen}

@@ -1,0 +1,1 @@
+"""Why nothing is feasible, and the ways out."""

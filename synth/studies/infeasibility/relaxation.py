@@ -1,0 +1,146 @@
+"""A question of which requirements, limits or part columns give way, by an amount that the search decides.
+
+The unknown ``relaxation`` s is the amount, as the logarithm of a factor: what gives way upwards is multiplied by
+exp(s), downwards by exp(-s).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.analysis.fired_guards import wanted
+from synth.declaration import Limit, Objective, VariableRecord
+from synth.feasibility import SMALLEST
+from synth.model.constraint import Constraint
+from synth.model.model import Model
+from synth.model.problem import DesignProblem
+from synth.model.slot_comparison import SlotComparison
+from synth.question.instance import Instance
+from synth.special import expanded
+from synth.tables.catalogs import Catalogs
+
+AMOUNT = "relaxation"
+MOST = 3.0  # of the amount: a factor of twenty
+REQUIREMENT, LIMIT, COLUMN = "requirement", "limit", "column"
+
+
+class Relaxed(DesignProblem):
+    """A question in which something gives way, and of which only some limits are kept.
+
+    Parameters
+    ----------
+    instance : Instance
+        The question.
+    own : sequence of Constraint
+        The user's own limits on quantities, which become limits like those of the family.
+    give : mapping
+        (kind, name) of a requirement, limit or part column (``slot.column``) -> 1 or -1, upwards or downwards.
+    kept : collection of str
+        The limits that count; guards always do.
+    rooms : mapping, optional
+        Requirement -> the largest amount that its declared range allows, where others may move on.
+    free : collection of str
+        Slots whose rules do not count.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        own: Sequence[Constraint],
+        give: Mapping[tuple[str, str], float],
+        kept: Collection[str],
+        rooms: Mapping[str, float] | None = None,
+        free: Collection[str] = (),
+    ) -> None:
+        self.name = f"{instance.problem.name} (relaxed)"
+        self.title = instance.problem.title
+        super().__init__(**instance.problem.options)
+        self._instance, self._own, self._give, self._kept, self._rooms = instance, own, give, kept, rooms or {}
+        self._free = free
+        self._model = self._traced()
+
+    def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
+        """Return the relaxed model; there is one, for the requirements, tables and comparisons of the question."""
+        return self._model
+
+    def _traced(self) -> Model:
+        original = self._instance.model
+        source = original.declaration
+        amount = VariableRecord(
+            AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
+        )
+        before, after = self._moved_inputs(amount.sx)
+        negative = {x.name for x in self._own if x.bound < 0}
+
+        def moved(expression: Any) -> Any:
+            return ca.substitute([ca.SX(expression)], before, after)[0] if before else expression
+
+        def loosened(limit: Limit) -> Limit:
+            sign = self._give.get((LIMIT, limit.name))
+            if sign is None:
+                return limit
+            # A negative bound that is to be less strict moves to the other side of a factor.
+            sign = -sign if limit.name in negative else sign
+            return replace(limit, limit=limit.limit * np.exp(sign * amount.sx))
+
+        target = copy.copy(source)
+        target.problem = self.name
+        target.derived = {name: replace(q, sx=moved(q.sx)) for name, q in source.derived.items()}
+        quantities = {**original.quantity_sx, **{name: q.sx for name, q in target.derived.items()}}
+        limits = [replace(x, value=moved(x.value), limit=moved(x.limit)) for x in source.limits.values()]
+        limits += [x.declared(quantities[x.quantity]) for x in self._own]
+        target.limits = {x.name: loosened(x) for x in limits if x.guard or x.name in self._kept}
+        # What is refused for a requirement that moves is refused where it has moved to: that is a limit.
+        target.refusals = []
+        own = len(source.refusals) - len(self._instance.compared)
+        for refusal in source.refusals[:own]:
+            when = moved(expanded(refusal.when, original.calls))
+            if not any(str(s) == AMOUNT for s in ca.symvar(when)):
+                target.refusals.append(refusal)
+                continue
+            sides = [(w.smaller, w.larger) for w in wanted(refusal.when) or ()] or [(refusal.when, 0.5)]
+            for k, pair in enumerate(sides):
+                name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
+                value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
+                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", value, bound, False, SMALLEST)
+        # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
+        rules = zip(self._instance.compared, source.refusals[own:], strict=True)
+        target.refusals += [refusal for rule, refusal in rules if rule.slot not in self._free]
+        target.variables = {**source.variables, AMOUNT: amount}
+        target.objectives = {AMOUNT: Objective(AMOUNT, "min", True), **source.objectives}
+        target.advices = []
+        target._symbols = {**source.names(), AMOUNT: AMOUNT}
+        calls = [replace(c, arguments=tuple(moved(a) for a in c.arguments)) for c in original.calls]
+        return Model(self.name, target, calls)
+
+    def _moved_inputs(self, amount: Any) -> tuple[list[Any], list[Any]]:
+        """Return the symbols of requirements and columns that move, and what stands in their place.
+
+        A requirement at its default follows those that the default is made of.
+        """
+        d, calls = self._instance.model.declaration, self._instance.model.calls
+        before: list[Any] = []
+        after: list[Any] = []
+        for r in d.requirements.values():
+            sign = self._give.get((REQUIREMENT, r.name), 0.0)
+            value = r.sx
+            if before and r.sx is not None and r.name not in self._instance.given and isinstance(r.default, ca.SX):
+                value = ca.substitute([expanded(r.default, calls)], before, after)[0]
+            if sign or value is not r.sx:
+                before.append(r.sx)
+                room = self._rooms.get(r.name, MOST)
+                step = ca.fmin(amount, room) if room < MOST else amount
+                after.append(value * np.exp(sign * step) if sign else value)
+        for part in d.slots.values():
+            for key, column in part.columns.items():
+                sign = self._give.get((COLUMN, f"{part.slot}.{key}"), 0.0)
+                if sign:
+                    before.append(column.sx)
+                    after.append(column.sx * np.exp(sign * amount))
+        return before, after

@@ -1,0 +1,510 @@
+"""Designs of other parts, counts or choices that are nearly as good as a chosen one.
+
+Boxes of everything that keeps within so many per cent of the chosen design are tightened and split until every
+combination is shown to hold such a design or shown to hold none: the tree of the search with fixed caps. Of those that
+do, a few that differ most are made as good as their parts allow.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from synth.analysis.designs import make_design, part_row
+from synth.analysis.restate import question_of
+from synth.deadline import Stopped, until
+from synth.errors import InputError, whole_number
+from synth.feasibility import Status
+from synth.files import csv_text
+from synth.input_limits import INPUT_LIMITS
+from synth.nlp.batch import Tasks
+from synth.output_folder import NEAR_EQUALS, save_result
+from synth.question.instance import Instance
+from synth.question.objectives import with_ties
+from synth.question.settings import Progress, SearchSettings, check_progress
+from synth.results import Design, ParetoFront, design_columns, design_row
+from synth.search.archive import Archive, Candidate
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import cover
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.polishing import settle_discrete, settle_variables
+from synth.search.primal_heuristics import Seeker, roundings
+from synth.search.pruning import Cover
+from synth.study_limits import NEAR, NearLimits
+from synth.units import parse_quantity
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WIDEST = 0.5
+
+
+@dataclass(frozen=True)
+class NearEquals:
+    """Designs of other parts, counts or choices within so many per cent of a chosen one.
+
+    ``found`` counts all such combinations; ``complete`` tells that no further one exists, ``undecided`` how many could
+    be neither shown nor excluded (None: the enumeration ended before all were looked at). ``changes`` holds, per
+    design, the relative change of every objective against the chosen design, ``differences`` what is other than there.
+    """
+
+    reference: Design
+    designs: list[Design]
+    within: float
+    found: int
+    complete: bool
+    undecided: int | None
+    changes: list[dict[str, float]]
+    differences: list[tuple[str, ...]]
+    statistics: Mapping[str, Any]
+    interrupted: str = ""
+
+    def sentence(self) -> str:
+        """Return how many there are, and how far that is certain."""
+        percent = f"{100 * self.within:.3g} %"
+        number = f"{self.found:,}".replace(",", " ")
+        if self.complete:
+            those = "1 other combination comes" if self.found == 1 else f"{number} other combinations come"
+            if not self.found:
+                return f"proven: no other combination of parts, counts and choices comes within {percent}"
+            return f"{those} within {percent}; no further one does (proven)"
+        open_ones = "" if not self.undecided else f"; {self.undecided} more could not be decided"
+        return f"at least {number} other combinations come within {percent}{open_ones}"
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per design, the chosen one first, with units in the headers."""
+        import pandas as pd  # costly to import; most runs write CSV only
+
+        columns, rows = self._table()
+        return pd.DataFrame(rows, columns=columns)
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        told = {
+            "family": self.reference.frame.family,
+            "within": self.within,
+            "found": self.found,
+            "complete": self.complete,
+            "undecided": self.undecided,
+            "interrupted": self.interrupted,
+            "sentence": self.sentence(),
+            "statistics": dict(self.statistics),
+        }
+        found = {"near_equals.csv": csv_text(*self._table()), "near_equals.json": json.dumps(told, indent=1) + "\n"}
+        for number, design in enumerate([self.reference, *self.designs]):
+            found[f"design_{number:02d}.yaml"] = design.yaml()
+        return found
+
+    def save(self, folder: str | Path) -> Path:
+        """Write near_equals.csv, near_equals.json and design_00.yaml (the chosen one), 01 ..; return the folder.
+
+        What was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
+        """
+        return save_result(folder, self.files(), NEAR_EQUALS, bool(self.interrupted))
+
+    def _table(self) -> tuple[list[str], list[list[Any]]]:
+        objectives = list(self.reference.frame.objectives)
+        columns = ["number", "differs in", "differences", *(f"change: {n} [%]" for n in objectives)]
+        own, frame = self.reference, self.reference.frame
+        columns += design_columns(frame, own.choices, own.parts)
+        rows: list[list[Any]] = [[0, 0, "the chosen design", *(0.0 for _ in objectives), *design_row(frame, own)]]
+        for number, (design, change, other) in enumerate(
+            zip(self.designs, self.changes, self.differences, strict=True), start=1
+        ):
+            moved = [100 * change[n] if math.isfinite(change[n]) else None for n in objectives]
+            rows.append([number, len(other), "; ".join(other), *moved, *design_row(frame, design)])
+        return columns, rows
+
+
+def near_equals(
+    front: ParetoFront,
+    design: int | Design,
+    within: Any = "2 %",
+    count: int = 5,
+    *,
+    problem: Any = None,
+    catalogs: Any = None,
+    seed: int = 0,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+) -> NearEquals:
+    """Find designs of other parts, counts or choices that are nearly as good as a chosen one.
+
+    Parameters
+    ----------
+    front : ParetoFront
+        From ``synthesize`` or ``load_front``: it says what was asked for.
+    design : int or Design
+        The rank of one of its designs, or any design of the same question.
+    within : text or float
+        By how much every chosen objective may be worse, "2 %" or 0.02; being better is no fault. An objective that is
+        0 in the chosen design is measured by its range on the front.
+    count : int
+        At most so many designs, as different from the chosen one and from each other as possible.
+    problem, catalogs : optional
+        As for ``ParetoFront.verify``: for a loaded front of a problem, or with tables, of one's own.
+    seed : int
+        Of all random choices.
+    progress : callable, optional
+        Called with a mapping: stage, done, combinations, incumbents, message.
+    time_limit : float, optional
+        Seconds after which what is found is returned.
+
+    Returns
+    -------
+    NearEquals
+
+    Raises
+    ------
+    InputError
+        When the design is not one of the question, or a number is not of its kind.
+    """
+    settings = SearchSettings(seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    reference = _chosen(front, design)
+    share = _share(within)
+    whole_number(count, "count", INPUT_LIMITS.listed, path=("count",))
+    instance = question_of(front, problem, catalogs)
+    search = _Enumeration(instance, reference, front, share, settings, progress)
+    return search.run(int(count))
+
+
+def _chosen(front: ParetoFront, design: Any) -> Design:
+    if isinstance(design, Design):
+        if design.frame.family != front.frame.family:
+            raise InputError("design", design.frame.family, f"a design of {front.frame.family}, as the front is")
+        return design
+    ranks = {d.rank: d for d in front.designs}
+    if not front.designs:
+        raise InputError("front", "no designs", "a front with designs")
+    if isinstance(design, bool) or design not in ranks:
+        raise InputError("design", design, f"a rank from 1 to {len(front.designs)}, or a Design")
+    return ranks[design]
+
+
+def _share(within: Any) -> float:
+    share = parse_quantity(within, "-", "within")
+    if not 0 < share <= WIDEST:
+        raise InputError("within", within, f"more than 0 and at most {100 * WIDEST:g} %, for example '2 %'")
+    return share
+
+
+class _Near:
+    """The purpose of the tree: every combination that holds a design within the caps.
+
+    ``found`` holds, per combination, the design that is least worse than the chosen one, and by how much.
+    """
+
+    proves = False
+
+    def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray, tie: float) -> None:
+        self.columns, self.tie = list(range(traded)), tie
+        self.slack, self.plain = sizes, caps
+        self.own = own
+        self.found: dict[int, tuple[float, Candidate]] = {}
+
+    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return the caps, the same for every box."""
+        return np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
+
+    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+        """Return how far within the caps a box could be."""
+        with np.errstate(all="ignore"):
+            distance = (self.plain[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
+        room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
+        return room
+
+    def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
+        """Take feasible designs; return how many combinations are new."""
+        kept = np.flatnonzero(np.all(phi[:, self.columns] <= self.plain[self.columns] + self.tie, axis=1))
+        worse = self.worse(phi[kept])
+        order = np.lexsort((worse, combinations[kept]))
+        _, first = np.unique(combinations[kept][order], return_index=True)
+        new = 0
+        for row in order[first]:
+            k, combination = kept[row], int(combinations[kept[row]])
+            known = self.found.get(combination)
+            new += known is None
+            if known is None or worse[row] < known[0]:
+                self.found[combination] = float(worse[row]), Candidate(combination, variables[k].copy(), phi[k])
+        return new
+
+    def worse(self, phi: np.ndarray) -> np.ndarray:
+        """Return by how much designs are worse than the chosen one, as a share of what is allowed."""
+        worse: np.ndarray = ((phi[:, self.columns] - self.own[self.columns]) / self.slack).max(axis=1)
+        return worse
+
+    def leading(self, archive: Archive) -> list[Candidate]:
+        """Return nothing: no design here is better than another."""
+        return []
+
+
+class _Enumeration:
+    """One enumeration: the combinations, the choice among them, and the designs made of it."""
+
+    def __init__(
+        self,
+        instance: Instance,
+        reference: Design,
+        front: ParetoFront,
+        share: float,
+        settings: SearchSettings,
+        progress: Progress | None,
+        limits: NearLimits = NEAR,
+    ) -> None:
+        self.started, self.limits = time.monotonic(), limits
+        self.instance, self.reference, self.share = instance, reference, share
+        self.chosen = dict(front.frame.objectives)
+        self.m = len(self.chosen)
+        self.own = instance.combinations.number(reference)
+        self.form = Formulation(instance, with_ties(instance.model, self.chosen), self.m)
+        self.rng = np.random.default_rng(settings.seed)
+        self.progress, self.stage = progress, "enumerate"
+        limit = settings.time_limit
+        self.clock = Clock(math.inf if limit is None else self.started + limit, self._working)
+        self.near = self._purpose(front)
+        self.tried: set[int] = set()
+        self.undecided: set[int] = set()
+        self.looked = 0
+
+    def _purpose(self, front: ParetoFront) -> _Near:
+        form, m = self.form, self.m
+        signs = np.array([g.sign for g in form.goals[:m]], dtype=float)
+        values = np.array([[d.values[n] for n in self.chosen] for d in [self.reference, *front.designs]]) * signs
+        if not np.isfinite(values[0]).all():
+            raise InputError("design", self.reference.rank, "a design whose objectives all exist")
+        span = np.ptp(values, axis=0)
+        size = np.where(values[0] != 0, np.abs(values[0]), span)
+        own = np.full(len(form.goals), np.inf)
+        own[:m] = form.phi_of(values[:1])[0]
+        slack = np.where(form.log_goals[:m], np.log1p(self.share), self.share * size / form.goal_scales[:m])
+        caps = np.full(len(form.goals), np.inf)
+        caps[:m] = own[:m] + slack
+        tie = form.tuning.tolerances.tie
+        return _Near(m, own, caps, np.maximum(slack, tie), tie)
+
+    def _working(self, open_boxes: int) -> None:
+        if self.progress is not None:
+            self.progress({
+                "stage": self.stage,
+                "done": 0.0 if self.stage == "enumerate" else 1.0,
+                "combinations": self.instance.combinations.count,
+                "incumbents": len(self.near.found),
+                "message": f"{open_boxes} boxes open" if open_boxes else "",
+            })  # fmt: skip
+
+    # -- the run -------------------------------------------------------------------------------
+
+    def run(self, count: int) -> NearEquals:
+        interrupted, complete = "", False
+        try:
+            with until(self.clock.deadline):
+                complete = self._enumerate()
+        except Stopped as stop:
+            interrupted = stop.reason
+        except KeyboardInterrupt:
+            interrupted = "interrupted"
+        self.stage = "settle"
+        members = self._members()
+        picked = self._spread(members, count)
+        designs: list[Candidate] = []
+        for combination in picked:
+            try:
+                designs.append(self._settled(combination, members[combination][1], hurried=bool(interrupted)))
+            except (Stopped, KeyboardInterrupt) as stop:
+                interrupted = interrupted or (stop.reason if isinstance(stop, Stopped) else "interrupted")
+                designs.append(members[combination][1])
+        return self._told(designs, len(members), complete and not interrupted, interrupted)
+
+    def _enumerate(self) -> bool:
+        """Look at everything; tell whether every combination is decided."""
+        form, near, batch_size = self.form, self.near, self.limits.batch
+        seeker = Seeker(form, near, self.rng, every=False)
+        caps = near.plain[: form.bounded] + near.tie
+        stack = [form.lean(form.root())]
+        while stack:
+            boxes = stack.pop()
+            batch, rest = boxes.take(slice(0, batch_size)), boxes.take(slice(batch_size, None))
+            stack += [rest] if len(rest) else []
+            self.clock.check([batch, *stack])
+            if self.looked > self.limits.boxes or len(near.found) > self.limits.most:
+                return False
+            self.looked += len(batch)
+            batch = form.contract(batch, caps)
+            batch = self._open(batch.take(near.room(form.phi_of(batch.bounds)) > 0))
+            if not len(batch):
+                continue
+            self._try(batch)
+            batch = self._open(batch)
+            batch, small = form.split(batch)
+            if len(small):
+                left = self._open(seeker.settle(small))
+                self.undecided.update(form.cells.all_members(left.cell, self.limits.most).tolist())
+            if len(batch):
+                stack.append(batch)
+        return not self.undecided - set(near.found)
+
+    def _open(self, boxes: Boxes) -> Boxes:
+        """Return the boxes that are not of a combination that is known to belong."""
+        single = np.flatnonzero(self.form.cells.single(boxes.cell))
+        keep = np.ones(len(boxes), dtype=bool)
+        numbers = self.form.combination(boxes.take(single))
+        keep[single] = [int(c) not in self.near.found for c in numbers]
+        return boxes.take(keep)
+
+    def _try(self, boxes: Boxes) -> None:
+        """Solve, once for each combination that stands alone in a box, for the design that is least worse."""
+        form = self.form
+        numbers = form.combination(boxes)
+        rows = [k for k in np.flatnonzero(form.cells.single(boxes.cell)) if int(numbers[k]) not in self.tried]
+        _, first = np.unique(numbers[rows], return_index=True)
+        rows = [rows[int(k)] for k in np.sort(first)]
+        self.tried.update(int(numbers[k]) for k in rows)
+        for start in range(0, len(rows), self.limits.problems):
+            some = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
+            self._solve(numbers[some], form.inside(boxes.take(some), 0.5))
+        # Boxes of combinations tried before have become smaller since.
+        for share in (form.tuning.heuristics.seeker.inside, 0.5):
+            points = form.makeable(form.inside(boxes, share))
+            self._offer(points, numbers)
+
+    def _solve(self, combinations: np.ndarray, start: np.ndarray) -> None:
+        form, near, m = self.form, self.near, self.m
+        if not form.n:
+            self._offer(start, combinations)
+            return
+        count, goals = len(combinations), len(form.goals)
+        slopes, caps = np.zeros((count, goals)), np.full((count, goals), np.inf)
+        slopes[:, :m], caps[:, :m] = near.slack / near.slack.max(), near.own[:m]
+        tasks = Tasks(np.zeros((count, goals)), slopes, caps, form.goal_scales, t_weight=1.0)
+        answer = form.solve_many(tasks, combinations, start)
+        if not form.gridded.any():
+            self._offer(answer.variables, combinations)
+            return
+        phi = answer.phi[:, :m]
+        within = np.all(phi <= near.plain[:m] + near.tie, axis=1)
+        good = np.flatnonzero((answer.violation <= form.tuning.nlp.missed) & within)
+        for k in good:
+            self._round(int(combinations[k]), answer.variables[[k]])
+
+    def _round(self, combination: int, variables: np.ndarray) -> None:
+        """Try makeable points around a continuous optimum."""
+        form, near = self.form, self.near
+        low, high, _ = roundings(form, variables)
+        if len(low) > self.limits.rounded:
+            chosen = self.rng.choice(len(low), self.limits.rounded, replace=False)
+            low, high = low[chosen], high[chosen]
+        cell = form.whole(combination).cell
+        whole = form.leaves(np.full(len(low), combination), low, high)
+        around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
+        around = form.contract(form.lean(around), near.plain[: form.bounded] + near.tie)
+        for share in (form.tuning.heuristics.seeker.inside, 0.5):
+            points = form.makeable(form.inside(around, share))
+            self._offer(points, form.combination(around))
+
+    def _offer(self, points: np.ndarray, combinations: np.ndarray) -> None:
+        rows, phi = self.form.feasible_rows(points, combinations)
+        self.near.take(combinations[rows], points[rows], phi[rows])
+
+    # -- the choice ----------------------------------------------------------------------------
+
+    def _members(self) -> dict[int, tuple[float, Candidate]]:
+        """Return all combinations that belong, without the chosen one: rows that are equal in all that counts too."""
+        form, result = self.form, dict[int, tuple[float, Candidate]]()
+        for combination, (worse, candidate) in self.near.found.items():
+            for other in form.cells.members(form.whole(combination).cell[0], self.limits.most):
+                result[int(other)] = worse, replace(candidate, combination=int(other))
+        result.pop(self.own, None)
+        return dict(sorted(result.items()))
+
+    def _spread(self, members: Mapping[int, tuple[float, Candidate]], count: int) -> list[int]:
+        """Return combinations as different as possible: always the one that differs in most from those taken."""
+        numbers = np.array(list(members), dtype=np.int64)
+        codec = self.instance.combinations
+        digits = np.stack(codec.digits(numbers), axis=1) if codec.radix else np.zeros((len(numbers), 0))
+        own = np.array([int(d[0]) for d in codec.digits(np.array([self.own]))])
+        worse = np.array([w for w, _ in members.values()])
+        least = np.sum(digits != own, axis=1)
+        total = np.zeros(len(numbers), dtype=np.int64)
+        taken: list[int] = []
+        while len(taken) < min(count, len(numbers)):
+            open_ones = np.setdiff1d(np.arange(len(numbers)), taken)
+            order = np.lexsort((worse[open_ones], -total[open_ones], -least[open_ones]))
+            best = int(open_ones[order[0]])
+            taken.append(best)
+            apart = np.sum(digits != digits[best], axis=1)
+            least, total = np.minimum(least, apart), total + apart
+        return [int(numbers[k]) for k in taken]
+
+    def _settled(self, combination: int, known: Candidate, hurried: bool) -> Candidate:
+        """Return the design of a combination that is least worse, as good as its parts allow, ties settled."""
+        form, near, m = self.form, self.near, self.m
+        if hurried:
+            return known
+        gap = self.limits.settling_gap
+        slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.slack)
+        caps = near.plain.copy()
+        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
+        purpose = Cover(range(m), slack, caps, form.new_archive(range(m)))
+        purpose.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
+        cover(form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, self.limits.settling_boxes)
+        worst = near.worse(purpose.known.phi)
+        best = purpose.known[int(np.lexsort((*purpose.known.phi.T[::-1], np.round(worst, 9)))[0])]
+        (better,) = settle_discrete(form, [best], m, range(len(form.goals)), parts=False)
+        (exact,) = settle_variables(form, [better], m)
+        return exact
+
+    # -- the report ----------------------------------------------------------------------------
+
+    def _told(self, candidates: Sequence[Candidate], found: int, complete: bool, interrupted: str) -> NearEquals:
+        form = self.form
+        points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
+        result = form.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
+        designs, changes, differences = [], [], []
+        for k, c in enumerate(candidates):
+            parts, _, choices = self.instance.combinations.describe(c.combination)
+            rows = {slot: part_row(table, row) for slot, (table, row) in parts.items()}
+            design = make_design(
+                self.instance, self.reference.frame, c.variables, result, k, rows, choices,
+                status=Status.FEASIBLE, rank=k + 1,
+            )  # fmt: skip
+            designs.append(design)
+            changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})
+            differences.append(self._differences(c.combination))
+        left = (
+            None
+            if self.looked > self.limits.boxes or found > self.limits.most or interrupted
+            else len(self.undecided - set(self.near.found))
+        )
+        statistics = {
+            "combinations": self.instance.combinations.count,
+            "boxes": form.contracted,
+            "nlp_solves": form.nlp_solves,
+            "seconds": time.monotonic() - self.started,
+        }
+        return NearEquals(
+            self.reference, designs, self.share, found, complete, left, changes, differences, statistics, interrupted
+        )
+
+    def _differences(self, combination: int) -> tuple[str, ...]:
+        """Return what is other than in the chosen design."""
+        own, its = self.instance.combinations.describe(self.own), self.instance.combinations.describe(combination)
+        words = []
+        for slot, (table, row) in its[0].items():
+            if own[0][slot][1] != row:
+                words.append(f"{slot} {table.designations[row]}")
+        words += [f"{n} {v:g}" for n, v in its[1].items() if own[1][n] != v]
+        words += [f"{n} {v}" for n, v in its[2].items() if own[2][n] != v]
+        return tuple(words)
+
+
+def _change(value: float, reference: float) -> float:
+    return (value - reference) / abs(reference) if reference else math.nan if value else 0.0

@@ -1,0 +1,1 @@
+"""How the best designs move with what is asked."""

@@ -1,0 +1,423 @@
+"""Break points: where, between two steps of a study, the best parts or counts change, or feasibility begins or ends.
+
+Where the best designs of two steps differ, their parts alone tell where the one becomes better than the other. The ends
+of that narrow range are then searched over all parts and proven; what a third design spoils is looked for again. Many
+intervals are looked into at a time, so that what they ask can be answered together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+
+from synth.deadline import Stopped
+from synth.errors import InputError
+from synth.parametric.joint_question import alike, different, groups_of
+from synth.parametric.joint_search import TogetherSearch, Wider
+from synth.pareto import rank
+from synth.results import Design, ParetoFront
+from synth.search.question import Question
+from synth.studies.whatif.steps import Steps
+from synth.studies.whatif.study import Break, Composition, Step, best_design
+from synth.studies.whatif.vary import Value
+from synth.study_limits import BREAKS, BreakLimits
+
+UNPROVEN = "the search on one side did not finish"
+NOT_ROBUST = "the design on one side does not keep all limits over the whole range"
+INTERRUPTED = "interrupted"
+
+Left = Callable[[], float | None]
+Shown = Callable[[Mapping[str, Any]], None] | None
+
+
+class Kept(Protocol):
+    """Where results are kept."""
+
+    def value(self, key: str, fingerprint: str) -> Any:
+        """Return what is kept under a key for a question, or None."""
+
+    def keep(self, key: str, fingerprint: str, value: Any) -> None:
+        """Keep something for a question."""
+
+
+def find_breaks(
+    steps: Steps,
+    along: int,
+    answered: Sequence[Step],
+    found: list[Break],
+    kept: Kept,
+    left: Left,
+    workers: int,
+    shown: Shown,
+    limits: BreakLimits = BREAKS,
+) -> None:
+    """Find the break points of every objective between neighbouring steps.
+
+    Parameters
+    ----------
+    steps : Steps
+    along : int
+        The position of the number that is varied.
+    answered : list of Step
+        All steps, answered.
+    found : list of Break
+        Filled as breaks are found, some intervals at a time, so that they stay where time is over.
+    kept : Kept
+    left : callable
+        Returns the seconds left; raises Stopped.
+    workers : int
+    shown : callable, optional
+        Progress.
+    limits : BreakLimits
+    """
+    pairs = [(a, b) for a, b in _pairs(along, answered) if a.front is not None and b.front is not None]
+    for first in range(0, len(pairs), limits.at_once):
+        some = pairs[first : first + limits.at_once]
+        left()
+        if shown is not None:
+            says = f"{steps.stated(some[0][0].values)} to {steps.stated(some[-1][1].values)}"
+            shown({"stage": says, "done": first / len(pairs)})
+        known = [kept.value(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}") for a, b in some]
+        if all(entries is not None for entries in known):
+            found += [_read(entry) for entries in known for entry in entries]
+            continue
+        own = _Oracle(steps, along, left, workers, limits).breaks(some)
+        for (a, b), breaks in zip(some, own, strict=True):
+            kept.keep(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}", [asdict(x) for x in breaks])
+            found += breaks
+
+
+def _pairs(along: int, answered: Sequence[Step]) -> list[tuple[Step, Step]]:
+    """Return the steps that are neighbours along a number, the other value being the same."""
+    groups: dict[tuple[Value, ...], list[Step]] = {}
+    for step in answered:
+        groups.setdefault(_others(step, along), []).append(step)
+    result = []
+    for group in groups.values():
+        group.sort(key=lambda s: float(s.values[along]))  # type: ignore[arg-type]
+        result += list(pairwise(group))
+    return result
+
+
+def _others(step: Step, along: int) -> tuple[Value, ...]:
+    return tuple(v for k, v in enumerate(step.values) if k != along)
+
+
+def _objectives(*fronts: ParetoFront | None) -> dict[str, str]:
+    return {n: sense for front in fronts if front is not None for n, sense in front.frame.objectives.items()}
+
+
+def _read(entry: Mapping[str, Any]) -> Break:
+    """Return a break as it was kept."""
+    sides = [None if entry[k] is None else Composition(**entry[k]) for k in ("before", "after")]
+    others = tuple(tuple(v) if isinstance(v, list) else v for v in entry["others"])
+    return Break(**{**entry, "others": others, "before": sides[0], "after": sides[1]})
+
+
+@dataclass(frozen=True)
+class _Best:
+    """The best design at a value as far as a search went; None where nothing is feasible."""
+
+    design: Design | None
+    proven: bool
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """The best design in one objective at some values: over all parts, or with those of one design alone."""
+
+    objective: str
+    values: tuple[Value, ...]
+    alone: str = ""  # what the one design is made of, in words
+
+
+class _Oracle:
+    """Answers what is wanted to know of best designs, for many intervals at a time."""
+
+    def __init__(self, steps: Steps, along: int, left: Left, workers: int, limits: BreakLimits) -> None:
+        self.limits = limits
+        self.steps, self.along, self.left, self.workers = steps, along, left, workers
+        self.senses: dict[str, str] = {}
+        self.known: dict[_Wanted, _Best] = {}
+        self.made: dict[str, Design] = {}  # a design of each composition asked about alone
+        self.places: Iterable[tuple[Value, ...]] = ()  # the values at the steps
+        self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
+        self.moving = different([q.instance for q in steps.questions])
+        self.wider: dict[Any, Wider] = {}  # by what questions have in common
+
+    def breaks(self, pairs: Sequence[tuple[Step, Step]]) -> list[list[Break]]:
+        """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
+        found: list[list[Break]] = [[] for _ in pairs]
+        self.places = dict.fromkeys(step.values for pair in pairs for step in pair)
+        for a, b in pairs:
+            self.senses |= _objectives(a.front, b.front)
+        under_way = []
+        for (a, b), own in zip(pairs, found, strict=True):
+            for objective in _objectives(a.front, b.front):
+                for step in (a, b):
+                    design = best_design(step.front, objective)
+                    if design is not None:
+                        self.ideas.setdefault(objective, {}).setdefault(_words(design), design)
+                under_way.append(_Between(self, objective, a, b).search(own))
+        wanted = [next(search, None) for search in under_way]
+        while any(w is not None for w in wanted):
+            self._answer(dict.fromkeys(w for some in wanted for w in some or ()))
+            wanted = [None if w is None else next(search, None) for search, w in zip(under_way, wanted, strict=True)]
+        order = list(self.senses)
+        return [sorted(own, key=lambda b: order.index(b.objective)) for own in found]
+
+    def _answer(self, wanted: Iterable[_Wanted]) -> None:
+        """Search what is not known yet; what is alike is searched together."""
+        new = [w for w in wanted if w not in self.known]
+        posed: dict[tuple[str, tuple[Value, ...]], Question] = {}
+        for w in new:
+            place = w.objective, w.values
+            try:
+                posed[place] = posed.get(place) or self._question(w)
+            except InputError:
+                self.known[w] = _Best(None, True)  # refused: the family says that there is no such design
+        places = list(posed)
+        for group in groups_of(list(posed.values()), least=1):
+            position = {places[k]: number for number, k in enumerate(group)}
+            own = [w for w in new if (w.objective, w.values) in position]
+            ideas = list(self.ideas.get(own[0].objective, {}).values())
+            questions = [posed[places[k]] for k in group]
+            search = TogetherSearch(questions, self.workers, None, self.left(), ideas, self._wider(questions[0]))
+            self._together(search, own, [position[w.objective, w.values] for w in own])
+        for w in new:
+            if w not in self.known:
+                front = self._alone(w)
+                proven = front is None or front.certificate.kind == "global"
+                self._take(w, _Best(best_design(front, w.objective), proven))
+
+    def _wider(self, question: Question) -> Wider:
+        """Return what holds for all values between the steps, for questions like one."""
+        common = alike(question)
+        if common not in self.wider:
+            ends = [q for q in self._at_steps(next(iter(question.chosen))) if alike(q) == common]
+            self.wider[common] = Wider([question, *ends], self.moving)
+        return self.wider[common]
+
+    def _at_steps(self, objective: str) -> Iterator[Question]:
+        """Yield the questions for the best design in one objective at the steps."""
+        for values in self.places:
+            # What the family refuses has no design.
+            with suppress(InputError):
+                yield self._question(_Wanted(objective, values))
+
+    def _together(self, search: TogetherSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
+        """Take what can be answered together."""
+        best = [(w, k) for w, k in zip(wanted, positions, strict=True) if not w.alone]
+        if best:
+            for (w, _), (design, proven) in zip(best, search.best([k for _, k in best]), strict=True):
+                if proven:
+                    self._take(w, _Best(design, True))
+        alone = [(w, k) for w, k in zip(wanted, positions, strict=True) if w.alone]
+        for (w, _), (design, proven) in zip(
+            alone, search.best_with([(k, self.made[w.alone]) for w, k in alone]), strict=True
+        ):
+            if proven:
+                self.known[w] = _Best(design, True)
+
+    def _question(self, w: _Wanted, alone: bool = False) -> Question:
+        slots, pins = dict[str, list[str]](), dict[str, Any]()
+        if alone and w.alone:
+            made = Composition.of(self.made[w.alone], w.objective)
+            slots, pins = {slot: [word] for slot, word in made.parts.items()}, {**made.counts, **made.choices}
+        return self.steps.one_best(w.values, {w.objective: self.senses[w.objective]}, self.limits.gap, slots, pins)
+
+    def _alone(self, w: _Wanted) -> ParetoFront | None:
+        """Search what cannot be answered together with other things; None where the family refuses it."""
+        left = self.left()
+        longest = self.limits.seconds
+        seconds = longest if left is None else min(longest, left)
+        ideas = list(self.ideas.get(w.objective, {}).values())
+        try:
+            question = self._question(w, alone=True)
+        except InputError:
+            return None
+        front = question.within(seconds).answer(None, ideas, explained=False)
+        if front.interrupted == INTERRUPTED:
+            raise Stopped(front.interrupted)
+        if front.interrupted:
+            self.left()
+        return front
+
+    def _take(self, w: _Wanted, best: _Best) -> None:
+        self.known[w] = best
+        if best.design is not None and not w.alone:
+            self.ideas.setdefault(w.objective, {}).setdefault(_words(best.design), best.design)
+
+
+Asking = Generator[list[_Wanted], None, Any]  # a search that yields what it wants to know
+
+
+class _Between:
+    """The breaks of one objective between two steps."""
+
+    def __init__(self, oracle: _Oracle, objective: str, one: Step, two: Step) -> None:
+        self.oracle, self.objective, self.one, self.two = oracle, objective, one, two
+        self.sign = 1.0 if oracle.senses[objective] == "min" else -1.0
+        self.low, self.high = (float(s.values[oracle.along]) for s in (one, two))  # type: ignore[arg-type]
+
+    def search(self, found: list[Break]) -> Generator[list[_Wanted], None, None]:
+        """Find the breaks from the lower to the upper step."""
+        yield [self._wanted(self.low), self._wanted(self.high)]
+        place, holder, count = self.low, self._best(self.low).design, 0
+        while not (yield from self._holds(holder, self.high)):
+            if count == self.oracle.limits.most:
+                found[-1] = replace(found[-1], remark=f"more changes follow up to {self.high:g}")
+                return
+            low, high = yield from self._break(holder, place)
+            before, after = yield from self._sides(holder, low, high)
+            sides = self._best(low), self._best(high)
+            empty = [side for side in sides if side.design is None]
+            # An end of what is feasible is proven by the side that has no design: the other one has its design to show,
+            # which on the edge of the tolerance cannot be proven to be the best to the last digits.
+            proven = all(side.proven for side in (empty if len(empty) == 1 else sides))
+            remark = "" if proven else UNPROVEN
+            if not (self._stands(before, low) and self._stands(after, high)):
+                proven, remark = False, NOT_ROBUST
+            old, new = (None if d is None else Composition.of(d, self.objective) for d in (before, after))
+            others = _others(self.one, self.oracle.along)
+            found.append(Break(self.objective, others, low, high, old, new, proven, remark))
+            place, holder, count = high, after, count + 1
+
+    def _break(self, holder: Design | None, low: float) -> Asking:
+        """Return a narrow range at whose lower end a holder still holds, and at whose upper end it does not.
+
+        Where it lies is first told by what holder and rival can do alone; only its ends are searched over everything.
+        """
+        high, rival, guesses = self.high, self._best(self.high).design, 0
+        while high - low > self._narrow(low, high):
+            if guesses < self.oracle.limits.guesses:
+                first, last = yield from self._crossing(holder, rival, low, high)
+                guesses += 1
+            else:
+                first = last = 0.5 * (low + high)
+            yield [self._wanted(first), self._wanted(last)]
+            if first > low and not (yield from self._holds(holder, first)):
+                high, rival = first, self._best(first).design
+            elif last < high and (yield from self._holds(holder, last)):
+                low = last
+            else:
+                low, high = first, last
+        return low, high
+
+    def _narrow(self, low: float, high: float) -> float:
+        limits = self.oracle.limits
+        return max(limits.width * max(abs(low), abs(high)), limits.finest * (self.high - self.low))
+
+    def _crossing(self, holder: Design | None, rival: Design | None, low: float, high: float) -> Asking:
+        """Return a narrow range in which a rival becomes better than the holder, each alone."""
+        while high - low > self._narrow(low, high):
+            parts = self.oracle.limits.parts
+            inner = [low + (high - low) * k / parts for k in range(1, parts)]
+            yield [self._wanted(x, d) for x in inner for d in (holder, rival) if d is not None]
+            beaten = [self._beats(self._own(rival, x), self._own(holder, x)) for x in inner]
+            k = beaten.index(True) if True in beaten else len(inner)
+            low, high = [low, *inner][k], [*inner, high][k]
+        return low, high
+
+    def _sides(self, holder: Design | None, low: float, high: float) -> Asking:
+        """Return the designs on both sides of a break."""
+        before = self._best(low).design
+        if holder is not None and (before is None or _words(before) != _words(holder)):
+            yield [self._wanted(low, holder)]
+            before = self._own(holder, low)
+        return (before if holder is not None else None), self._best(high).design
+
+    def _wanted(self, value: float, alone: Design | None = None) -> _Wanted:
+        along, words = self.oracle.along, ""
+        if alone is not None:
+            words = _words(alone)
+            self.oracle.made.setdefault(words, alone)
+        values = tuple(value if k == along else v for k, v in enumerate(self.one.values))
+        return _Wanted(self.objective, values, words)
+
+    def _stands(self, design: Design | None, value: float) -> bool:
+        return design is None or self.oracle.steps.stands(self._wanted(value).values, design)
+
+    def _best(self, value: float) -> _Best:
+        return self.oracle.known[self._wanted(value)]
+
+    def _own(self, design: Design | None, value: float) -> Design | None:
+        return None if design is None else self.oracle.known[self._wanted(value, design)].design
+
+    def _beats(self, one: Design | None, other: Design | None) -> bool:
+        """Tell whether a design is better than another by more than counts as equal; none is worse than any."""
+        if one is None or other is None:
+            return one is not other and other is None
+        a, b = (self.sign * d.values[self.objective] for d in (one, other))
+        return a < b - self.oracle.limits.same * max(abs(a), abs(b))
+
+    def _holds(self, holder: Design | None, value: float) -> Asking:
+        """Tell whether a design's parts are (still) the best at a value, or as good as the best."""
+        yield [self._wanted(value)]
+        best = self._best(value).design
+        if holder is None or best is None:
+            return holder is best
+        if _words(best) == _words(holder):
+            return True
+        yield [self._wanted(value, holder)]
+        own = self._own(holder, value)
+        return own is not None and not self._beats(best, own)
+
+
+def _words(design: Design) -> str:
+    """Return in words what a design is made of."""
+    return repr(Composition.of(design, next(iter(design.values))).named)
+
+
+# ---- weights --------------------------------------------------------------------------------------------------------
+
+
+def weight_breaks(steps: Steps, along: int, answered: Sequence[Step], limits: BreakLimits = BREAKS) -> list[Break]:
+    """Return the weights at which another design comes first; the designs of a front do not depend on weights."""
+    result: list[Break] = []
+    for one, two in _pairs(along, answered):
+        front = one.front
+        if front is None or two.front is None or not front.designs:
+            continue
+        low, high = (float(s.values[along]) for s in (one, two))  # type: ignore[arg-type]
+        name, weights = steps.varied[along].name, front.settings["weights"]
+        _leaders(front, {**weights}, name, low, high, one, along, result, limits)
+    return result
+
+
+def _leaders(
+    front: ParetoFront,
+    weights: dict[str, float],
+    name: str,
+    low: float,
+    high: float,
+    step: Step,
+    along: int,
+    result: list[Break],
+    limits: BreakLimits,
+) -> None:
+    """Halve until the leading designs at both ends are the same or the ends meet."""
+    names = list(front.frame.objectives)
+    values = np.array([[d.values[n] for n in names] for d in front.designs])
+
+    def leader(weight: float) -> Design | None:
+        own = [weight if n == name else weights[n] for n in names]
+        return front.designs[rank(front.frame.objectives, values, own).order[0]] if any(own) else None
+
+    first, last = leader(low), leader(high)
+    if first is last or first is None or last is None:
+        return
+    if high - low <= max(limits.width * max(abs(low), abs(high)), limits.finest):
+        proven = front.certificate.kind == "global"
+        before, after = (Composition.of(d, names[0]) for d in (first, last))
+        others = _others(step, along)
+        result.append(Break("score", others, low, high, before, after, proven, "the leading design of the front"))
+        return
+    middle = 0.5 * (low + high)
+    _leaders(front, weights, name, low, middle, step, along, result, limits)
+    _leaders(front, weights, name, middle, high, step, along, result, limits)

@@ -1,0 +1,307 @@
+"""What-if studies: the same question at many values, each step helped by those before it, kept as it is finished."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from synth.deadline import Stopped, until
+from synth.model.problem import DesignProblem
+from synth.output_folder import claimed
+from synth.parametric.joint_fronts import joint_answers, joint_groups
+from synth.question.request import Request
+from synth.question.settings import Progress, SearchSettings, check_progress
+from synth.question.uncertainty import read_block
+from synth.results import ParetoFront
+from synth.results.assembly import ranked
+from synth.results.front_record import front_record
+from synth.results.loading import front_of_record
+from synth.results.provenance import hash_of, joined
+from synth.robust.rating import Rater
+from synth.robust.robust_front import robust_front
+from synth.search.question import Question
+from synth.studies.study_store import FORMAT, RECORD, StudyStore
+from synth.studies.whatif.break_points import find_breaks, weight_breaks
+from synth.studies.whatif.steps import Steps
+from synth.studies.whatif.study import Break, Step, Study
+from synth.tuning import TUNING, Tuning
+
+INTERRUPTED = "interrupted"
+POINTS = 3  # of every step: the best in each objective and, of two, one between
+
+
+def whatif(
+    p: str | type[DesignProblem] | DesignProblem,
+    requirements: Mapping[str, Any],
+    vary: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = POINTS,
+    catalogs: Any = None,
+    parts: Mapping[str, Any] | None = None,
+    limits: Mapping[str, Any] | None = None,
+    fix: Mapping[str, Any] | None = None,
+    weights: Mapping[str, float] | None = None,
+    gap: float = 1e-3,
+    grid: bool = True,
+    workers: int = 1,
+    seed: int = 0,
+    progress: Callable[[Mapping[str, Any]], None] | None = None,
+    time_limit: float | None = None,
+    breaks: bool = True,
+    folder: str | Path | None = None,
+    robust: Mapping[str, Any] | None = None,
+) -> Study:
+    """Answer a question at many values of a requirement, a limit, a weight, a part, an option or a scatter.
+
+    Parameters
+    ----------
+    p, requirements, objectives, catalogs, parts, limits, fix, weights, gap, grid, workers, seed : optional
+        As for ``synth.synthesize``, for every step.
+    points : int
+        At most so many designs of every step: the best in each objective and, of two, one between unless more are
+        asked for.
+    vary : mapping
+        One or two of: a requirement (``"load_torque"``), a limit on a quantity (``"mass <="``), ``"weights.mass"``,
+        ``"parts.friction_pair"``, ``"options.lubrication"``, ``"robust.friction"``. Values are a text
+        (``"200:300:10 mm"`` from:to:step, or ``"500, 600, 700 N*m"``), a list, or ends and a count (``("200 mm", "300
+        mm", 11)``); of what scatters ranges such as ``"+-10 %"``, or ``"none"``. Of two the second runs through for
+        each value of the first.
+    progress : callable, optional
+        Called with a mapping: stage, done (0..1), combinations, incumbents, message.
+    time_limit : float, optional
+        Seconds for the whole study; finished steps are kept.
+    breaks : bool
+        Whether to find the values at which the best parts or counts change.
+    folder : path, optional
+        Where finished steps are kept; the same study does not search them again.
+    robust : mapping, optional
+        What scatters, as for ``synthesize``: the designs of every step stand it, or are rated.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong with the input at any step, before the first is searched.
+    """
+    settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
+    check_progress(progress)
+    request = Request.of(
+        p, requirements, catalogs, robust, objectives=objectives, parts=parts, limits=limits, fix=fix, weights=weights,
+        grid=grid,
+    )  # fmt: skip
+    return study_of(request, settings, vary, progress, breaks, None if folder is None else Path(folder))
+
+
+def study_of(
+    request: Request,
+    settings: SearchSettings,
+    vary: Any,
+    progress: Progress | None = None,
+    breaks: bool = True,
+    folder: Path | None = None,
+    tuning: Tuning = TUNING,
+) -> Study:
+    """Answer a request at many values of what is varied; the arguments are those of :func:`whatif`.
+
+    ``tuning``: what its searches go by.
+
+    Raises
+    ------
+    InputError
+        For everything that is wrong at any step, before the first is searched.
+    """
+    steps = Steps(request, settings, vary, tuning)
+    with nullcontext() if folder is None else claimed(folder):
+        return _Run(steps, progress, settings.time_limit, folder).study(breaks)
+
+
+class _Run:
+    """One study under way."""
+
+    def __init__(
+        self,
+        steps: Steps,
+        progress: Progress | None,
+        time_limit: float | None,
+        folder: Path | None,
+    ) -> None:
+        self.steps, self.workers, self.progress = steps, steps.settings.workers, progress
+        self.started = time.monotonic()
+        self.deadline = math.inf if time_limit is None else self.started + time_limit
+        self.folder = folder
+        self.store = StudyStore(None)
+        self.questions = steps.questions
+        asked = list(zip(self.questions, steps.raters, strict=True))
+        self.alone = [_fingerprint(question, rater) for question, rater in asked]
+        weighted = any(x.kind == "weight" for x in steps.varied)
+        self.unweighted = [_fingerprint(q, r, weights=False) for q, r in asked] if weighted else self.alone
+        self.answered: list[Step] = []
+        self.same_but_weights: dict[str, ParetoFront] = {}
+        self.fingerprints: list[str] = []
+        self.stored: list[ParetoFront | None] = []  # answers of an earlier run, by position
+        self.ahead: dict[int, ParetoFront] = {}  # answers that were found together, by position
+        self.kept = 0
+        self.share_of_steps = 1.0
+
+    def study(self, breaks: bool) -> Study:
+        """Answer the steps, then find the breaks; what is finished when time is over is kept."""
+        stopped, found = "", list[Break]()
+        self.share_of_steps = 0.5 if breaks else 1.0
+        try:
+            with until(self.deadline):
+                self._search_together()
+                for position in range(len(self.steps)):
+                    self.answered.append(self._answer(position))
+                if breaks:
+                    self._find_breaks(found)
+        except Stopped as stop:
+            stopped = stop.reason
+        except KeyboardInterrupt:
+            stopped = INTERRUPTED
+        rest = [
+            Step(k + 1, values, None, stopped=stopped)
+            for k, values in enumerate(self.steps.values)
+            if k >= len(self.answered)
+        ]
+        statistics = {"steps": len(self.steps), "answered": len(self.answered), "kept": self.kept, "breaks": len(found)}
+        seconds = {"seconds": time.monotonic() - self.started}
+        return Study(
+            tuple(self.steps.varied), (*self.answered, *rest), tuple(found), self._along(), stopped,
+            {**statistics, **seconds}, self.store,
+        )  # fmt: skip
+
+    # -- steps ---------------------------------------------------------------------------------
+
+    def _search_together(self) -> None:
+        """Answer steps that are alike at once, where any of them is not kept; what is left is searched step by step."""
+        groups = joint_groups(self.questions)
+        marks = dict[int, str]()
+        for group in groups:
+            marks |= dict.fromkeys(group, joined([self.alone[k] for k in group]))
+        for position, alone in enumerate(self.alone):
+            ideas = [self.fingerprints[k] for k in self._neighbours(position)]
+            group_mark = [marks[position]] if position in marks else []
+            self.fingerprints.append(joined([alone, *ideas, *group_mark]))
+        self.store = StudyStore.of(self.folder, self.fingerprints)
+        self.stored = [self.store.get(k + 1, own) for k, own in enumerate(self.fingerprints)]
+        for group in groups:
+            missing = [k for k in group if self.stored[k] is None]
+            if missing:
+                shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
+                answers = joint_answers([self.questions[k] for k in group], self.workers, shown, self._left())
+                found = dict(zip(group, answers, strict=True))
+                self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
+
+    def _answer(self, position: int) -> Step:
+        number, values, question = position + 1, self.steps.values[position], self.questions[position]
+        own, unweighted = self.fingerprints[position], self.unweighted[position]
+        front = self.stored[position]
+        if front is not None:
+            self.kept += 1
+        else:
+            found, known = self.ahead.pop(position, None), self.same_but_weights.get(unweighted)
+            front = self._search(position, found) if known is None else _reranked(known, question)
+            record = front_record(front)
+            self.store.put(number, own, record)
+            # As it would be read again: a study that goes on is the same to the last digit.
+            front = front_of_record(json.loads(json.dumps(record, allow_nan=False)), Path(RECORD))
+        front = replace(front, question=self._asked(position, front).instance, record=None, folder=None)
+        self.same_but_weights.setdefault(unweighted, front)
+        return Step(number, values, front, own)
+
+    def _search(self, position: int, front: ParetoFront | None) -> ParetoFront:
+        """Return the front of a step; ``front`` is that found together with others, not rated yet."""
+        question, rater = self.questions[position], self.steps.raters[position]
+        before = [self.answered[k] for k in self._neighbours(position)]
+        known = [d for s in before if s.front is not None for d in s.front.designs]
+        says = f"step {position + 1} of {len(self.steps)}, {self.steps.stated(self.steps.values[position])}"
+        share = self.share_of_steps / len(self.steps)
+        shown = self._shown(says, position * share, share)
+        if rater is not None:
+            front = robust_front(
+                lambda block: self.steps.question(position, block), rater, shown, self._left(), known, front
+            )
+        elif front is None:
+            front = question.within(self._left()).answer(shown, known)
+        if front.interrupted:
+            raise Stopped(front.interrupted)
+        return front
+
+    def _asked(self, position: int, front: ParetoFront) -> Question:
+        """Return the question that the front of a step answers, with the limits that were posed on the way."""
+        block = front.settings.get("robust") or {}
+        if not block.get("scenarios"):
+            return self.questions[position]
+        robust = read_block(block)
+        self.steps.learn(robust)
+        return self.steps.question(position, robust)
+
+    def _neighbours(self, position: int) -> list[int]:
+        """Return the steps before one that differ in one place by one value: their designs are ideas for this one."""
+        found, stride = list[int](), 1
+        for varied in reversed(self.steps.varied):
+            if position // stride % len(varied.values):
+                found.append(position - stride)
+            stride *= len(varied.values)
+        return found[::-1]
+
+    def _left(self) -> float | None:
+        """Return the seconds that are left, None where there is no limit."""
+        if math.isinf(self.deadline):
+            return None
+        left = self.deadline - time.monotonic()
+        if left <= 0:
+            raise Stopped("time limit")
+        return left
+
+    def _shown(self, says: str, begin: float, share: float) -> Progress | None:
+        """Return what makes of the progress of one part that of the study; ``begin`` and ``share`` of the whole."""
+        tell = self.progress
+        if tell is None:
+            return None
+
+        def show(state: Mapping[str, Any]) -> None:
+            done = begin + share * float(state.get("done") or 0.0)
+            tell({**state, "stage": f"{says}: {state.get('stage', '')}", "done": min(done, 1.0)})
+
+        return show
+
+    # -- breaks --------------------------------------------------------------------------------
+
+    def _along(self) -> int | None:
+        """Return the position of what breaks are sought along: the first that is a number."""
+        return next((k for k, x in enumerate(self.steps.varied) if x.numeric), None)
+
+    def _find_breaks(self, found: list[Break]) -> None:
+        along = self._along()
+        if along is None:
+            return
+        if self.steps.varied[along].kind == "weight":
+            found += weight_breaks(self.steps, along, self.answered)
+            return
+        find_breaks(
+            self.steps, along, self.answered, found, self.store, self._left, self.workers,
+            self._shown("break points", self.share_of_steps, 1.0 - self.share_of_steps),
+        )  # fmt: skip
+
+
+def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
+    """Return a front with other weights: the designs are the same, their order is not."""
+    _, designs = ranked(front.designs, question.chosen, list(question.weights.values()))
+    return replace(front, designs=designs, settings={**front.settings, **question.record()})
+
+
+def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:
+    """Return the hash of all that decides an answer but ideas: question, settings, and what computes."""
+    settings = {k: repr(v) for k, v in question.record().items() if weights or k != "weights"}
+    robust = None if rater is None else rater.asked.block()
+    return hash_of([FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust])

@@ -1,0 +1,1 @@
+"""Tables of parts: files, schemas, catalogues, conditions."""

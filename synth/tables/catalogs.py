@@ -1,0 +1,260 @@
+"""Folders of tables, the shipped ones among them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from importlib.metadata import entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from synth.errors import InputError, at
+from synth.tables.reading import _is_frame, load_table, table_from_frame
+from synth.tables.schema import _SCHEMA_SUFFIX, Schema, load_schema
+from synth.tables.table import Table, _close
+
+ENTRY_POINTS = "clutchsynth.catalogs"
+
+
+# ---- catalogues -----------------------------------------------------------------------------------------------------
+
+
+def shipped_folders() -> tuple[Path, ...]:
+    """Folders of the installed catalogue packages.
+
+    Each entry point of the group ``clutchsynth.catalogs`` names a package whose folder holds CSV files and their
+    schemas. The packages are found, not imported.
+
+    Returns
+    -------
+    tuple of Path
+        Folders, each once.
+
+    Raises
+    ------
+    InputError
+        An entry point names a package that is not there.
+    """
+    folders: dict[Path, None] = {}
+    for point in sorted(entry_points(group=ENTRY_POINTS), key=lambda point: (point.name, point.value)):
+        try:
+            spec = find_spec(point.value)
+        except (ImportError, ValueError):
+            spec = None
+        if spec is None or not spec.submodule_search_locations:
+            raise InputError(f"entry point {point.name}", point.value, "an installed package with CSV files")
+        for location in spec.submodule_search_locations:
+            folders[Path(location).resolve()] = None
+    return tuple(folders)
+
+
+@lru_cache(maxsize=256)
+def _shipped_table(path: Path, stamps: tuple[int, ...]) -> Table:
+    return load_table(path)
+
+
+@lru_cache(maxsize=256)
+def _shipped_schema(path: Path, stamp: int) -> Schema:
+    return load_schema(path)
+
+
+def _csv_files(folder: Path) -> dict[str, Path]:
+    return {p.name.removesuffix(".csv"): p for p in sorted(folder.glob("*.csv")) if not p.name.endswith(_SCHEMA_SUFFIX)}
+
+
+class Catalogs:
+    """The tables a problem may use: the shipped ones, replaced or extended by a user's own.
+
+    Parameters
+    ----------
+    spec : str, Path or mapping, optional
+        A folder, whose CSV files replace the tables of their names; or table name to a CSV path, a DataFrame, or a
+        list ``["+", more, ...]`` whose paths and DataFrames are appended to the shipped rows.
+    folders : sequence of str or Path, optional
+        Folders of shipped tables instead of those of the installed packages.
+    base : str or Path, optional
+        Folder that relative paths start from; by default the working directory.
+
+    Attributes
+    ----------
+    added : tuple of str
+        Tables of `spec` that no shipped table is called.
+
+    Raises
+    ------
+    InputError
+        The specification is not one of these.
+    """
+
+    def __init__(
+        self,
+        spec: object = None,
+        folders: Sequence[str | Path] | None = None,
+        *,
+        base: str | Path | None = None,
+    ) -> None:
+        self._base = Path() if base is None else Path(base)
+        self._shipped: dict[str, Path] = {}
+        for folder in shipped_folders() if folders is None else folders:
+            for name, path in _csv_files(Path(folder)).items():
+                if name in self._shipped:
+                    raise InputError(f"table {name}", str(path), f"one shipped table of a name ({self._shipped[name]})")
+                self._shipped[name] = path
+        self._spec = self._read_spec(spec)
+        self.added = tuple(sorted(set(self._spec) - set(self._shipped)))
+        self._cache: dict[str, Table] = {}
+
+    def _path(self, given: str | Path) -> Path:
+        return self._base / given
+
+    def _read_spec(self, spec: object) -> dict[str, tuple[bool, list[Any]]]:
+        """Table name to (extend the shipped rows?, sources)."""
+        if spec is None:
+            return {}
+        right = "a folder, or a mapping of table names to a CSV path, a DataFrame or ['+', more]"
+        if isinstance(spec, (str, Path)):
+            folder = self._path(spec)
+            try:
+                files = _csv_files(folder) if folder.is_dir() else None
+            except (OSError, ValueError):
+                files = None
+            if files is None:
+                raise InputError("catalogs", str(spec), "a folder that exists", ("catalogs",))
+            if not files:
+                wanted = "a folder with CSV files named like the tables they replace"
+                raise InputError("catalogs", str(spec), wanted, ("catalogs",))
+            return {name: (False, [path]) for name, path in files.items()}
+        if not isinstance(spec, Mapping):
+            raise InputError("catalogs", spec, right, ("catalogs",))
+        found: dict[str, tuple[bool, list[Any]]] = {}
+        for name, value in spec.items():
+            if not isinstance(name, str):
+                raise InputError("catalogs", name, "the name of a table", ("catalogs", str(name)))
+            where = f"catalogs: {name}"
+            with at("catalogs", name):
+                if isinstance(value, (list, tuple)):
+                    if len(value) < 2 or value[0] != "+":
+                        raise InputError(where, value, "a list such as ['+', 'more.csv'] to extend the shipped table")
+                    if name not in self._shipped:
+                        raise InputError(where, name, f"a shipped table to extend, {_close(name, self._shipped)}")
+                    found[name] = (True, list(value[1:]))
+                else:
+                    found[name] = (False, [value])
+                for source in found[name][1]:
+                    if not isinstance(source, (str, Path)) and not _is_frame(source):
+                        raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
+        return found
+
+    def files(self) -> dict[str, Any]:
+        """Return the user's own tables that are files, as a spec states them, with absolute paths."""
+        result: dict[str, Any] = {}
+        for name, (extends, sources) in self._spec.items():
+            paths = [str(self._path(s).resolve()) for s in sources if isinstance(s, (str, Path))]
+            if len(paths) == len(sources):
+                result[name] = ["+", *paths] if extends else paths[0]
+        return result
+
+    def stated(self) -> dict[str, Any]:
+        """Return the user's own tables as :meth:`files`, all of them.
+
+        Raises
+        ------
+        InputError
+            When one is in memory.
+        """
+        files = self.files()
+        for name in self._spec:
+            if name not in files:
+                right = "a file that can be named"
+                raise InputError(f"catalogs: {name}", "a table in memory", right, ("catalogs", name))
+        return files
+
+    def digest(self) -> str:
+        """SHA-256 of everything in these tables: shipped files byte by byte, a user's own row by row."""
+        total = hashlib.sha256()
+        for name, path in sorted(self._shipped.items()):
+            schema = path.with_name(name + _SCHEMA_SUFFIX)
+            for file in (path, schema):
+                total.update(file.name.encode() + b"\0" + (file.read_bytes() if file.is_file() else b"") + b"\0")
+        for name in sorted(self._spec):
+            total.update(json.dumps([name, *self.table(name).hashes]).encode())
+        return total.hexdigest()
+
+    def names(self) -> tuple[str, ...]:
+        """Names of all tables, sorted."""
+        return tuple(sorted({*self._shipped, *self._spec}))
+
+    def schema(self, name: str) -> Schema | None:
+        """Give the schema of a shipped table; None where no shipped table has that name."""
+        path = self._shipped.get(name)
+        if path is None:
+            return None
+        beside = path.with_name(name + _SCHEMA_SUFFIX)
+        return _shipped_schema(beside, _stamp(beside))
+
+    def table(self, name: str) -> Table:
+        """Give a table as this set of catalogues has it.
+
+        Parameters
+        ----------
+        name : str
+            Name of the table.
+
+        Returns
+        -------
+        Table
+            The shipped, replaced or extended table.
+
+        Raises
+        ------
+        InputError
+            There is no such table, or something in a user's table is not right.
+        """
+        if name not in self._cache:
+            self._cache[name] = self._load(name)
+        return self._cache[name]
+
+    def _load(self, name: str) -> Table:
+        if name not in self._spec:
+            if name not in self._shipped:
+                right = f"a known table, one of {', '.join(self.names())}"
+                raise InputError("table", name, right, ("catalogs", name))
+            path = self._shipped[name]
+            return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
+        extend, sources = self._spec[name]
+        with at("catalogs", name):
+            tables = [self._user_table(name, source) for source in sources]
+        if not extend:
+            return tables[0]
+        path = self._shipped[name]
+        table = _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
+        with at("catalogs", name):
+            for more in tables:
+                table = table.extended(more)
+        return table
+
+    def _user_table(self, name: str, source: Any) -> Table:
+        schema = self.schema(name)
+        if isinstance(source, (str, Path)):
+            path = self._path(source)
+            own = path.with_name(path.name.removesuffix(".csv") + _SCHEMA_SUFFIX)
+            if own.is_file():
+                described = load_schema(own)
+                schema = described if schema is None else schema.extended(described)
+            table = load_table(path, schema, name=name, shipped=False)
+        else:
+            table = table_from_frame(source, schema, name=name)
+        if "designation" not in table.columns and (schema is None or schema.get("designation") is not None):
+            raise InputError(f"{table.origin}, header", None, "a column designation with a unique name in every row")
+        return table
+
+
+def _stamp(path: Path) -> int:
+    """Change time of a file, so that an edited one is read again."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return 0

@@ -1,0 +1,299 @@
+"""Cells of tables, read with units and checked against the schema."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from synth.errors import InputError, at
+from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
+
+if TYPE_CHECKING:
+    import pandas as pd
+from synth.tables.csv_file import _read_csv
+from synth.tables.schema import _SCHEMA_SUFFIX, Column, Schema, load_schema
+from synth.tables.table import SHIPPED, FloatArray, Table
+
+CONFIDENCE = ("verified", "textbook", "typical", "computed", "synthetic")
+
+
+@dataclass(frozen=True)
+class _Field:
+    """A column of a file and the unit its cells are in."""
+
+    column: Column
+    unit: Unit
+    position: int
+
+
+def _strict_fields(head: Sequence[str], schema: Schema, where: str) -> list[_Field]:
+    """Check the header of a shipped table: the schema's, in its order."""
+    wanted = [column.heading for column in schema.columns]
+    for i, (found, right) in enumerate(zip(head, wanted, strict=False)):
+        if found != right:
+            name = split_header(found)[0] if "[" in found and "]" in found else found
+            if schema.get(name) is None:
+                hint = f"the column {right!r} in place {i + 1}; the schema has no {name!r}"
+            elif name == schema.columns[i].name:
+                hint = f"the unit of the schema: {right}"
+            else:
+                hint = f"the order of the schema, with {right!r} in place {i + 1}"
+            raise InputError(f"{where}, line 1, column {name}", found, hint)
+    if len(head) > len(wanted):
+        raise InputError(f"{where}, line 1", head[len(wanted)], "no column that the schema does not have")
+    if len(head) < len(wanted):
+        raise InputError(f"{where}, line 1, column {schema.columns[len(head)].name}", None, wanted[len(head)])
+    return [_Field(column, column.scale, i) for i, column in enumerate(schema.columns)]
+
+
+def _user_fields(head: Sequence[object], schema: Schema | None, where: str) -> list[_Field]:
+    """Match the header of a user's table with a schema, if there is one; infer what it does not know."""
+    fields: list[_Field] = []
+    known = {_folded(column.name): column.name for column in schema.columns} if schema else {}
+    for position, title in enumerate(head):
+        if not isinstance(title, str) or not title.strip():
+            raise InputError(f"{where}, column {position + 1}", title or None, "a name in every cell of the header")
+        try:
+            name, unit_text = split_header(title)
+        except InputError as error:
+            raise InputError(where, title, error.expected) from None
+        place = f"{where}, column {name}"
+        if any(name == other.column.name for other in fields):
+            raise InputError(place, title, "each column once")
+        column = schema.get(name) if schema else None
+        if column is not None and column.type == "text" and unit_text is not None:
+            raise InputError(place, title, f"{name} without a unit: it is a column of text")
+        if column is None and _folded(name) in known:
+            raise InputError(place, title, f"the spelling {known[_folded(name)]}")
+        try:
+            if column is None:
+                unit = parse_unit("-" if unit_text is None else unit_text)
+                column = Column(name, "text" if unit_text is None else "number", unit_text)
+            elif unit_text is None:
+                unit = column.scale
+            else:
+                unit = parse_unit(unit_text, column.scale.kind)
+        except InputError as error:
+            raise InputError(place, title, error.expected) from None
+        fields.append(_Field(column, unit, position))
+    return fields
+
+
+def _folded(name: str) -> str:
+    return re.sub(r"[\s_-]", "", name).casefold()
+
+
+def _number_cell(cell: object, column: Column, unit: Unit, where: str) -> float:
+    """SI value of one cell; nan where it is empty."""
+    if isinstance(cell, str):
+        if not cell.strip():
+            return math.nan
+        number = check_number(cell, where)
+    elif isinstance(cell, (bool, np.bool_)):
+        if column.type != "flag":
+            raise InputError(where, cell, "a number")
+        number = str(int(cell))
+    elif isinstance(cell, (int, float, np.integer, np.floating)):
+        try:
+            plain = float(cell)
+        except OverflowError:
+            plain = math.inf
+        if math.isnan(plain):
+            return math.nan
+        if math.isinf(plain):
+            raise InputError(where, cell, "a finite number")
+        number = repr(plain)
+    else:
+        raise InputError(where, cell, "a number")
+    si = number_to_si(number, unit)
+    if not math.isfinite(si):
+        raise InputError(where, cell, "a finite number")
+    if column.type == "flag" and si not in (0.0, 1.0):
+        raise InputError(where, cell, "0 or 1")
+    if column.type == "integer" and not si.is_integer():
+        raise InputError(where, cell, "a whole number")
+    for limit, outside in ((column.minimum, float.__lt__), (column.maximum, float.__gt__)):
+        if limit is not None and outside(si, number_to_si(repr(limit), column.scale)):
+            shown = "" if column.unit is None or column.unit == "-" else f" {column.unit}"
+            ends = [f"{end:g}" for end in (column.minimum, column.maximum) if end is not None]
+            raise InputError(
+                where, f"{cell} {unit.text}".removesuffix(" -"), f"a plausible value, {' .. '.join(ends)}{shown}"
+            )
+    return si
+
+
+def _text_cell(cell: object, where: str) -> str:
+    if isinstance(cell, str):
+        return cell.strip()
+    if isinstance(cell, (bool, np.bool_)) or not isinstance(cell, (int, float, np.integer, np.floating)):
+        raise InputError(where, cell, "text")
+    if math.isnan(cell):
+        return ""
+    # a spreadsheet turns the designation 6205 into a number
+    return str(int(cell)) if math.isfinite(cell) and float(cell).is_integer() else str(cell)
+
+
+def _build(
+    name: str,
+    fields: Sequence[_Field],
+    rows: Sequence[tuple[str, Sequence[object]]],
+    places: Sequence[int],
+    origin: str,
+    *,
+    strict: bool,
+    catalogue: bool,
+) -> Table:
+    """Check every cell and make the table; ``places`` are the lines (rows of a frame) for the paths of faults."""
+    data: dict[str, FloatArray | tuple[str, ...]] = {}
+    columns = {field.column.name: field.column for field in fields}
+    for field in fields:
+        column, values = field.column, list[Any]()
+        for (label, row), place in zip(rows, places, strict=True):
+            with at(place, column.name):
+                cell, where = row[field.position], f"{label}, column {column.name}"
+                if strict and isinstance(cell, str) and cell != cell.strip():
+                    raise InputError(where, cell, "a cell without blanks at its ends")
+                if strict and column.required and cell == "":
+                    raise InputError(where, None, f"a value: {column.description}")
+                read = _number_cell(cell, column, field.unit, where) if column.numeric else _text_cell(cell, where)
+                values.append(read)
+        data[column.name] = np.array(values, dtype=np.float64) if column.numeric else tuple(values)
+    labels = [label for label, _ in rows]
+    if catalogue:
+        _check_designations(data.get("designation"), labels, places)
+    if strict:
+        for label, word in zip(labels, data.get("confidence", ()), strict=False):
+            if word not in CONFIDENCE:
+                raise InputError(f"{label}, column confidence", word, f"one of {', '.join(CONFIDENCE)}")
+    else:
+        for given, default in (("source", origin), ("confidence", "user")):
+            texts = data.get(given, ("",) * len(rows))
+            data[given] = tuple(str(text) or default for text in texts)
+            columns.setdefault(given, Column(given, "text"))
+    return Table(name, columns, data, labels, origin, np.full(len(rows), not strict))
+
+
+def _check_designations(designations: object, labels: Sequence[str], places: Sequence[int]) -> None:
+    seen: dict[str, str] = {}
+    known = designations if isinstance(designations, tuple) else ()
+    for label, place, designation in zip(labels, places, known, strict=True):
+        where = f"{label}, column designation"
+        with at(place, "designation"):
+            if not designation:
+                raise InputError(where, None, "a unique name of the row")
+            if re.search(r"[,;\r\n]", designation):
+                raise InputError(where, designation, "a name without comma, semicolon or line break")
+            if designation in seen:
+                raise InputError(where, designation, f"a name of its own (it stands in {seen[designation]} already)")
+        seen[designation] = label
+
+
+def load_table(
+    path: str | Path, schema: str | Path | Schema | None = None, *, name: str | None = None, shipped: bool = True
+) -> Table:
+    """Read a table from a CSV file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The CSV file.
+    schema : str, Path or Schema, optional
+        Its schema; by default ``NAME.schema.csv`` beside it. A table that is not shipped may have none: then a column
+        is a number where its header has a unit (``mass [kg]``), else text.
+    name : str, optional
+        Name of the table; by default that of the file.
+    shipped : bool
+        Strict: exactly the columns of the schema in its order, every required cell filled, every row with a source.
+
+    Returns
+    -------
+    Table
+        The table, numbers in SI.
+
+    Raises
+    ------
+    InputError
+        Something in the file is not right; file, line and column are named.
+    """
+    path = Path(path)
+    name = path.name.removesuffix(".csv") if name is None else name
+    if schema is None:
+        beside = path.with_name(path.name.removesuffix(".csv") + _SCHEMA_SUFFIX)
+        if shipped or beside.is_file():
+            schema = beside
+    if schema is not None and not isinstance(schema, Schema):
+        schema = load_schema(schema)
+    head, body = _read_csv(path)
+    if shipped and schema is not None:
+        for title in head:
+            if head.count(title) > 1:
+                raise InputError(f"{path.name}, line 1", title, "each column once")
+        fields = _strict_fields(head, schema, path.name)
+    else:
+        while head and not head[-1].strip() and all(not "".join(cells[len(head) - 1 :]).strip() for _, cells in body):
+            head = head[:-1]
+            body = [(line, cells[: len(head)]) for line, cells in body]
+        fields = _user_fields(head, schema, f"{path.name}, line 1")
+        body = [(line, cells) for line, cells in body if "".join(cells).strip()]
+    if not body:
+        raise InputError(path.name, "a header only", "at least one row below the header")
+    rows: list[tuple[str, Sequence[object]]] = []
+    for line, cells in body:
+        if len(cells) != len(head):
+            right = f"{len(head)} cells as in the header (decimal points, and quotes around a text that has a comma)"
+            raise InputError(f"{path.name}, line {line}", f"{len(cells)} cells", right, (line,))
+        rows.append((f"{path.name}, line {line}", cells))
+    catalogue = any(field.column.name == "designation" for field in fields)
+    lines = [line for line, _ in body]
+    return _build(name, fields, rows, lines, SHIPPED if shipped else path.name, strict=shipped, catalogue=catalogue)
+
+
+def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name: str = "table") -> Table:
+    """Make a table of a DataFrame with headers such as ``mass [kg]``.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        A user's table; its index may be named ``designation``.
+    schema : Schema, optional
+        Schema of the table it replaces or extends.
+    name : str
+        Name of the table.
+
+    Returns
+    -------
+    Table
+        The table, numbers in SI.
+
+    Raises
+    ------
+    InputError
+        Something in the frame is not right; row and column are named.
+    """
+    if frame.index.name == "designation" and "designation" not in frame.columns:
+        frame = frame.reset_index()
+    fields = _user_fields(list(frame.columns), schema, f"{name}, DataFrame header")
+    if frame.empty:
+        raise InputError(f"{name}, DataFrame", "a header only", "at least one row below the header")
+    # pandas has several values for "nothing here"
+    present = frame.notna().to_numpy()
+    cells = [frame.iloc[:, j].tolist() for j in range(frame.shape[1])]
+    rows = [
+        (f"{name}, DataFrame row {label}", [cells[j][i] if present[i, j] else "" for j in range(frame.shape[1])])
+        for i, label in enumerate(frame.index)
+    ]
+    catalogue = any(field.column.name == "designation" for field in fields)
+    return _build(name, fields, rows, range(len(rows)), "DataFrame", strict=False, catalogue=catalogue)
+
+
+def _is_frame(value: object) -> bool:
+    # whoever holds a DataFrame has imported pandas; importing it only to look would cost its second
+    pandas = sys.modules.get("pandas")
+    return pandas is not None and isinstance(value, pandas.DataFrame)

@@ -1,0 +1,289 @@
+"""The commands for many rows: batch and jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from synth.errors import InputError, whole_number
+from synth.input_limits import INPUT_LIMITS
+from synth.interrupts import heard_again
+from synth.output_folder import BATCH
+from synth.terminal.options import Folder, Gap, Grid, Headings, Objectives, Quiet, RowFamily, RowPoints, Seed
+from synth.terminal.session import INFEASIBLE, INTERNAL, STOPPED, check_output, claim_output, objectives, tell
+
+if TYPE_CHECKING:
+    from synth.jobs.batch import BatchJob
+    from synth.jobs.models import Job
+    from synth.jobs.store import Store
+
+Progress = Callable[[Mapping[str, Any]], None]
+DATABASE_VARIABLE = "CLUTCHSYNTH_DATABASE"
+
+RowsFile = Annotated[Path, typer.Argument(help="A table of rows, CSV or .xlsx.", metavar="ROWS.csv")]
+Workers = Annotated[int | None, typer.Option(help="Processes of this machine; by default one per core.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Work on a Dask cluster instead: the address of its scheduler.", metavar="tcp://HOST:PORT"),
+]
+Database = Annotated[
+    str | None,
+    typer.Option(
+        envvar=DATABASE_VARIABLE,
+        help="Database of the jobs: sqlite:///FILE or postgresql://USER@HOST/NAME; by default a file in DIR.",
+        metavar="URL",
+    ),
+]
+JobName = Annotated[str, typer.Argument(help="The folder of a batch, or the id of a job.", metavar="JOB")]
+
+jobs_app = typer.Typer(help="List, show, cancel and resume batches.", no_args_is_help=True, rich_markup_mode=None)
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="batch")(batch)
+    app.add_typer(jobs_app, name="jobs")
+
+
+def batch(
+    rows: RowsFile,
+    folder: Folder,
+    family: RowFamily = None,
+    mapping: Headings = None,
+    points: RowPoints = None,
+    gap: Gap = None,
+    grid: Grid[bool] = True,
+    seed: Seed[int] = 0,
+    time_limit: Annotated[
+        str | None, typer.Option(help="Stop each row after this time, in seconds or such as '2 min'.")
+    ] = None,
+    objective: Objectives = None,
+    catalogs: Annotated[Path | None, typer.Option(help="Folder with your own tables.", metavar="DIR")] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    database: Database = None,
+    quiet: Quiet = False,
+) -> None:
+    """Search the designs for every row of a table; run again to go on after an interruption."""
+
+    def make() -> BatchJob:
+        return batch_job(
+            rows, folder, family, mapping, points, gap, grid, seed, time_limit, objective, catalogs, database
+        )
+
+    raise typer.Exit(finish(make, workers, scheduler, quiet))
+
+
+def batch_job(
+    rows: Path,
+    folder: Path,
+    family: str | None,
+    mapping: Path | None,
+    points: int | None,
+    gap: float | None,
+    grid: bool,
+    seed: int,
+    time_limit: str | None,
+    objective: list[str] | None,
+    catalogs: Path | None,
+    database: str | None,
+) -> BatchJob:
+    """Return the batch that flags describe."""
+    from synth.jobs.batch import BatchJob
+    from synth.question.settings import SearchSettings
+    from synth.units import parse_quantity
+
+    check_output(folder)
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    stated: dict[str, Any] = {"points": points, "gap": gap, "seed": seed, "time_limit": seconds}
+    settings = SearchSettings(**{name: value for name, value in stated.items() if value is not None})
+    common = {"parts": None, "limits": None, "fix": None, "objectives": objectives(objective or []), "grid": grid}
+    return BatchJob(family, rows, folder, mapping, catalogs, database, settings, common)
+
+
+def finish(make: Callable[[], BatchJob], workers: int | None, scheduler: str | None, quiet: bool) -> int:
+    """Plan a batch, work it off, write it, and return the exit code that it has."""
+    if workers is not None:
+        whole_number(workers, "--workers", INPUT_LIMITS.workers, path=("workers",))
+    with heard_again() as check:
+        try:
+            from synth.terminal.batch_console import batch_display, print_summary, print_table_remarks
+
+            job = make()
+            claim_output(job.folder, BATCH, job.id)
+            continues = job.plan()
+            check()
+        except KeyboardInterrupt:
+            tell("stopped while the rows were checked; nothing is kept")
+            raise typer.Exit(STOPPED) from None
+        try:
+            if not quiet:
+                print_table_remarks(job, continues)
+            with batch_display(quiet) as progress:
+                stopped = job.work(_processes(workers), scheduler, _checked(progress, check), tell)
+            counts = job.write()
+        except KeyboardInterrupt:
+            tell("stopped; what was found is in the database, the same command goes on")
+            raise typer.Exit(STOPPED) from None
+        except (OSError, InputError) as error:
+            _tell_no_room(error)
+            raise typer.Exit(STOPPED) from error
+        finally:
+            job.close()
+    if not quiet:
+        print_summary(counts, job.place, job.folder, stopped)
+    return _code(counts, stopped)
+
+
+def _tell_no_room(error: OSError | InputError) -> None:
+    """Tell that a job stopped for want of a place for what it finds; every other fault is for others to tell."""
+    if isinstance(error, InputError):
+        if error.field != "output":
+            raise error
+        reason = str(error)
+    elif error.filename is None:
+        raise error
+    else:
+        reason = f"{error.filename} cannot be written ({error.strerror})"
+    tell(f"stopped: {reason}; what was found is in the database, the same command goes on")
+
+
+def _processes(workers: int | None) -> int:
+    from synth.jobs.batch import cores
+
+    return cores() if workers is None else workers
+
+
+def _code(counts: dict[str, int], stopped: str) -> int:
+    """Return the exit code of a batch: stopped, a row failed, nothing feasible, or fine."""
+    if stopped:
+        return STOPPED
+    if counts.get("failed"):
+        return INTERNAL
+    return 0 if counts.get("optimal", 0) + counts.get("feasible", 0) else INFEASIBLE
+
+
+def _checked(progress: Progress | None, check: Callable[[], None]) -> Progress:
+    """Return what shows progress, and stops where a signal has been lost."""
+
+    def show(state: Mapping[str, Any]) -> None:
+        check()
+        if progress is not None:
+            progress(state)
+
+    return show
+
+
+# ---- jobs -----------------------------------------------------------------------------------------------------------
+
+
+@jobs_app.command(name="list")
+def list_jobs(
+    folders: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Folders of batches; by default those below this one.", metavar="[DIR]..."),
+    ] = None,
+    database: Database = None,
+) -> None:
+    """List the jobs of a database, or of the folders that hold one."""
+    from synth.terminal.batch_console import print_jobs
+
+    found: list[tuple[Job, Any]] = []
+    for store in _stores(database, folders or None):
+        with store:
+            found += [(job, store.account(job.id)) for job in store.jobs()]
+    print_jobs(found)
+
+
+@jobs_app.command()
+def show(job: JobName, database: Database = None) -> None:
+    """Show how far a job is, and what happened to it."""
+    from synth.terminal.batch_console import print_job
+
+    store, found = _find(job, database)
+    with store:
+        print_job(found, store.account(found.id), store.open_units(found.id), store.events(found.id, 20))
+
+
+@jobs_app.command()
+def cancel(job: JobName, database: Database = None) -> None:
+    """Stop a job wherever it runs; what it has found is kept, and resume goes on."""
+    from synth.jobs.store import CANCELLED, DONE
+
+    store, found = _find(job, database)
+    with store:
+        if found.state == DONE:
+            raise InputError("JOB", job, "a job that is not done yet")
+        store.set_state(found.id, CANCELLED, "cancelled")
+    print(f"{found.id}: cancelled; clutchsynth jobs resume goes on")
+
+
+@jobs_app.command()
+def resume(
+    job: JobName,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    database: Database = None,
+    quiet: Quiet = False,
+) -> None:
+    """Go on with a job that was stopped or cancelled, without its table."""
+    from synth.jobs.batch import resume as go_on
+    from synth.jobs.outputs import write_outputs
+    from synth.terminal.batch_console import batch_display, print_summary
+
+    store, found = _find(job, database)
+    with store, heard_again() as check:
+        try:
+            claim_output(Path(found.folder), BATCH, found.id)
+            with batch_display(quiet) as progress:
+                shown = _checked(progress, check)
+                stopped = go_on(store, found.id, _processes(workers), scheduler, shown, tell)
+            counts, place = write_outputs(store, found.id, Path(found.folder))
+        except KeyboardInterrupt:
+            tell("stopped; what was found is in the database, the same command goes on")
+            raise typer.Exit(STOPPED) from None
+        except (OSError, InputError) as error:
+            _tell_no_room(error)
+            raise typer.Exit(STOPPED) from error
+    if not quiet:
+        print_summary(counts, place, Path(found.folder), stopped)
+    raise typer.Exit(_code(counts, stopped))
+
+
+def _stores(database: str | None, folders: list[Path] | None) -> list[Store]:
+    """Return the databases that are meant: the one named, or those in folders."""
+    from synth.jobs.batch import DATABASE
+    from synth.jobs.store import Store, file_url
+
+    if database is not None and folders is None:
+        return [Store(database, create=False)]
+    files = [folder / DATABASE for folder in folders or [Path(), *sorted(p for p in Path().iterdir() if p.is_dir())]]
+    if folders is not None:
+        missing = next((file.parent for file in files if not file.is_file()), None)
+        if missing is not None:
+            raise InputError("DIR", str(missing), f"the folder of a batch, with {DATABASE} in it")
+    return [Store(file_url(file.resolve()), create=False) for file in files if file.is_file()]
+
+
+def _find(job: str, database: str | None) -> tuple[Store, Job]:
+    """Return the job that is meant by a folder (its latest), or by the beginning of an id."""
+    from synth.jobs.batch import DATABASE
+
+    if database is None and (Path(job) / DATABASE).is_file():
+        (store,) = _stores(None, [Path(job)])
+        jobs = store.jobs()
+        if jobs:
+            return store, max(jobs, key=lambda found: found.updated)
+        store.close()
+    else:
+        matches = []
+        for store in _stores(database, None):
+            matches += [(store, found) for found in store.jobs() if found.id.startswith(job)]
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            raise InputError("JOB", job, "more of the id: it fits several jobs")
+    raise InputError("JOB", job, "the folder of a batch, or the id of a job that clutchsynth jobs list shows")

@@ -1,0 +1,172 @@
+"""What the command line shows of batches: what the table means, progress, outcome, and lists of jobs."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+from synth.jobs.row_questions import Fault
+from synth.terminal.console import console_on, output, plain_table
+from synth.terminal.session import tell_written
+
+if TYPE_CHECKING:
+    from synth.jobs.batch import BatchJob
+    from synth.jobs.models import Job
+    from synth.jobs.store import Account
+
+LINES = 8  # of a fault that stands in many
+EVERY = 5.0  # seconds between lines of progress where there is no terminal
+
+
+def print_table_remarks(job: BatchJob, continues: bool) -> None:
+    """Tell on standard error how the table was understood, and which rows cannot be asked."""
+    say = _error_lines()
+    if continues:
+        say(f"going on with job {job.id}")
+    if job.questioner.carried:
+        say(f"carried along unread: {', '.join(column.title for column in job.questioner.carried)}")
+    for family, columns in sorted(job.unused.items()):
+        say(f"not used by {family}: {', '.join(sorted(columns))}")
+    for (column, value, expected), lines in job.faults.items():
+        say(Fault(lines[0], column, value, expected).sentence() + _more_lines(lines[1:]))
+    if job.bad:
+        shown = {line for lines in job.faults.values() for line in lines}
+        more = "" if len(shown) == job.bad else ", the first are shown"
+        say(f"{counted(job.bad, 'row')} cannot be asked{more}; rows.csv lists them all, the others run")
+
+
+def _more_lines(lines: Sequence[int]) -> str:
+    """Return where else a fault stands."""
+    if not lines:
+        return ""
+    listed = ", ".join(map(str, lines[:LINES])) + (", ..." if len(lines) > LINES else "")
+    return f" (also in {'line' if len(lines) == 1 else f'{len(lines)} lines:'} {listed})"
+
+
+def _error_lines() -> Callable[[str], None]:
+    return lambda sentence: print(f"clutchsynth: {sentence}", file=sys.stderr)
+
+
+@contextmanager
+def batch_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None] | None]:
+    """Give a callable that shows how far a batch is: a bar on a terminal, a line now and then elsewhere."""
+    if quiet:
+        yield None
+    elif not sys.stderr.isatty():
+        yield _occasional_lines()
+    else:
+        columns = (TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn())
+        text = TextColumn("{task.fields[figures]}")
+        with Progress(*columns, text, console=console_on(sys.stderr), transient=True) as bar:
+            task = bar.add_task("rows", total=1.0, figures="")
+
+            def show(state: Mapping[str, Any]) -> None:
+                bar.update(task, total=max(state["rows"], 1), completed=state["done"], figures=figures(state))
+
+            yield show
+
+
+def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
+    shown_at = time.monotonic()
+
+    def show(state: Mapping[str, Any]) -> None:
+        nonlocal shown_at
+        if time.monotonic() - shown_at >= EVERY:
+            shown_at = time.monotonic()
+            print(figures(state), file=sys.stderr, flush=True)
+
+    return show
+
+
+def figures(state: Mapping[str, Any]) -> str:
+    """Return progress in words.
+
+    Examples
+    --------
+    >>> figures({"rows": 10000, "done": 1200, "failed": 1, "infeasible": 30, "bad": 2, "rate": 12.5, "left": 704.0})
+    '1 200 of 10 000 rows, 12.5 rows/s, 12 min left, 30 infeasible, 2 bad, 1 failed'
+    """
+    parts = [f"{thousands(state['done'])} of {thousands(state['rows'])} rows"]
+    if state["rate"] > 0:
+        parts.append(f"{state['rate']:.3g} rows/s")
+    if state["left"]:
+        parts.append(f"{_duration(state['left'])} left")
+    parts += [f"{thousands(state[key])} {key}" for key in ("infeasible", "bad", "failed") if state[key]]
+    return ", ".join(parts)
+
+
+def counted(number: int, what: str) -> str:
+    """Return a number of things in words.
+
+    Examples
+    --------
+    >>> counted(1, "row"), counted(12000, "row")
+    ('1 row', '12 000 rows')
+    """
+    return f"{thousands(number)} {what}{'' if number == 1 else 's'}"
+
+
+def thousands(number: int) -> str:
+    """Return a whole number with its thousands apart."""
+    return f"{number:,}".replace(",", " ")
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+
+
+WORDS = {
+    "optimal": "with proven designs",
+    "feasible": "with designs that are not proven",
+    "infeasible": "without a feasible design",
+    "bad_input": "with bad input",
+    "refused": "refused by the search",
+    "failed": "failed",
+    "not_solved": "not solved yet",
+}
+
+
+def print_summary(counts: Mapping[str, int], place: Path, folder: Path, stopped: str) -> None:
+    """Print what a batch has come to, and where it was written."""
+    total = sum(counts.values())
+    print(f"{counted(total, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    if stopped:
+        print(f"stopped: {stopped}; what was found is saved, the same command goes on")
+    tell_written(place, folder, ["designs.csv", "rows.csv", "batch.json"])
+
+
+def _sorted(counts: Mapping[str, int]) -> list[tuple[str, int]]:
+    return [(status, counts[status]) for status in WORDS if counts.get(status)]
+
+
+def print_jobs(jobs: Sequence[tuple[Job, Account]]) -> None:
+    """Print jobs as a table, the latest first."""
+    if not jobs:
+        print("no jobs")
+        return
+    table = plain_table("job", "state", "rows", "done", "made", "source", "folder", right=(2, 3), wide=6)
+    for job, account in sorted(jobs, key=lambda pair: -pair[0].created):
+        made = time.strftime("%Y-%m-%d %H:%M", time.localtime(job.created))
+        table.add_row(job.id, job.state, thousands(account.rows), thousands(account.done), made, job.source, job.folder)
+    output().print(table)
+
+
+def print_job(job: Job, account: Account, units: tuple[int, int], events: Sequence[tuple[float, str, str]]) -> None:
+    """Print everything about a job."""
+    print(f"{job.id}: {job.source}, {job.state}")
+    print(f"folder: {job.folder}")
+    settings = ", ".join(f"{name} {value}" for name, value in job.content["settings"].items() if value is not None)
+    print(f"settings: {settings}")
+    counts = {**account.status, "bad_input": account.bad, "not_solved": account.rows - account.done}
+    print(f"{counted(account.rows, 'row')}: " + ", ".join(f"{thousands(n)} {WORDS[s]}" for s, n in _sorted(counts)))
+    print(f"units: {units[0]} open, {units[1]} at work")
+    for moment, kind, text in events:
+        print(f"{time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(moment))}  {kind}{f': {text}' if text else ''}")

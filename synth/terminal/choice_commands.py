@@ -1,0 +1,145 @@
+"""The commands that help to choose: near-equals, prices, and run where several families are asked."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from synth.errors import InputError
+from synth.output_folder import FRONT, NEAR_EQUALS, PRICES, place_for_stopped, save_result
+from synth.terminal.options import Folder, FrontFolder, Quiet, Seed, TimeLimit
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, tell, tell_written
+
+if TYPE_CHECKING:
+    from synth.question.spec import Spec
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="near-equals")(near_equals)
+    app.command(name="prices")(prices)
+
+
+def near_equals(
+    source: FrontFolder,
+    folder: Folder,
+    design: Annotated[int, typer.Option(help="Rank of the chosen design.")] = 1,
+    within: Annotated[str, typer.Option(help="By how much every objective may be worse.")] = "2 %",
+    count: Annotated[int, typer.Option(help="At most this many designs.")] = 5,
+    seed: Seed[int] = 0,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
+) -> None:
+    """Find designs of other parts, counts or choices that are nearly as good as a chosen one."""
+    check_output(folder)
+    if folder.resolve() == source.resolve():
+        raise InputError("--output", str(folder), "another folder than that of the front: its designs would be lost")
+    claim_output(folder, NEAR_EQUALS)
+    from synth.results.loading import load_front
+    from synth.studies.near_optimal import near_equals as find
+    from synth.terminal.choice_console import print_near_equals
+    from synth.terminal.console import output, progress_display
+    from synth.units import parse_quantity
+
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    front = load_front(source)
+    with progress_display(quiet) as progress:
+        found = find(front, design, within, count, seed=seed, progress=progress, time_limit=seconds)
+    target = found.save(folder)
+    if not quiet:
+        print_near_equals(found, output())
+        tell_written(target, folder, sorted(found.files()))
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.designs:
+        raise typer.Exit(INFEASIBLE)
+
+
+def prices(
+    source: FrontFolder,
+    folder: Folder,
+    design: Annotated[
+        list[int] | None, typer.Option(help="Rank of a design; repeat it. All by default.", metavar="RANK")
+    ] = None,
+    step: Annotated[str, typer.Option(help="By how much each requirement and limit is moved.")] = "1 %",
+    time_limit: TimeLimit = None,
+    every: Annotated[bool, typer.Option("--all", help="Show all designs, not the first alone.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Tell what a per cent of each requirement and limit costs, confirmed by solving again; run again to go on."""
+    claim_output(folder, PRICES)
+    from synth.results.loading import load_front
+    from synth.studies.prices.run import prices as find
+    from synth.terminal.choice_console import print_prices
+    from synth.terminal.console import output, progress_display
+    from synth.units import parse_quantity
+
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    front = load_front(source)
+    with progress_display(quiet) as progress:
+        try:
+            found = find(front, design or None, step, progress=progress, time_limit=seconds, folder=folder)
+        except KeyboardInterrupt:
+            tell("stopped before the first design was begun; nothing is written")
+            raise typer.Exit(STOPPED) from None
+    target = found.save(folder)
+    if not quiet:
+        print_prices(found, output(), every)
+        tell_written(target, folder, sorted(found.files()))
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+
+
+def show_common() -> None:
+    """Show the requirements that may stand in a sheet for several families, with those that understand them."""
+    from synth.studies.families.requirement_sheet import understood
+
+    names = understood()
+    wide, units = max(map(len, names), default=0), max((len(unit) for unit, _ in names.values()), default=0)
+    for name, (unit, families) in names.items():
+        print(f"{name:{wide}}  {unit:{units}}  {', '.join(families)}")
+
+
+def compare_families(asked: Spec, folder: Path, every: bool, quiet: bool) -> None:
+    """Search the families of a spec, show and save their common front; end as ``run`` does."""
+    from synth.question.spec_keys import ASKED, SEARCHED
+    from synth.studies.families.compare import compare
+    from synth.tables.catalogs import Catalogs
+    from synth.terminal.choice_console import comparison_explanation, print_comparison
+    from synth.terminal.console import output, progress_display
+
+    place = place_for_stopped(folder, FRONT)  # finished families are kept there until all are
+    with blamed_on(asked.file), progress_display(quiet) as progress:
+        apart = ("family", "options", "requirements", "catalogs")
+        stated = asked.stated([key for key in (*ASKED, *SEARCHED) if key not in apart])
+        found = compare(
+            asked.family if isinstance(asked.family, str) else list(asked.family),
+            asked.requirements,
+            catalogs=Catalogs(asked.catalogs, base=asked.folder),
+            options=asked.options,
+            progress=progress,
+            finished=lambda label, front: front.save(place / label),
+            **stated,
+        )
+    texts = {**found.files(), **found.family_files()}
+    if not found.designs and not found.interrupted:
+        texts["explanation.txt"] = comparison_explanation(found)
+    target = save_result(place if found.interrupted else folder, texts, FRONT, False)
+    if place not in (target, folder):
+        shutil.rmtree(place, ignore_errors=True)  # all of it stands in the result now
+    if not quiet:
+        print_comparison(found, output(), every)
+        folders = [f"{x.family}/" for x in found.outcomes if x.front is not None]
+        files = [name for name in sorted(found.files()) if not name.startswith("design_")]
+        files += ["explanation.txt"] if "explanation.txt" in texts else []
+        files += [f"design_{d.rank:02d}.yaml" for d in found.designs[:1]]
+        if len(found.designs) > 1:
+            files[-1] += f" .. design_{len(found.designs):02d}.yaml"
+        tell_written(target, folder, [*files, *folders])
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.designs:
+        raise typer.Exit(INFEASIBLE)

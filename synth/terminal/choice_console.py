@@ -1,0 +1,140 @@
+"""What the command line shows of near-equal designs, of prices, and of families that are compared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from synth.results.rating_tables import rating_row
+from synth.robust.rate import told_of
+from synth.studies.prices.price_list import NOTHING, percent
+from synth.terminal.console import explanation_text, plain_table
+from synth.units import format_quantity
+
+if TYPE_CHECKING:
+    from synth.studies.families.comparison import Comparison
+    from synth.studies.near_optimal import NearEquals
+    from synth.studies.prices.price_list import Price, Prices
+
+SHOWN = 10  # designs on one screen
+
+
+def print_near_equals(found: NearEquals, console: Console) -> None:
+    """Print how many designs there are nearly as good, and those that differ most."""
+    own, frame = found.reference, found.reference.frame
+    names = list(frame.objectives)
+    console.print(f"{frame.title} ({frame.family}): near-equals of design {own.rank or ''}".rstrip())
+    console.print()
+    table = plain_table("", *names, "differences", right=range(1, len(names) + 1), wide=len(names) + 1)
+    table.add_row("#0", *(format_quantity(own.values[n], frame.units[n], 5) for n in names), "the chosen design")
+    for number, (design, change, other) in enumerate(
+        zip(found.designs, found.changes, found.differences, strict=True), start=1
+    ):
+        values = [f"{format_quantity(design.values[n], frame.units[n], 5)} ({100 * change[n]:+.2f} %)" for n in names]
+        table.add_row(f"#{number}", *values, ", ".join(other))
+    console.print(table)
+    console.print()
+    if found.interrupted:
+        console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
+    console.print(found.sentence())
+    if len(found.designs) < found.found:
+        console.print(f"shown are {len(found.designs)} that differ most from the chosen one and from each other")
+
+
+def print_prices(found: Prices, console: Console, every: bool = False) -> None:
+    """Print what a per cent costs in each objective, the dearest first, and what costs nothing."""
+    frame, size = found.frame, percent(found.step)
+    shown = found.finished if every else found.finished[:1]
+    for rank in shown:
+        console.print(f"{frame.title} ({frame.family}): prices of design {rank}")
+        for objective in frame.objectives:
+            rows = [r for r in found.rows if (r.design, r.objective) == (rank, objective)]
+            console.print()
+            table = plain_table(objective, "up", "down", "status", "why", right=(1, 2), wide=4)
+            for row in sorted((r for r in rows if r.status != NOTHING), key=_dearness, reverse=True):
+                table.add_row(_priced(row), _shown(row.up), _shown(row.down), row.status, row.reason)
+            console.print(table)
+            idle = [_priced(r) for r in rows if r.status == NOTHING]
+            if idle:
+                console.print(f"no influence: {', '.join(idle)}")
+            for words in dict.fromkeys(r.compared for r in rows if r.compared):
+                console.print(f"other parts: {words}" if "combinations" in words else words)
+        console.print()
+    if len(shown) < len(found.finished):
+        more = len(found.finished) - len(shown)
+        console.print(f"{more} more design{'' if more == 1 else 's'} with --all, and in prices.csv")
+    console.print(f"up: per cent of the objective per per cent more, down: per per cent less; tried with {size}")
+    held = ["the other objectives are held"] if len(frame.objectives) > 1 else []
+    held += ["makeable sizes are taken as continuous"] if found.makeable else []
+    if held:
+        console.print("; ".join(held))
+    if found.interrupted:
+        done, asked = len(found.finished), len(found.asked)
+        console.print(f"stopped: {found.interrupted}; {done} of {asked} designs are kept, run again to go on")
+
+
+def _priced(row: Price) -> str:
+    return f"limit {row.quantity}" if row.kind == "limit" else row.quantity
+
+
+def _dearness(row: Price) -> float:
+    return max(round(abs(x), 4) if x is not None else -1.0 for x in (row.up, row.down))
+
+
+def _shown(price: float | None) -> str:
+    return "withheld" if price is None else f"{price:+.3g}" if price else "0"
+
+
+def print_comparison(found: Comparison, console: Console, every: bool = False) -> None:
+    """Print the common front, what became of each family, and how far it is proven."""
+    count = len(found.designs) if every else min(SHOWN, len(found.designs))
+    names = list(found.objectives)
+    if found.designs:
+        number = "1 design" if len(found.designs) == 1 else f"{len(found.designs)} designs"
+        families = len(set(found.families))
+        console.print(f"{number} of {'1 family' if families == 1 else f'{families} families'}")
+        console.print()
+        rated = ["robust"] if any(d.robust for d in found.designs) else []
+        last = 3 + len(names) + len(rated)
+        table = plain_table(
+            "rank", "score", "family", *names, *rated, "note", right=(1, *range(3, 3 + len(names))), wide=last
+        )
+        for design, family in list(zip(found.designs, found.families, strict=True))[:count]:
+            values = [format_quantity(design.values[n], design.frame.units[n], 5) for n in names]
+            values += [rating_row(design)[0] or "not rated"] if rated else []
+            table.add_row(f"#{design.rank}", f"{design.score:.4f}", family, *values, design.note)
+        console.print(table)
+        if count < len(found.designs):
+            console.print(f"{len(found.designs) - count} more with --all, and in designs.csv")
+        console.print()
+    table = plain_table("family", "outcome", "why", wide=2)
+    for outcome in found.outcomes:
+        table.add_row(outcome.family, outcome.outcome, outcome.sentence)
+    console.print(table)
+    console.print()
+    for name in names:
+        meanings = {x.family: x.meanings[name] for x in found.outcomes if x.listed and x.meanings.get(name)}
+        if len(set(meanings.values())) > 1:
+            console.print(f"{name} means: " + "; ".join(f"{text} ({family})" for family, text in meanings.items()))
+    told = [d for d in found.designs if d.robust]
+    if told:
+        console.print(told_of(told, told[0].frame.restated["robust"]["samples"]))
+        unrated = len(found.designs) - len(told)
+        if unrated:
+            designs = "1 design is" if unrated == 1 else f"{unrated} designs are"
+            console.print(f"{designs} not rated: in the family nothing scatters")
+    if found.interrupted:
+        console.print(f"stopped: {found.interrupted}; what was found until then is shown and saved")
+    console.print(found.sentence())
+
+
+def comparison_explanation(found: Comparison) -> str:
+    """Return in words why no family has a feasible design."""
+    parts = []
+    for outcome in found.outcomes:
+        told = (
+            explanation_text(outcome.front) if outcome.outcome == "infeasible" and outcome.front else outcome.sentence
+        )
+        parts.append(f"{outcome.family} ({outcome.outcome})\n{told.rstrip()}\n")
+    return "\n".join(parts)

@@ -1,0 +1,451 @@
+"""The command line: ``clutchsynth``."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from synth.errors import InputError
+from synth.files import frame_csv
+from synth.interrupts import taken_alike
+from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
+from synth.plain_text import plain_streams
+from synth.results.drawings import report
+from synth.terminal import batch_commands as batches
+from synth.terminal import choice_commands, robust_commands
+from synth.terminal import size_range_commands as size_ranges
+from synth.terminal import study_commands as studies
+from synth.terminal.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
+from synth.terminal.options import Folder, FrontFolder, Gap, Grid, Objectives, Quiet, Seed, SpecFile, TimeLimit
+from synth.terminal.session import (
+    BAD_INPUT,
+    DOES_NOT_HOLD,
+    INFEASIBLE,
+    INTERNAL,
+    INTERRUPTED,
+    NOT_PROVEN,
+    STOPPED,
+    as_csv,
+    blamed_on,
+    claim_output,
+    frame_files,
+    objectives,
+    one_command,
+    pair,
+    tell,
+    tell_written,
+)
+
+if TYPE_CHECKING:
+    from synth.model.problem import DesignProblem
+    from synth.question.spec import Spec
+    from synth.results import ParetoFront
+
+app = typer.Typer(
+    name="clutchsynth",
+    help="Design synthesis for clutches and shaft couplings: requirement in, ranked Pareto designs out.",
+    epilog="Exit codes: 0 designs found or check passed, 1 internal error, 2 bad input (nothing is written), "
+    "3 no feasible design or a limit violated, 4 stopped by time limit or Ctrl-C (what was found is saved), "
+    "5 what verify checked does not hold, 6 verify could neither prove it again nor refute it.",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+DesignFile = Annotated[Path, typer.Argument(help="A design: a spec with values and parts.", metavar="DESIGN.yaml")]
+
+
+def main() -> None:
+    """Run the command line; every fault of the input becomes one sentence and exit code 2."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal without these letters must not stop the work
+    with plain_streams():
+        _run()
+
+
+def _run() -> None:
+    try:
+        with taken_alike(), one_command():
+            app()
+    except InputError as error:
+        tell(" ".join(str(error).split()))
+        sys.exit(BAD_INPUT)
+    except BrokenPipeError:
+        # Whoever read the output has gone (``| head``); there is nobody left to tell.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(INTERNAL)
+    except OSError as error:
+        if error.filename is None:
+            _give_up(error)
+        tell(f"{error.filename}: got what cannot be read or written; expected a place where it can ({error.strerror})")
+        sys.exit(BAD_INPUT)
+    except SystemExit as end:
+        if end.code != INTERRUPTED:
+            raise
+        _tell_stopped()
+    except KeyboardInterrupt:
+        _tell_stopped()
+    except Exception as error:
+        _give_up(error)
+
+
+def _tell_stopped() -> NoReturn:
+    tell("stopped before all was done; what is finished is kept, the same command begins again or goes on")
+    sys.exit(STOPPED)
+
+
+def _give_up(error: Exception) -> NoReturn:
+    """Tell of a fault of the program itself."""
+    if os.environ.get("CLUTCHSYNTH_DEBUG") == "1":
+        raise error
+    first = next(iter(str(error).splitlines()), "")
+    tell(f"internal error, {type(error).__name__}: {first}")
+    tell("this is a fault of the program: please report it, with the output that CLUTCHSYNTH_DEBUG=1 gives")
+    sys.exit(INTERNAL)
+
+
+# ---- commands -------------------------------------------------------------------------------------------------------
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"clutchsynth {version('clutchsynth')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _entry(
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and exit.", callback=_version, is_eager=True)
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def families(
+    common: Annotated[bool, typer.Option("--common", help="List the requirements that several understand.")] = False,
+) -> None:
+    """List the design families."""
+    from synth.model.registry import families as names
+    from synth.model.registry import load
+
+    if common:
+        choice_commands.show_common()
+        return
+    listed = names()
+    width = max((len(name) for name in listed), default=0)
+    for name in listed:
+        print(f"{name:{width}}  {load(name).title}")
+
+
+@app.command()
+def describe(
+    family: Annotated[str, typer.Argument(help="Name of a family.", metavar="FAMILY")],
+    option: Annotated[
+        list[str] | None, typer.Option("--option", help="A structural choice, name=value.", metavar="NAME=VALUE")
+    ] = None,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Write CSV.")] = False,
+) -> None:
+    """Show what a family asks for, searches, computes and limits."""
+    from synth.analysis.describe import described, tabulated
+    from synth.terminal.console import output, print_description
+
+    problem = _load(family, dict(pair("--option", text) for text in option or []))
+    rows = described(problem)
+    if as_csv:
+        print(frame_csv(tabulated(rows)), end="")
+        return
+    console = output()
+    console.print(f"{problem.title} ({problem.name})")
+    for source in problem.sources:
+        console.print(f"  {source}")
+    print_description(rows, console)
+
+
+@app.command()
+def run(
+    spec: SpecFile,
+    folder: Folder,
+    points: Annotated[int | None, typer.Option(help="At most this many designs.")] = None,
+    gap: Gap = None,
+    grid: Grid[bool | None] = None,
+    seed: Seed[int | None] = None,
+    time_limit: TimeLimit = None,
+    workers: Annotated[int | None, typer.Option(help="Processes to use.")] = None,
+    objective: Objectives = None,
+    every: Annotated[bool, typer.Option("--all", help="Show all designs, not only the first ten.")] = False,
+    more: Annotated[
+        Path | None, typer.Option(help="Go on from the front in this folder, of the same question.", metavar="DIR")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Search the designs for a spec, show them ranked and save them."""
+    begun = time.monotonic()
+    from synth.question.spec import read_spec
+    from synth.terminal.console import explanation_text
+
+    asked = read_spec(spec).merged(
+        points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
+        objectives=objectives(objective or []),
+    )  # fmt: skip
+    must_be_a_question(asked)
+    claim_output(folder, FRONT)
+    if asked.compares:
+        if more is not None:
+            raise InputError("--more", str(more), "a spec of one family")
+        choice_commands.compare_families(asked, folder, every, quiet)
+        return
+    front = _synthesize(asked, quiet, begun, more)
+    files = front.files()
+    if front.explanation is not None:
+        files["explanation.txt"] = explanation_text(front)
+    target = save_result(folder, files, FRONT, bool(front.interrupted))
+    if not quiet:
+        _show(front, files, every)
+        tell_written(target, folder, _listed(files))
+    if front.interrupted:
+        raise typer.Exit(STOPPED)
+    if not front.designs:
+        raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def explain(
+    spec: SpecFile,
+    folder: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder for explanation.csv and .json.", metavar="DIR")
+    ] = None,
+    physics: Annotated[bool, typer.Option("--physics", help="Let limits of the family give way as well.")] = False,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
+) -> None:
+    """Tell why nothing is feasible, over all parts and counts, and what would make it so."""
+    from synth.question.spec import read_spec
+    from synth.studies.infeasibility.explain import explanation_of
+    from synth.terminal.console import output, print_explanation, progress_display
+
+    asked = read_spec(spec).merged(time_limit=time_limit)
+    must_be_a_question(asked)
+    must_be_one_family(asked)
+    if folder is not None:
+        claim_output(folder, EXPLANATION)
+    with blamed_on(asked.file), progress_display(quiet) as progress:
+        request = asked.request()
+        found = explanation_of(request, asked.settings(), progress, physics)
+    if not quiet:
+        print_explanation(found, request.problem.title, output())
+    if folder is not None:
+        files = found.save(folder)
+        if not quiet:
+            tell_written(files[0].parent, folder, [file.name for file in files])
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not found.feasible:
+        raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def check(
+    design: DesignFile,
+    folder: Annotated[Path | None, typer.Option("--output", "-o", help="Folder for check.csv.", metavar="DIR")] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option("--at", help='Tell the state at an operating point, "speed=900 rpm".', metavar="NAME=VALUE"),
+    ] = None,
+) -> None:
+    """Compute everything about a given design and test every limit; nothing is rounded or searched."""
+    from synth.analysis.describe import described
+    from synth.question.spec import read_spec
+    from synth.terminal.console import check_table, output, print_check, print_state
+
+    asked = read_spec(design)
+    must_be_a_design(asked)
+    if folder is not None:
+        claim_output(folder)
+    with blamed_on(asked.file):
+        problem, catalogs, result = given_design(asked)
+        details = described(problem, catalogs)
+    found = None
+    if at:
+        from synth.analysis.operating_state import read_point, state_of
+
+        found = state_of(problem, result, read_point(problem, dict(pair("--at", text) for text in at)))
+    print_check(result, details, output())
+    if found is not None:
+        print_state(found, ", ".join(at or ()), output())
+    if folder is not None:
+        files = {"check.csv": check_table(result, details)}
+        if found is not None:
+            files["state.csv"] = as_csv(found)
+        save_files(folder, files)
+        print(f"\nwritten: {', '.join(str(folder / name) for name in files)}")
+    if result.violated:
+        raise typer.Exit(INFEASIBLE)
+
+
+@app.command()
+def simulate(
+    design: DesignFile,
+    folder: Folder,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="A setting of the simulation, name=value; repeat it.", metavar="NAME=VALUE"),
+    ] = None,
+) -> None:
+    """Simulate a given design in time; draw it, and set what it finds beside the closed forms."""
+    from synth.analysis.hooks import read_settings, second_opinion, simulate_design
+    from synth.question.spec import read_spec
+    from synth.terminal.console import output, print_simulation
+
+    asked = read_spec(design)
+    must_be_a_design(asked)
+    claim_output(folder)
+    pairs = [pair("--set", text) for text in setting or []]
+    for name, _ in pairs:
+        if [other for other, _ in pairs].count(name) > 1:
+            raise InputError("--set", name, "each setting once")
+    with blamed_on(asked.file):
+        problem, catalogs, result = given_design(asked)
+    frames = simulate_design(problem, result, read_settings(problem, dict(pairs), catalogs))
+    opinion = second_opinion(result, frames)
+    files = frame_files(frames)
+    if len(opinion):
+        files["second_opinion.csv"] = as_csv(opinion)
+    save_files(folder, files)
+    print_simulation(result, frames, opinion, output())
+    tell_written(folder, folder, sorted(files))
+
+
+@app.command()
+def curves(
+    family: Annotated[str, typer.Argument(help="Name of a family.", metavar="FAMILY")],
+    spec: Annotated[
+        Path, typer.Argument(help="A spec, or a design: a spec with values and parts.", metavar="SPEC.yaml")
+    ],
+    folder: Folder,
+) -> None:
+    """Draw the curves of a family for a spec, or for a given design."""
+    from synth.analysis.hooks import curves as curves_of
+    from synth.question.catalogs import catalogs_for
+    from synth.question.spec import read_spec
+
+    asked = read_spec(spec)
+    if asked.family != family:
+        raise InputError("FAMILY", family, f"{asked.family}, the family of {asked.file}")
+    claim_output(folder)
+    with blamed_on(asked.file):
+        if asked.values is None:
+            problem = _load(asked.family, asked.options)
+            catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
+            frames = curves_of(problem, asked.requirements, catalogs=catalogs)
+        else:
+            must_be_a_design(asked)
+            problem, catalogs, result = given_design(asked)
+            frames = curves_of(problem, asked.requirements, result, catalogs=catalogs)
+    files = frame_files(frames)
+    save_files(folder, files)
+    for frame in frames.values():
+        print(frame.attrs["title"])
+    tell_written(folder, folder, sorted(files))
+
+
+@app.command()
+def verify(
+    folder: FrontFolder,
+    time_limit: Annotated[
+        str | None, typer.Option(help="Give the proof up after this time, in seconds or such as '2 min'.")
+    ] = None,
+) -> None:
+    """Check a saved front without the search: its files, every design, and the proof of the certificate."""
+    from synth.results.loading import unchecked_front
+    from synth.terminal.console import output, print_verification
+    from synth.units import parse_quantity
+    from synth.verification.verify_comparison import is_comparison, verify_comparison
+
+    limit = {} if time_limit is None else {"time_limit": parse_quantity(time_limit, "s", "--time-limit")}
+    if is_comparison(folder):
+        verification = verify_comparison(folder, **limit)
+    else:
+        verification = unchecked_front(folder).verify(**limit)
+    print_verification(verification, output())
+    if not verification.holds:
+        raise typer.Exit(DOES_NOT_HOLD if verification.findings else NOT_PROVEN)
+
+
+batches.register(app)
+size_ranges.register(app)
+choice_commands.register(app)
+studies.register(app)
+robust_commands.register(app)
+
+
+# ---- what the commands share ----------------------------------------------------------------------------------------
+
+
+def _load(family: str, options: Mapping[str, str]) -> DesignProblem:
+    from synth.model.registry import load
+
+    return load(family, **options)
+
+
+def _synthesize(asked: Spec, quiet: bool, begun: float, more: Path | None) -> ParetoFront:
+    """Search the designs for a spec; the time limit counts from ``begun``, and ``more`` is where to go on from."""
+    from synth.results.loading import load_front
+    from synth.search.improvement import improve_for
+    from synth.search.synthesize import find_front
+    from synth.terminal.console import progress_display
+
+    given = None if more is None else load_front(more)
+    with blamed_on(asked.file), progress_display(quiet) as progress:
+        request = asked.request()
+        try:
+            settings = asked.settings().since(begun)
+            if given is not None:
+                return improve_for(given, request, settings, "--more", progress)
+            return find_front(request, settings, progress)
+        except KeyboardInterrupt:
+            tell("stopped before the search began; nothing is written")
+            raise typer.Exit(STOPPED) from None
+
+
+def _show(front: ParetoFront, files: Mapping[str, str], every: bool) -> None:
+    from synth.terminal.console import output, print_outcome
+
+    console = output()
+    if front.designs:
+        (report("table") or _plain_table)(front, console, every)
+    explanation = files.get("explanation.txt", "")
+    if "robust" in front.statistics and (front.designs or not explanation):
+        from synth.terminal.robust_console import print_robust
+
+        print_robust(front, console)
+    if explanation:
+        print(explanation, end="")
+    print_outcome(front, console)
+
+
+def _listed(files: Mapping[str, str]) -> list[str]:
+    """Return the names of the files of a front, its designs as from .. to."""
+    names = sorted(files)
+    designs = [name for name in names if name.startswith("design_")]
+    shown = [name for name in names if name not in designs]
+    if designs:
+        shown.append(designs[0] if len(designs) == 1 else f"{designs[0]} .. {designs[-1]}")
+    return shown
+
+
+def _plain_table(front: ParetoFront, console: Any, every: bool) -> None:
+    names = list(front.frame.objectives)
+    table = front.to_frame() if every else front.to_frame().head(10)
+    print(table.iloc[:, [0, 1, *range(6, 6 + len(names))]].to_string(index=False))

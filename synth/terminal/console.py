@@ -1,0 +1,478 @@
+"""What the command line shows: descriptions, checks, explanations and progress, as text of at most one screen width."""
+
+from __future__ import annotations
+
+import io
+import math
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rich import box
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.segment import Segment
+from rich.table import Table
+from rich.text import Text
+
+from synth.files import csv_text
+from synth.plain_text import PlainStream, printable
+from synth.results import Design, ParetoFront
+from synth.units import format_quantity, from_si, split_header
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.results.verification import Verification
+    from synth.studies.infeasibility.explain import Explanation
+
+WIDTH = 100  # where the output goes to a file or a pipe
+SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
+SAME = 1e-9  # relative; a second opinion closer than this is the same
+SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
+
+
+class PlainConsole(Console):
+    """A console that acts on the terminal by itself alone, never by what it is given to show."""
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        """Return what is shown, characters that act on a terminal written out."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else Segment(printable(segment.text), segment.style)
+
+
+def output() -> Console:
+    """Return the console on standard output; text is shown as it is, brackets mean nothing."""
+    return console_on(sys.stdout)
+
+
+def console_on(stream: Any, width: int | None = None) -> Console:
+    """Return a console that shows text as it is; where no terminal is, lines end at a fixed width."""
+    if width is None and not stream.isatty():
+        width = WIDTH
+    if isinstance(stream, PlainStream):
+        stream = stream.stream  # colours are the console's own
+    return PlainConsole(file=stream, width=width, markup=False, highlight=False, emoji=False)
+
+
+def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = None) -> Table:
+    """Return a table with one rule under its headings; column ``wide`` takes what room there is, and wraps."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="")
+    for k, heading in enumerate(headings):
+        table.add_column(
+            heading, justify="right" if k in right else "left", no_wrap=k != wide, overflow="fold",
+            ratio=1 if k == wide else None,
+        )  # fmt: skip
+    return table
+
+
+# ---- explain --------------------------------------------------------------------------------------------------------
+
+
+def print_explanation(found: Explanation, title: str, console: Console) -> None:
+    """Print why nothing is feasible, and every way out with the smallest change first."""
+    console.print(f"{title}: {found.message}")
+    for guard in found.fired:
+        console.print(f"\nRefused: {guard.name}: expected {guard.message}", soft_wrap=True)
+        for name, value in guard.lifted_by.items():
+            console.print(f"  not refused with {name} {value}", soft_wrap=True)
+    titles = {"requirement": "One requirement alone", "limit": "One limit alone", "fix": "One pin alone",
+              "choice": "Another choice", "joint": "All that was asked together", "physics": "All limits together",
+              "part": "Another part"}  # fmt: skip
+    for kind, heading in titles.items():
+        ways = [way for way in found.ways if way.kind == kind]
+        if not ways:
+            continue
+        console.print(f"\n{heading}")
+        for way in ways:
+            console.print(f"  {way.sentence}" + ("" if way.proven else " (less may do: not proven)"), soft_wrap=True)
+    if found.conflict and not found.minimal:
+        console.print("\nFewer limits may exclude each other as well: not proven to be minimal.")
+    for sentence in found.not_settled:
+        console.print(f"not settled: {sentence}")
+
+
+# ---- describe -------------------------------------------------------------------------------------------------------
+
+TITLES = {
+    "option": "Options (fixed before the search)",
+    "requirement": "Requirements",
+    "variable": "Variables (found by the search)",
+    "count": "Counts (found by the search)",
+    "choice": "Choices (found by the search)",
+    "slot": "Parts (found by the search)",
+    "column": "Columns of the parts that are used",
+    "derived": "Derived quantities",
+    "limit": "Limits",
+    "objective": "Objectives",
+    "setting": "Settings of the simulation (simulate --set)",
+    "point": "Operating point (check --at)",
+    "refusal": "Refused input",
+    "advice": "Remarks",
+}
+
+
+def print_description(description: Sequence[Mapping[Any, Any]], console: Console) -> None:
+    """Print the rows of ``describe``, kind by kind."""
+    for kind, title in TITLES.items():
+        rows = [row for row in description if row["kind"] == kind]
+        if not rows:
+            continue
+        console.print(f"\n{title}")
+        if kind in ("refusal", "advice"):
+            shown = plain_table("code", "meaning", wide=1)
+            for row in rows:
+                shown.add_row(row["name"], row["text"])
+        else:
+            shown = plain_table("name", "unit", "value", "meaning", wide=3)
+            for row in rows:
+                short = str(row["symbol"]).rsplit(".", 1)[-1]  # the slot stands in the name already
+                symbol = f" ({short})" if short not in ("", str(row["name"]).rsplit(".", 1)[-1]) else ""
+                shown.add_row(f"{row['name']}{symbol}", row["unit"], _range(row), _meaning(row))
+        console.print(shown)
+
+
+def _range(row: Mapping[Any, Any]) -> str:
+    kind, default = row["kind"], row["default"]
+    if kind in ("limit", "objective"):
+        return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
+    if kind in ("setting", "point", "option", "derived", "column", "slot", "choice"):
+        return "optional" if row["optional"] else (str(default) if default is not None else "")
+    low, high = row["lower"], row["upper"]
+    bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
+    if len(bounds) == 2:
+        span = " .. ".join(bounds)
+    else:
+        span = f">= {bounds[0]}" if bounds and not math.isnan(low) else f"<= {bounds[0]}" if bounds else ""
+    if kind != "requirement":
+        return span
+    if row["optional"]:
+        return f"optional  {span}"
+    if default is None:
+        return f"needed  {span}"
+    return f"{default:.6g}  {span}" if isinstance(default, float) else f"(see right)  {span}"
+
+
+def _meaning(row: Mapping[Any, Any]) -> str:
+    text = str(row["text"])
+    if row["choices"]:
+        text = f"{text}: {row['choices']}" if text else str(row["choices"])
+    if row["kind"] == "requirement" and isinstance(row["default"], str):
+        text = f"{text}; default {row['default']} (SI)"
+    if row["source"] and row["kind"] in ("derived", "limit"):
+        text = f"{text} [{row['source']}]"
+    if row["classification"] and row["kind"] in ("limit", "objective"):
+        text = f"{text}\n" * bool(text) + f"class: {row['classification']}"
+    return text
+
+
+# ---- check ----------------------------------------------------------------------------------------------------------
+
+
+def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: Console) -> None:
+    """Print every quantity and every limit of one design.
+
+    Parameters
+    ----------
+    design : Design
+    details : sequence of mapping
+        The rows of ``describe``, for symbols and meanings.
+    console : rich.console.Console
+    """
+    frame = design.frame
+    known = {
+        row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "refusal", "advice", "point")
+    }
+    console.print(f"{frame.title} ({frame.family})")
+    if frame.options:
+        console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
+
+    console.print("\nRequirements")
+    table = plain_table("name", "symbol", "value", "", "meaning", right=(2,), wide=4)
+    for name, si in frame.requirement_values.items():
+        row = known[name]
+        stated = "" if name in frame.requirements else "default"
+        table.add_row(name, row["symbol"], format_quantity(si, row["unit"]), stated, row["text"])
+    console.print(table)
+
+    console.print("\nParts")
+    table = plain_table("slot", "designation", "table", "source", wide=3)
+    for slot, part in design.parts.items():
+        table.add_row(slot, str(part), str(part["table"]), str(part.get("source") or ""))
+    console.print(table)
+
+    console.print("\nQuantities")
+    table = plain_table("name", "symbol", "value", "meaning", right=(2,), wide=3)
+    for name, label in design.choices.items():
+        table.add_row(name, known[name]["symbol"], label, known[name]["text"])
+    for name, si in design.values.items():
+        shown = format_quantity(si, frame.units[name]) if math.isfinite(si) else "does not exist"
+        table.add_row(name, known[name]["symbol"], shown, known[name]["text"])
+    console.print(table)
+
+    console.print("\nLimits")
+    table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4), wide=0)
+    for name, state in _limit_states(design).items():
+        value, limit = (_limit_side(design, name, side) for side in (0, 1))
+        used = design.utilisation.get(name)
+        shown_use = "" if used is None else f"{used:.4g}"
+        style = "bold red" if state == "VIOLATED" else ""
+        table.add_row(name, value, SIGNS[frame.limit_senses[name]], limit, shown_use, Text(state, style))
+    console.print(table)
+
+    for remark in design.not_checked:
+        console.print(remark)
+    if frame.not_asked:
+        console.print(f"not asked, so their limits are not built: {', '.join(frame.not_asked)}")
+    for name, remark in design.off_grid.items():
+        console.print(f"off the grid: {name}, {remark}")
+    for name, remark in design.outside.items():
+        console.print(f"outside the range that is searched: {name} {remark}")
+    for remark in design.advice:
+        console.print(f"advice: {remark}")
+    if design.violated:
+        console.print(f"\nviolated: {', '.join(design.violated)}")
+    else:
+        console.print(f"\nall {sum(s == 'ok' for s in _limit_states(design).values())} limits that apply hold")
+
+
+def print_state(found: pd.DataFrame, point: str, console: Console) -> None:
+    """Print the state of a design at an operating point: a column per course that leads there."""
+    from synth.analysis.operating_state import state_rows  # most checks ask for none
+
+    head, *rows = state_rows(found)
+    console.print(f"\nState at {point}")
+    table = plain_table(*head, right=range(1, len(head)))
+    for row in rows:
+        table.add_row(*row)
+    console.print(table)
+
+
+def _limit_side(design: Design, name: str, side: int) -> str:
+    si = design.limits[name][side]
+    return format_quantity(si, design.frame.limit_units[name]) if math.isfinite(si) else "-"
+
+
+def _limit_states(design: Design) -> dict[str, str]:
+    """Return how each limit stands: ok, VIOLATED, not checked (no column), or not defined (a guard fails)."""
+    unchecked = {remark.removeprefix("not checked: ").split(",")[0] for remark in design.not_checked}
+    states = {}
+    for name in design.frame.limit_units:
+        if name in design.violated:
+            states[name] = "VIOLATED"
+        elif name in unchecked:
+            states[name] = "not checked"
+        else:
+            states[name] = "ok" if design.utilisation.get(name) is not None else "not defined"
+    return states
+
+
+def print_simulation(
+    design: Design, frames: Mapping[str, pd.DataFrame], opinion: pd.DataFrame, console: Console
+) -> None:
+    """Print what simulations show: their titles and events, and the second opinion beside the closed forms."""
+    for frame in frames.values():
+        console.print(frame.attrs["title"])
+        unit = split_header(str(frame.attrs.get("x", frame.columns[0])))[1] or ""
+        events = [
+            f"{mark['label']} {mark['x']:.5g} {unit}" for mark in frame.attrs.get("marks", ()) if mark.get("label")
+        ]
+        if events:
+            console.print(f"  {', '.join(events)}")
+    if len(opinion):
+        console.print()
+        table = plain_table("quantity", "closed form", "simulation", "difference", "", right=(1, 2, 3, 4))
+        for row in opinion.to_dict("records"):
+            relative = row["relative_difference"]
+            if abs(relative) < SAME:
+                relative = row["difference"] = 0.0  # rounding only
+            numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
+            shown = [f"{x:.6g} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]
+            table.add_row(row["quantity"], *shown, f"{100 * relative:.3g} %" if math.isfinite(relative) else "")
+        console.print(table)
+    if design.violated:
+        console.print(f"\nlimits violated: {', '.join(design.violated)} (clutchsynth check lists them)")
+    console.print()
+
+
+def check_table(design: Design, details: Sequence[Mapping[Any, Any]]) -> str:
+    """Return the text of check.csv: every quantity and every limit in full precision."""
+    frame = design.frame
+    symbols = {row["name"]: row["symbol"] for row in details if row["kind"] not in ("limit", "objective", "point")}
+    units = {row["name"]: row["unit"] for row in details if row["kind"] == "requirement"}
+    columns = ["kind", "name", "symbol", "unit", "value", "limit", "sense", "utilisation", "state"]
+    rows: list[list[str]] = []
+    for name, si in frame.requirement_values.items():
+        rows.append(["requirement", name, symbols[name], units[name], _plain(si, units[name]), "", "", "", ""])
+    for slot, part in design.parts.items():
+        rows.append(["part", slot, symbols[slot], "", str(part), "", "", "", ""])
+    for name, label in design.choices.items():
+        rows.append(["choice", name, symbols[name], "", label, "", "", "", ""])
+    for name, si in design.values.items():
+        unit = frame.units[name]
+        grid = "off the grid" if name in design.off_grid else ""
+        grid = "outside the range that is searched" if name in design.outside else grid
+        rows.append([frame.kinds[name], name, symbols[name], unit, _plain(si, unit), "", "", "", grid])
+    for name, state in _limit_states(design).items():
+        unit, (value, limit), used = frame.limit_units[name], design.limits[name], design.utilisation.get(name)
+        sense = SIGNS[frame.limit_senses[name]]
+        shown = ["" if used is None else repr(used), state]
+        rows.append(["limit", name, "", unit, _plain(value, unit), _plain(limit, unit), sense, *shown])
+    return csv_text(columns, rows)
+
+
+def _plain(si: float, unit: str) -> str:
+    return repr(float(from_si(si, unit))) if math.isfinite(si) else ""
+
+
+# ---- run ------------------------------------------------------------------------------------------------------------
+
+
+def explanation_text(front: ParetoFront) -> str:
+    """Return in words and one table why nothing is feasible."""
+    explanation = front.explanation or {}
+    buffer = io.StringIO()
+    console = console_on(buffer, WIDTH)
+    console.print(explanation.get("message", "No design is feasible."))
+    conflicts = explanation.get("conflicts") or []
+    if conflicts:
+        table = plain_table("limit", "value", "limit value", "missed by", right=(1, 2, 3), wide=0)
+        for row in conflicts:
+            shown = [format_quantity(row[key], row["unit"]) for key in ("value", "limit_value")]
+            table.add_row(row["limit"], *shown, format_quantity(row["missed_by"], "%", 3))
+        console.print(table)
+    nearest = [f"{n} {value}" for n, value in (explanation.get("nearest") or {}).items()]
+    nearest += [f"{slot} {designation}" for slot, designation in (explanation.get("parts") or {}).items()]
+    if nearest:
+        console.print(f"nearest design: {', '.join(nearest)}")
+    return buffer.getvalue()
+
+
+def print_outcome(front: ParetoFront, console: Console) -> None:
+    """Print how far the front is proven, what the search did, and the remarks on the leading design."""
+    console.print()
+    if front.interrupted:
+        kept = "the designs found so far are shown and saved" if front.designs else "no design was found until then"
+        console.print(f"stopped: {front.interrupted}; {kept}")
+    if front.designs or front.interrupted:
+        console.print(front.certificate.sentence())
+    elif front.certificate.kind == "global":
+        console.print(f"proven: none of the {_brief(front.certificate.combinations)} combinations is feasible")
+    else:
+        console.print("not proven: bounds could not exclude every combination, solving found none that is feasible")
+    few = len(front.designs) < len(front.frame.objectives) and not front.complete
+    if front.designs and few:
+        best = list(front.frame.objectives)[: len(front.designs)]
+        console.print(f"fewer designs than objectives: what is best in {' and '.join(best)} alone is listed")
+    if front.complete and front.designs:
+        console.print("the front is complete: beyond that gap no other non-dominated design exists")
+    for line in statistics_lines(front.statistics):
+        console.print(line)
+    if front.designs:
+        leader = front.designs[0]
+        for remark in (*leader.advice, *leader.not_checked):
+            console.print(f"remark on #{leader.rank}: {remark}")
+
+
+def print_verification(verification: Verification, console: Console) -> None:
+    """Print what checking a front again has shown: every finding and what stays open, then the outcome."""
+    for sentence in (*verification.findings, *verification.open):
+        console.print(f"- {sentence}")
+    console.print(verification.sentence())
+
+
+def statistics_lines(statistics: Mapping[str, Any]) -> list[str]:
+    """Return the statistics of a search as lines: plain numbers on one, everything else on its own.
+
+    Examples
+    --------
+    >>> statistics_lines({"combinations": 12000, "nlp_solves": 31, "seconds": {"trace": 0.5, "tree": 1.25}})
+    ['combinations 12 000, nlp solves 31', 'seconds: trace 0.5, tree 1.25']
+    """
+    plain, lines = [], []
+    for key, value in statistics.items():
+        name = key.replace("_", " ")
+        if isinstance(value, Mapping):
+            if value:
+                lines.append(f"{name}: " + ", ".join(f"{k} {_brief(v)}" for k, v in value.items()))
+        elif isinstance(value, (list, tuple)):
+            lines += _left_out(name, value)
+        else:
+            plain.append(f"{name} {_brief(value)}")
+    return ([", ".join(plain)] if plain else []) + lines
+
+
+def _left_out(name: str, entries: Sequence[Any]) -> list[str]:
+    """Group rows left out by slot and reason, so that a thousand rows make one line."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    words = [str(entry) for entry in entries if not isinstance(entry, Mapping)]
+    for entry in entries:
+        if isinstance(entry, Mapping):
+            groups.setdefault((entry["slot"], entry["reason"]), []).append(entry["designation"])
+    lines = [f"{name}: {', '.join(words)}"] if words else []
+    for (slot, reason), members in groups.items():
+        shown = ", ".join(members[:3]) + (f" and {len(members) - 3} more" if len(members) > 3 else "")
+        lines.append(f"{name}: {slot} {shown} ({reason})")
+    return lines
+
+
+def _brief(value: Any) -> str:
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "-"}[value]
+    if isinstance(value, int):
+        return f"{value:,}".replace(",", " ")
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+@contextmanager
+def progress_display(quiet: bool) -> Iterator[Callable[[Mapping[str, Any]], None] | None]:
+    """Give a callable that shows the progress of a search on standard error.
+
+    A bar on a terminal, a line now and then elsewhere, nothing where ``quiet``.
+    """
+    if quiet:
+        yield None
+    elif not sys.stderr.isatty():
+        yield _occasional_lines()
+    else:
+        console = console_on(sys.stderr)
+        columns = (TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TimeElapsedColumn())
+        with Progress(*columns, TextColumn("{task.fields[figures]}"), console=console, transient=True) as bar:
+            task = bar.add_task("starting", total=1.0, figures="")
+
+            def show(state: Mapping[str, Any]) -> None:
+                done = float(state.get("done") or 0.0)
+                bar.update(task, completed=done, description=str(state.get("stage", "")), figures=_figures(state))
+
+            yield show
+
+
+def _occasional_lines() -> Callable[[Mapping[str, Any]], None]:
+    """Write a line when a stage begins and now and then within it, but none for what is over in a moment."""
+    shown_at, shown_stage = time.monotonic(), ""
+
+    def show(state: Mapping[str, Any]) -> None:
+        nonlocal shown_at, shown_stage
+        stage = str(state.get("stage", ""))
+        if time.monotonic() - shown_at < (SOON if stage != shown_stage else LATER):
+            return
+        shown_at, shown_stage = time.monotonic(), stage
+        percent = 100 * float(state.get("done") or 0.0)
+        print(f"{stage}: {percent:.0f} %, {_figures(state)}", file=sys.stderr, flush=True)
+
+    return show
+
+
+def _figures(state: Mapping[str, Any]) -> str:
+    parts = []
+    if state.get("combinations") is not None:
+        parts.append(f"{_brief(state['combinations'])} combinations")
+    if state.get("incumbents") is not None:
+        parts.append(f"{_brief(state['incumbents'])} designs")
+    if state.get("bound") is not None:
+        parts.append(f"bound {_brief(state['bound'])}")
+    if state.get("message"):
+        parts.append(str(state["message"]))
+    return ", ".join(parts)

@@ -1,0 +1,91 @@
+"""The command that asks how designs stand what scatters: rate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from synth.errors import InputError
+from synth.output_folder import RATING
+from synth.terminal.options import Folder, Quiet, TimeLimit
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, check_output, claim_output, pair, tell_written
+
+if TYPE_CHECKING:
+    from synth.results import Design, ParetoFront
+
+FILES = (".yaml", ".yml", ".json")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the command line."""
+    app.command(name="rate")(rate)
+
+
+def rate(
+    source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
+    folder: Folder,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What scatters: 'friction=catalogue range', 'load_torque=+-10 %', 'ambient_temperature=0 .. 60 degC', "
+            "'ring_outer_diameter=+-0.1 mm'; repeat it. By default what the question says under robust.",
+            metavar="NAME=RANGE",
+        ),
+    ] = None,
+    samples: Annotated[int | None, typer.Option(help="Points of the range, a power of 2.")] = None,
+    confidence: Annotated[str | None, typer.Option(help="Of the interval of the yield, such as '95 %'.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of the points.")] = None,
+    time_limit: TimeLimit = None,
+    quiet: Quiet = False,
+) -> None:
+    """Tell the worst limit and the yield of designs whose friction, duty or sizes scatter."""
+    pairs = [pair("--over", text) for text in over or []]
+    for name, _ in pairs:
+        if [other for other, _ in pairs].count(name) > 1:
+            raise InputError("--over", name, "each thing once")
+    check_output(folder)
+    if folder.resolve() == source.resolve():
+        raise InputError("--output", str(folder), "another folder than that of the front")
+    claim_output(folder, RATING)
+    from synth.robust.rate import rate as rate_designs
+    from synth.terminal.console import output, progress_display
+    from synth.terminal.robust_console import print_ratings
+    from synth.units import parse_quantity
+
+    seconds = None if time_limit is None else parse_quantity(time_limit, "s", "--time-limit")
+    flags = {"samples": samples, "confidence": confidence, "seed": seed}
+    told = {name: value for name, value in flags.items() if value is not None}
+    designs, problem, catalogs, known = _designs(source)
+    block = dict(pairs) if pairs else {**known}
+    with progress_display(quiet) as progress:
+        found = rate_designs(
+            designs, {**block, **told} if block or told else None, problem=problem, catalogs=catalogs,
+            progress=progress, time_limit=seconds,
+        )  # fmt: skip
+    target = found.save(folder)
+    if not quiet:
+        print_ratings(found, output())
+        tell_written(target, folder, sorted(found.files()))
+    if found.interrupted:
+        raise typer.Exit(STOPPED)
+    if not any(d.robust["holds"] for d in found.designs):
+        raise typer.Exit(INFEASIBLE)
+
+
+def _designs(source: Path) -> tuple[ParetoFront | Design, Any, Any, dict[str, Any]]:
+    """Return the designs of a folder or of a DESIGN.yaml, their problem and tables, and what scatters by their own."""
+    if source.suffix.lower() not in FILES or source.is_dir():
+        from synth.results.loading import load_front
+
+        front = load_front(source)
+        return front, None, None, dict(front.frame.restated.get("robust") or {})
+    from synth.question.spec import read_spec
+    from synth.terminal.design_spec import given_design, must_be_a_design
+
+    asked = read_spec(source)
+    must_be_a_design(asked)
+    with blamed_on(asked.file):
+        problem, catalogs, design = given_design(asked)
+    return design, problem, catalogs, dict(asked.robust)

@@ -1,0 +1,84 @@
+"""What the command line shows of designs that were rated over a range."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from synth.question.uncertainty import LIMITS
+from synth.results import Design
+from synth.results.rating_tables import shown_at
+from synth.robust.rate import taken_off, told_of
+from synth.terminal.console import plain_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.console import Console
+
+    from synth.results import ParetoFront
+    from synth.robust.rate import Ratings
+
+SHOWN = 20
+
+
+def print_ratings(found: Ratings, console: Console) -> None:
+    """Print a line per design: whether it keeps its limits, its yield, its worst limit and where that is."""
+    if found.designs:
+        frame = found.designs[0].frame
+        console.print(f"{frame.title} ({frame.family}): {_scatter(found)}")
+        console.print()
+        print_designs(found.designs, console)
+        console.print()
+    if found.interrupted:
+        console.print(f"stopped: {found.interrupted}; {found.missing} designs are not rated")
+    console.print(found.sentence())
+
+
+def print_robust(front: ParetoFront, console: Console) -> None:
+    """Print how the designs of a front stand the range that was asked."""
+    told, gone = front.settings["robust"], front.statistics["robust"].get("taken_off", 0)
+    console.print()
+    if front.designs:
+        print_designs(front.designs, console)
+        console.print()
+        console.print(told_of(front.designs, told["samples"]))
+    if gone:
+        console.print(taken_off(gone))
+    if front.designs and told["mode"] == LIMITS and front.certificate.kind == "global":
+        console.print("what is proven below counts for all designs that keep their limits over the whole range")
+
+
+def print_designs(designs: Sequence[Design], console: Console) -> None:
+    """Print a line per rated design."""
+    rated = [d for d in designs if d.robust]
+    table = plain_table("", "robust", "proof", "yield", "interval", "used", "worst limit", right=(3, 5), wide=6)
+    for design in rated[:SHOWN]:
+        told = design.robust
+        used = "" if told["worst_utilisation"] is None else f"{float(told['worst_utilisation']):.3f}"
+        where = shown_at(told["worst_at"], told["units"])
+        table.add_row(
+            f"#{design.rank}" if design.rank else "", "yes" if told["holds"] else "no", told["proof"],
+            percent(told["yield"]), f"{percent(told['yield_low'])} .. {percent(told['yield_high'])}", used,
+            f"{told['worst_limit']}{' at ' if where else ''}{where}",
+        )  # fmt: skip
+    console.print(table)
+    if len(rated) > SHOWN:
+        console.print(f"{len(rated) - SHOWN} more in the files")
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent; what is not all is never shown as all.
+
+    Examples
+    --------
+    >>> percent(1.0), percent(0.99999), percent(0.4846)
+    ('100 %', '99.99 %', '48.46 %')
+    """
+    shown = int(share * 1e4) / 100 if share < 1 else 100
+    return f"{shown:.4g} %"
+
+
+def _scatter(found: Ratings) -> str:
+    asked = {k: v for k, v in found.asked.items() if isinstance(v, str) and k != "mode"}
+    asked |= dict(found.asked.get("tolerance", {}))
+    return ", ".join(f"{name} {text}" for name, text in asked.items())

@@ -1,0 +1,85 @@
+"""The command size-range."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from synth.errors import InputError
+from synth.output_folder import SIZE_RANGE, save_result
+from synth.results.drawings import report
+from synth.terminal.batch_commands import Database, Workers, batch_job, finish
+from synth.terminal.options import Headings, Quiet, RowFamily, RowPoints
+from synth.terminal.session import STOPPED, claim_output, tell_written
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the command line."""
+    app.command(name="size-range")(size_range)
+
+
+def size_range(
+    source: Annotated[
+        Path, typer.Argument(help="The folder of a batch, or a table of rows to run first.", metavar="DIR|ROWS.csv")
+    ],
+    variants: Annotated[
+        int | None, typer.Option(help="How many variants; by default the fewest that serve all rows.")
+    ] = None,
+    objective: Annotated[
+        str | None, typer.Option(help="What should exceed each row's own best as little as possible.", metavar="NAME")
+    ] = None,
+    per_row: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--per-row", help="A variable that each row decides, no part of a variant; repeat it.", metavar="NAME"
+        ),
+    ] = None,
+    candidates: Annotated[int, typer.Option(help="Consider at most about this many designs.")] = 500,
+    gap: Annotated[float, typer.Option(help="How far from proven the choice may be, as a fraction.")] = 1e-3,
+    time_limit: Annotated[str, typer.Option(help="Time for choosing, in seconds or such as '2 min'.")] = "60",
+    folder: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder for the results; by default DIR.", metavar="DIR")
+    ] = None,
+    family: RowFamily = None,
+    mapping: Headings = None,
+    points: RowPoints = None,
+    workers: Workers = None,
+    database: Database = None,
+    quiet: Quiet = False,
+) -> None:
+    """Choose the standard variants that serve all feasible rows of a batch."""
+    from synth.units import parse_quantity
+    from synth.variants.size_range import size_range as choose
+
+    seconds = parse_quantity(time_limit, "s", "--time-limit")
+    job_id = None
+    if not source.is_dir():
+        if folder is None:
+            raise InputError("--output", None, "a folder for the batch and the size range, for example -o out/")
+        asked = None if objective is None else [objective]
+        job = batch_job(
+            source, folder, family, mapping, points, None, True, 0, None, asked, None, database
+        )  # fmt: skip
+        job_id = job.id
+        code = finish(lambda: job, workers, None, quiet)
+        if code == STOPPED:
+            raise typer.Exit(code)
+        source = folder
+    target = source if folder is None else folder
+    claim_output(target)
+    found = choose(
+        source, variants, objective, per_row=per_row or None, candidates=candidates, gap=gap, time_limit=seconds,
+        database=database, job=job_id,
+    )  # fmt: skip
+    files = found.files()
+    draw = report("figure")
+    if draw is not None:
+        files["curve.svg"] = draw(found.curve())
+    save_result(target, files, SIZE_RANGE, False)
+    if not quiet:
+        from synth.terminal.size_range_console import print_size_range
+
+        print_size_range(found)
+        tell_written(target, target, sorted(files))

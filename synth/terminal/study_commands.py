@@ -1,0 +1,97 @@
+"""The commands that vary a question: whatif."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from synth.errors import InputError
+from synth.output_folder import STUDY
+from synth.terminal.design_spec import must_be_a_question, must_be_one_family
+from synth.terminal.options import Folder, Gap, Grid, Objectives, Quiet, Seed, SpecFile
+from synth.terminal.session import INFEASIBLE, STOPPED, blamed_on, claim_output, objectives, tell, tell_written
+
+if TYPE_CHECKING:
+    from synth.question.spec import Spec
+    from synth.studies.whatif.study import Study
+
+
+def register(app: typer.Typer) -> None:
+    """Add the commands to the command line."""
+    app.command(name="whatif")(whatif)
+
+
+def whatif(
+    spec: SpecFile,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            help="What to vary: 'load_torque=500:700:50 N*m', 'mass <= 40,50,60 kg', 'weights.mass=1:4:1', "
+            "'parts.SLOT=a,b', 'options.NAME=a,b' or 'robust.friction=+-5 %, +-10 %'; give it once or twice.",
+            metavar="TEXT",
+        ),
+    ],
+    folder: Folder,
+    points: Annotated[
+        int | None, typer.Option(help="At most this many designs per step; 3 unless the spec says otherwise.")
+    ] = None,
+    gap: Gap = None,
+    grid: Grid[bool | None] = None,
+    seed: Seed[int | None] = None,
+    time_limit: Annotated[
+        str | None, typer.Option(help="Stop after this time for all steps, in seconds or such as '2 min'.")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Threads to use.")] = None,
+    objective: Objectives = None,
+    breaks: Annotated[
+        bool, typer.Option("--breaks/--no-breaks", help="Find where the best parts or counts change.")
+    ] = True,
+    quiet: Quiet = False,
+) -> None:
+    """Answer a spec for many values of a requirement, limit, weight, part or option; run again to go on."""
+    from synth.question.spec import read_spec
+
+    asked = read_spec(spec).merged(
+        points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
+        objectives=objectives(objective or []),
+    )  # fmt: skip
+    must_be_a_question(asked)
+    must_be_one_family(asked)
+    claim_output(folder, STUDY)
+    study = _study(asked, vary, folder, breaks, quiet)
+    target = study.save(folder)
+    if not quiet:
+        from synth.studies.study_store import STEPS
+        from synth.terminal.console import output
+        from synth.terminal.study_console import print_study
+
+        print_study(study, output())
+        kept = [f"{STEPS}/"] if (target / STEPS).is_dir() else []  # not before the first step is finished
+        tell_written(target, folder, [*sorted(study.files()), *kept])
+    if study.interrupted:
+        raise typer.Exit(STOPPED)
+    if not study.feasible:
+        raise typer.Exit(INFEASIBLE)
+
+
+def _study(asked: Spec, vary: list[str], folder: Path, breaks: bool, quiet: bool) -> Study:
+    from synth.studies.whatif.run import POINTS, study_of
+    from synth.studies.whatif.vary import split_text
+    from synth.terminal.console import progress_display
+
+    wanted: dict[str, Any] = {}
+    for text in vary:
+        name, values = split_text(text)
+        if name in wanted:
+            raise InputError("--vary", text, "each thing once")
+        wanted[name] = values
+    with blamed_on(asked.file):
+        request, settings = asked.request(), asked.settings(points=POINTS)
+        with progress_display(quiet) as progress:
+            try:
+                return study_of(request, settings, wanted, progress, breaks, folder)
+            except KeyboardInterrupt:
+                tell("stopped before the first step was begun; nothing is written")
+                raise typer.Exit(STOPPED) from None

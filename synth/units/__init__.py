@@ -1,0 +1,30 @@
+"""Quantities: numbers with units, read and written."""
+
+from synth.units.grammar import Unit, parse_unit
+from synth.units.quantity import (
+    Quantity,
+    check_number,
+    format_quantity,
+    from_si,
+    header,
+    number_to_si,
+    outward,
+    parse_quantity,
+    split_header,
+    to_si,
+)
+
+__all__ = [
+    "Quantity",
+    "Unit",
+    "check_number",
+    "format_quantity",
+    "from_si",
+    "header",
+    "number_to_si",
+    "outward",
+    "parse_quantity",
+    "parse_unit",
+    "split_header",
+    "to_si",
+]

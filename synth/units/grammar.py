@@ -1,0 +1,463 @@
+"""The grammar of units."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import lru_cache
+
+from synth.errors import InputError
+
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
+_ABSOLUTE_ZERO = Fraction("273.15")
+_KP = Fraction("9.80665")
+_TINY = Fraction(1, 10**100)
+_LONGEST = 100
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit read as one of its kind.
+
+    Parameters
+    ----------
+    text : str
+        The unit as it was written.
+    factor : float
+        SI value of one of this unit [SI unit per unit].
+    offset : float
+        Added after the factor [K]; 273.15 for degC, else 0.
+    kind : str
+        Name of the kind, for example ``torque``.
+    dimension : tuple of int
+        Exponents of kg, m, s, K, A; an angle has none.
+    ratio : Fraction
+        The factor without rounding (angles: to 60 digits).
+    """
+
+    text: str
+    factor: float
+    offset: float
+    kind: str
+    dimension: tuple[int, int, int, int, int]
+    ratio: Fraction = field(repr=False, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """A parsed unit text before its kind is settled."""
+
+    ratio: Fraction
+    dimension: tuple[int, int, int, int, int]
+    angle: int
+    tokens: dict[str, int]
+
+
+_NONE = (0, 0, 0, 0, 0)
+_MASS = (1, 0, 0, 0, 0)
+_LENGTH = (0, 1, 0, 0, 0)
+_TIME = (0, 0, 1, 0, 0)
+_KELVIN = (0, 0, 0, 1, 0)
+_CURRENT = (0, 0, 0, 0, 1)
+_RATE = (0, 0, -1, 0, 0)
+_FORCE = (1, 1, -2, 0, 0)
+_PRESSURE = (1, -1, -2, 0, 0)
+_ENERGY = (1, 2, -2, 0, 0)
+_POWER = (1, 2, -3, 0, 0)
+_VOLTAGE = (1, 2, -3, 0, -1)
+_FLUX = (1, 0, -2, 0, -1)
+_RESISTANCE = (1, 2, -3, 0, -2)
+
+_Dimension = tuple[int, int, int, int, int]
+
+
+def _decades(dimension: _Dimension, **powers: int) -> dict[str, tuple[Fraction, _Dimension, int]]:
+    return {name: (Fraction(10) ** power, dimension, 0) for name, power in powers.items()}
+
+
+# token: (SI factor, dimension, power of an angle)
+_TOKENS: dict[str, tuple[Fraction, _Dimension, int]] = {
+    **_decades(_LENGTH, um=-6, mm=-3, cm=-2, dm=-1, m=0, km=3),
+    **_decades(_MASS, g=-3, kg=0, t=3),
+    **_decades(_TIME, ms=-3, s=0),
+    "min": (Fraction(60), _TIME, 0),
+    "h": (Fraction(3600), _TIME, 0),
+    **_decades(_RATE, Hz=0, kHz=3),
+    **_decades(_FORCE, mN=-3, N=0, kN=3, MN=6),
+    "kp": (_KP, _FORCE, 0),
+    **_decades(_ENERGY, Nmm=-3, Nm=0, kNm=3),
+    "mkp": (_KP, _ENERGY, 0),
+    "kpm": (_KP, _ENERGY, 0),
+    **_decades(_PRESSURE, Pa=0, kPa=3, bar=5, MPa=6, GPa=9),
+    **_decades(_ENERGY, mJ=-3, J=0, kJ=3, MJ=6),
+    "Wh": (Fraction(3600), _ENERGY, 0),
+    "kWh": (Fraction(3600000), _ENERGY, 0),
+    **_decades(_POWER, W=0, kW=3, MW=6),
+    "rad": (Fraction(1), _NONE, 1),
+    "deg": (_PI / 180, _NONE, 1),
+    "°": (_PI / 180, _NONE, 1),
+    "rev": (2 * _PI, _NONE, 1),
+    "rpm": (2 * _PI / 60, _RATE, 1),
+    "K": (Fraction(1), _KELVIN, 0),
+    **_decades(_CURRENT, mA=-3, A=0, kA=3),
+    **_decades(_VOLTAGE, mV=-3, V=0),
+    **_decades(_FLUX, mT=-3, T=0),
+    "ohm": (Fraction(1), _RESISTANCE, 0),
+}
+_ALIASES = {"µm": "um", "μm": "um"}
+_FORCE_TOKENS = frozenset({"mN", "N", "kN", "MN", "kp"})
+_MOMENT_TOKENS = frozenset({"Nmm", "Nm", "kNm"})
+_HISTORIC_TOKENS = frozenset({"kp", "mkp", "kpm"})
+_ENERGY_TOKENS = frozenset({"mJ", "J", "kJ", "MJ", "Wh", "kWh", "W", "kW", "MW"})
+_LENGTH_TOKENS = frozenset({"um", "mm", "cm", "dm", "m", "km"})
+
+# what people type who are used to other spellings
+_SPELLINGS = {
+    "sec": "s",
+    "hr": "h",
+    "hour": "h",
+    "u": "1/min",
+    "kgf": "kp",
+    "l": "dm3",
+    "degree": "deg",
+    "degrees": "deg",
+    "celsius": "degC",
+    "c": "degC",
+    "°c": "degC",
+    "ω": "ohm",
+}
+
+# kind: (in words, units to type)
+_KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "dimensionless": ("a number without a unit", ("-", "%")),
+    "angle": ("an angle", ("deg", "rad")),
+    "length": ("a length", ("mm", "cm", "m")),
+    "area": ("an area", ("mm2", "cm2", "m2")),
+    "volume": ("a volume", ("mm3", "cm3", "dm3")),
+    "second_moment_of_area": ("a second moment of area", ("mm4", "cm4")),
+    "mass": ("a mass", ("kg", "g", "t")),
+    "density": ("a density", ("kg/m3", "g/cm3", "kg/dm3")),
+    "inertia": ("a moment of inertia", ("kg*m2", "g*cm2", "kg*mm2")),
+    "time": ("a time", ("s", "min", "h")),
+    "frequency": ("a frequency (events per time)", ("1/h", "1/min", "Hz")),
+    "angular_speed": ("an angular speed", ("1/min", "rpm", "rad/s")),
+    "angular_acceleration": ("an angular acceleration", ("rad/s2", "1/s2", "deg/s2")),
+    "angular_jerk": ("an angular jerk", ("rad/s3", "1/s3")),
+    "speed": ("a speed", ("m/s", "mm/s", "km/h")),
+    "acceleration": ("an acceleration", ("m/s2", "mm/s2")),
+    "force": ("a force", ("N", "kN", "kp")),
+    "torque": ("a torque", ("N*m", "kNm", "mkp")),
+    "torque_rate": ("a torque per time", ("N*m/s", "kNm/s")),
+    "torsional_stiffness": ("a torsional stiffness", ("N*m/rad", "N*m/deg")),
+    "stiffness": ("a stiffness (force per length)", ("N/mm", "N/m", "kN/mm")),
+    "pressure": ("a pressure or stress", ("N/mm2", "MPa", "bar")),
+    "energy": ("an energy", ("J", "kJ", "mkp")),
+    "energy_per_area": ("an energy per area", ("J/mm2", "J/cm2", "kJ/m2")),
+    "energy_density": ("an energy per volume", ("J/mm3", "J/cm3")),
+    "power": ("a power", ("W", "kW", "MW")),
+    "power_per_area": ("a power per area", ("W/mm2", "J/(mm2 h)", "W/cm2")),
+    "temperature": ("a temperature", ("degC", "K")),
+    "temperature_rise": ("a temperature rise", ("K",)),
+    "heat_transfer": ("a heat transfer coefficient", ("W/(m2 K)", "W/(mm2 K)")),
+    "conductivity": ("a thermal conductivity", ("W/(m K)", "W/(mm K)")),
+    "specific_heat": ("a specific heat", ("J/(kg K)", "kJ/(kg K)")),
+    "expansion": ("a thermal expansion", ("um/(m K)", "1/K")),
+    "viscosity": ("a dynamic viscosity", ("Pa*s", "N*s/m2")),
+    "wear": ("a wear volume per energy", ("mm3/MJ", "mm3/J", "mm3/(N m)")),
+    "flux_density": ("a flux density", ("T", "mT")),
+    "current": ("a current", ("A", "mA", "kA")),
+    "current_density": ("a current density", ("A/mm2", "A/m2")),
+    "voltage": ("a voltage", ("V", "mV")),
+    "resistance": ("a resistance", ("ohm",)),
+}
+
+# (dimension, power of the angle): kind, where flavour plays no part
+_BY_DIMENSION: dict[tuple[_Dimension, int], str] = {
+    (_NONE, 0): "dimensionless",
+    (_NONE, 1): "angle",
+    (_LENGTH, 0): "length",
+    ((0, 2, 0, 0, 0), 0): "area",
+    ((0, 3, 0, 0, 0), 0): "volume",
+    ((0, 4, 0, 0, 0), 0): "second_moment_of_area",
+    (_MASS, 0): "mass",
+    ((1, -3, 0, 0, 0), 0): "density",
+    ((1, 2, 0, 0, 0), 0): "inertia",
+    (_TIME, 0): "time",
+    (_RATE, 0): "frequency",
+    (_RATE, 1): "angular_speed",
+    ((0, 0, -2, 0, 0), 1): "angular_acceleration",
+    ((0, 0, -3, 0, 0), 1): "angular_jerk",
+    ((0, 1, -1, 0, 0), 0): "speed",
+    ((0, 1, -2, 0, 0), 0): "acceleration",
+    (_FORCE, 0): "force",
+    (_ENERGY, -1): "torsional_stiffness",
+    ((1, 0, -3, 0, 0), 0): "power_per_area",
+    (_KELVIN, 0): "temperature_rise",
+    ((1, 0, -3, -1, 0), 0): "heat_transfer",
+    ((1, 1, -3, -1, 0), 0): "conductivity",
+    ((0, 2, -2, -1, 0), 0): "specific_heat",
+    ((0, 0, 0, -1, 0), 0): "expansion",
+    ((1, -1, -1, 0, 0), 0): "viscosity",
+    ((-1, 1, 2, 0, 0), 0): "wear",
+    (_FLUX, 0): "flux_density",
+    (_CURRENT, 0): "current",
+    ((0, -2, 0, 0, 1), 0): "current_density",
+    (_VOLTAGE, 0): "voltage",
+    (_RESISTANCE, 0): "resistance",
+}
+
+# dimension: (kind of a force flavour, kind of an energy flavour)
+_BY_FLAVOUR: dict[_Dimension, tuple[str, str]] = {
+    _ENERGY: ("torque", "energy"),
+    (1, 0, -2, 0, 0): ("stiffness", "energy_per_area"),
+    _PRESSURE: ("pressure", "energy_density"),
+    _POWER: ("torque_rate", "power"),
+}
+
+_SUPERSCRIPTS = str.maketrans("²³⁴⁵⁶⁷⁸⁹", "23456789")
+_TOKEN = re.compile(r"([^\W\d_]+|°)(\^?)([2-9])?\Z")
+_SPACES = dict.fromkeys((0x00A0, 0x2007, 0x2009, 0x202F), " ")
+_GRAMMAR = (
+    "a unit such as N*m, J/(mm2 h) or 1/min: tokens joined by a space, * or /, exponent as a digit after the token"
+)
+
+
+class _Refused(Exception):
+    """A sentence on its way to the place that knows the field."""
+
+    def __init__(self, expected: str) -> None:
+        self.expected = expected
+        super().__init__(expected)
+
+
+def _factor(text: str, whole: str) -> tuple[str, int]:
+    """Token and exponent of one factor of a unit."""
+    plain = text.translate(_SUPERSCRIPTS)
+    if plain in ("degC", "°C", "%", "-"):
+        if plain in ("degC", "°C"):
+            raise _Refused("K inside a compound unit, where a temperature is a difference")
+        raise _Refused(f"{plain!r} to stand alone as a unit")
+    match = _TOKEN.match(plain)
+    if match is None:
+        if "^-" in plain or "⁻" in text:
+            raise _Refused("a fraction instead of a negative exponent, for example 1/min")
+        raise _Refused(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
+    name = _ALIASES.get(match[1], match[1])
+    if match[2] and not match[3]:
+        raise _Refused("an exponent 2 to 9 after ^")
+    if name not in _TOKENS:
+        raise _Refused(_unknown(name))
+    return name, int(match[3] or 1)
+
+
+def _unknown(name: str) -> str:
+    """Say what is right instead of a token that is not in the grammar."""
+    known = [*_TOKENS, "degC"]
+    same = [token for token in known if token.casefold() == name.casefold()]
+    if same:
+        return f"{' or '.join(same)} instead of {name} (capitals matter in units)"
+    if name.casefold() in _SPELLINGS:
+        return f"{_SPELLINGS[name.casefold()]} instead of {name}"
+    return f"a known unit instead of {name}: one of {', '.join(known)}, - or %"
+
+
+def _read(text: str) -> _Reading:
+    """Read a unit text; the kind is not settled yet."""
+    if not text:
+        raise _Refused("a unit; - where there is none")
+    if len(text) > _LONGEST:
+        raise _Refused(f"a unit of at most {_LONGEST} characters")
+    if text == "-":
+        return _Reading(Fraction(1), _NONE, 0, {"-": 1})
+    if text == "%":
+        return _Reading(Fraction(1, 100), _NONE, 0, {"%": 1})
+    if text in ("degC", "°C"):
+        return _Reading(Fraction(1), _KELVIN, 0, {"degC": 1})
+    if "**" in text:
+        raise _Refused("an exponent as a digit after the token, for example mm2")
+    if text[0] == "/":
+        raise _Refused(f"1 as an empty numerator: 1{text}")
+    powers: dict[str, int] = {}
+    rest = _tight(text)
+    sign, first = 1, True
+    while True:
+        if rest.startswith("("):
+            if sign > 0:
+                raise _Refused("brackets in a denominator only, for example J/(mm2 h)")
+            inside, closed, rest = rest[1:].partition(")")
+            if not closed:
+                raise _Refused("a closing bracket")
+            factors = re.split(r"[ *·]", inside)
+            if "/" in inside or "(" in inside:
+                raise _Refused("a product of tokens in the bracket, for example J/(mm2 h)")
+        else:
+            match = re.match(r"[^ *·/()]*", rest)
+            one = match[0] if match else ""
+            rest = rest[len(one) :]
+            if one == "1" and first and rest.startswith("/"):
+                factors = []
+            else:
+                factors = [one]
+        for item in factors:
+            name, exponent = _factor(item, text)
+            powers[name] = powers.get(name, 0) + sign * exponent
+        first = False
+        if not rest:
+            break
+        if rest[0] not in " *·/":
+            raise _Refused(_GRAMMAR)
+        sign = -1 if rest[0] == "/" else 1
+        rest = rest[1:]
+    return _combine(powers)
+
+
+def _tight(text: str) -> str:
+    """Drop the spaces that mean nothing: around a joint and inside a bracket."""
+    return re.sub(r" *([*·/]) *", lambda m: m[1], re.sub(r"\( *", "(", re.sub(r" *\)", ")", text.translate(_SPACES))))
+
+
+def _combine(powers: dict[str, int]) -> _Reading:
+    ratio, angle = Fraction(1), 0
+    dimension = [0, 0, 0, 0, 0]
+    for name, power in powers.items():
+        factor, exponents, turn = _TOKENS[name]
+        ratio *= factor**power
+        angle += turn * power
+        for i, exponent in enumerate(exponents):
+            dimension[i] += exponent * power
+    kg, m, s, kelvin, ampere = dimension
+    if not _TINY < ratio < 1 / _TINY:
+        raise _Refused("a unit that is neither this large nor this small")
+    return _Reading(ratio, (kg, m, s, kelvin, ampere), angle, powers)
+
+
+def _si_text(dimension: _Dimension, angle: int) -> str:
+    """Write a dimension as an SI unit in the grammar of this module."""
+    above: list[str] = []
+    below: list[str] = []
+    for name, power in zip(("kg", "m", "s", "K", "A", "rad"), (*dimension, angle), strict=True):
+        if power:
+            (above if power > 0 else below).append(name + (str(abs(power)) if abs(power) > 1 else ""))
+    text = "*".join(above) or "1"
+    if below:
+        text += "/" + (below[0] if len(below) == 1 else f"({' '.join(below)})")
+    return text
+
+
+def _kinds(reading: _Reading) -> dict[str, tuple[Fraction, Fraction]]:
+    """Kinds a unit may be read as, the first by default, each with factor and offset."""
+    tokens, dimension, ratio = reading.tokens, reading.dimension, reading.ratio
+    plain = (ratio, Fraction(0))
+    if tokens == {"degC": 1}:
+        return {"temperature": (ratio, _ABSOLUTE_ZERO)}
+    if tokens == {"K": 1}:
+        return {"temperature_rise": plain, "temperature": plain}
+    if tokens == {"min": -1}:
+        return {"angular_speed": (ratio * 2 * _PI, Fraction(0)), "frequency": plain}
+    if tokens == {"s": -1}:
+        return {"frequency": plain, "angular_speed": plain}
+    if tokens == {"s": -2}:
+        return {"angular_acceleration": plain}
+    if tokens == {"s": -3}:
+        return {"angular_jerk": plain}
+    if dimension in _BY_FLAVOUR and reading.angle == 0:
+        of_force, of_energy = _BY_FLAVOUR[dimension]
+        used = set(tokens)
+        if used & _ENERGY_TOKENS:
+            return {of_energy: plain}
+        lever = any(tokens[name] > 0 for name in used & _LENGTH_TOKENS)
+        moment = bool(used & (_MOMENT_TOKENS | {"mkp", "kpm"})) or (bool(used & _FORCE_TOKENS) and lever)
+        if dimension in (_ENERGY, _POWER):
+            if used & _HISTORIC_TOKENS or not used & (_FORCE_TOKENS | _MOMENT_TOKENS):
+                # the kilopond metre measured torque and work alike, and base units say neither
+                return {of_force: plain, of_energy: plain}
+            return {of_force: plain}
+        return {of_energy: plain} if moment else {of_force: plain}
+    kind = _BY_DIMENSION.get((dimension, reading.angle))
+    return {kind or f"quantity in {_si_text(dimension, reading.angle)}": plain}
+
+
+def _in_words(kind: str) -> tuple[str, tuple[str, ...]]:
+    if kind in _KINDS:
+        return _KINDS[kind]
+    return f"a {kind}", (kind.removeprefix("quantity in "),)
+
+
+def _wrong_kind(text: str, kind: str, found: str) -> str:
+    """Say which units fit a kind, and what the given unit would have been."""
+    words, units = _in_words(kind)
+    listed = units[0] if len(units) == 1 else f"{', '.join(units[:-1])} or {units[-1]}"
+    measures = f"{text} measures {_in_words(found)[0]}"
+    if kind == "dimensionless":
+        return f"{words}, or one in %; {measures}"
+    if kind not in _KINDS:
+        return f"{words}; {measures}"
+    if kind == "temperature_rise" and found == "temperature":
+        return f"{words} in K: a difference of 20 degC is typed as 20 K"
+    if kind == "angular_speed" and found == "frequency":
+        return (
+            f"{words}: type 1/min or rpm for revolutions per minute, rad/s or deg/s for an angle per time; "
+            f"{text} counts events (50 turns per second are 3000 1/min)"
+        )
+    if kind == "frequency" and found == "angular_speed":
+        return f"{words}: type 1/h, 1/min, 1/s or Hz; {text} is an angular speed"
+    return f"{words}, for example in {listed}; {measures}"
+
+
+@lru_cache(maxsize=4096)
+def _resolve(text: str, kind: str | None) -> Unit:
+    reading = _read(text)
+    kinds = _kinds(reading)
+    chosen = next(iter(kinds)) if kind is None else kind
+    if chosen not in kinds:
+        raise _Refused(_wrong_kind(text, chosen, next(iter(kinds))))
+    ratio, offset = kinds[chosen]
+    return Unit(text, float(ratio), float(offset), chosen, reading.dimension, ratio)
+
+
+def parse_unit(text: str, kind: str | None = None) -> Unit:
+    """Read a unit.
+
+    Parameters
+    ----------
+    text : str
+        The unit, for example ``N/mm2``.
+    kind : str, optional
+        Read the unit as one of this kind. Without it the unit is a declared one and the kind follows from it.
+
+    Returns
+    -------
+    Unit
+        Factor, offset, kind and dimension.
+
+    Raises
+    ------
+    InputError
+        The text is not in the grammar, or the unit is not one of the kind.
+
+    Examples
+    --------
+    >>> parse_unit("N/mm2").factor
+    1000000.0
+    >>> parse_unit("1/min").kind, parse_unit("1/min", "frequency").factor
+    ('angular_speed', 0.016667)
+    """
+    return _unit(text, kind, "unit")
+
+
+def _unit(text: object, kind: str | None, name: str) -> Unit:
+    if not isinstance(text, str):
+        raise InputError(name, text, "a unit as text, for example 'N*m'")
+    try:
+        return _resolve(text, kind)
+    except _Refused as refusal:
+        raise InputError(name, text, refusal.expected) from None
+
+
+def _is_unit(text: str) -> bool:
+    try:
+        _resolve(text, None)
+    except _Refused:
+        return False
+    return True

@@ -1,0 +1,460 @@
+"""Size ranges: from the designs of a batch, the standard variants that serve all its rows."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.errors import InputError, whole_number
+from synth.files import csv_text, frame_csv
+from synth.input_limits import INPUT_LIMITS
+from synth.jobs.batch import DATABASE, BatchResult
+from synth.jobs.outputs import SHORT, explanation_of, status_of
+from synth.jobs.store import Store, file_url
+from synth.model.model import Model
+from synth.model.registry import load
+from synth.output_folder import SIZE_RANGE, save_result
+from synth.question.catalogs import as_catalogs
+from synth.results import shown_value
+from synth.units import header
+from synth.variants.coverage import Asked, Structure, Variant, objective_of_pairs, pinned_by_all
+from synth.variants.p_median import Choice, Chooser
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from synth.jobs.models import Job
+
+FORMAT = 1
+CANDIDATES = 500
+CURVE_POINTS = 40
+SAMPLE = 400  # questions that candidates are tried on where there are too many of them
+
+
+@dataclass(frozen=True)
+class SizeRange:
+    """The variants chosen, which row each serves, and how the cost falls with their number."""
+
+    objective: str
+    unit: str
+    sense: str
+    variants: list[dict[str, Any]]
+    assignment: list[dict[str, Any]]
+    unserved: list[dict[str, Any]]
+    points: list[dict[str, Any]]
+    fewest: int
+    fewest_proven: bool
+    cost: float
+    gap: float
+    statistics: Mapping[str, Any]
+    taken_from_row: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+    def curve(self) -> pd.DataFrame:
+        """Return the number of variants against the total excess, ready to be drawn."""
+        import pandas as pd
+
+        excess = header("total_excess", self.unit)
+        frame = pd.DataFrame({
+            "variants [-]": [point["variants"] for point in self.points],
+            excess: [point["cost"] for point in self.points],
+            "gap [-]": [point["gap"] for point in self.points],
+        })  # fmt: skip
+        frame.attrs = {
+            "title": f"Size range: excess of {self.objective} over the number of variants",
+            "x": "variants [-]",
+            "panels": [{"label": excess, "columns": [excess], "points": True}],
+            "marks": [{"x": len(self.variants), "label": "chosen"}],
+        }
+        return frame
+
+    def files(self) -> dict[str, str]:
+        """Return what ``save`` writes: file name -> text."""
+        record = {
+            "format": FORMAT,
+            "objective": self.objective,
+            "unit": self.unit,
+            "sense": self.sense,
+            "variants": len(self.variants),
+            "fewest": self.fewest,
+            "fewest_proven": self.fewest_proven,
+            "total_excess": self.cost,
+            "gap": self.gap,
+            "taken_from_row": {family: list(names) for family, names in self.taken_from_row.items()},
+            "statistics": dict(self.statistics),
+        }
+        return {
+            "variants.csv": _csv(self.variants),
+            "assignment.csv": _csv(self.assignment),
+            "unserved.csv": _csv(self.unserved, ("line", "row", "family", "status", "reason")),
+            "curve.csv": frame_csv(self.curve()),
+            "size_range.json": json.dumps(record, indent=1, ensure_ascii=False) + "\n",
+        }
+
+    def save(self, folder: str | Path) -> Path:
+        """Write variants.csv, assignment.csv, unserved.csv, curve.csv and size_range.json, all or none."""
+        return save_result(folder, self.files(), SIZE_RANGE, False)
+
+
+def _csv(rows: Sequence[Mapping[str, Any]], columns: Sequence[str] = ()) -> str:
+    names = list(columns) or list(dict.fromkeys(name for row in rows for name in row))
+    return csv_text(names, [[row.get(name) for name in names] for row in rows])
+
+
+def size_range(
+    source: str | Path | BatchResult,
+    variants: int | None = None,
+    objective: str | None = None,
+    *,
+    per_row: Sequence[str] | None = None,
+    candidates: int = CANDIDATES,
+    gap: float = 1e-3,
+    time_limit: float = 60.0,
+    database: str | None = None,
+    job: str | None = None,
+) -> SizeRange:
+    """Choose standard variants among the designs of a batch, so that every feasible row is served.
+
+    Parameters
+    ----------
+    source : folder of a batch, or BatchResult
+    variants : int, optional
+        How many; the fewest that serve all rows if not given. Those with the least total excess are chosen.
+    objective : str, optional
+        The quantity whose excess over each row's own best counts; the first objective of the batch if not given.
+    per_row : sequence of str, optional
+        Variables that each row decides for itself, so that they are no part of a variant (the ramp time of a
+        controller, not a diameter). By default those that every row of a family pins.
+    candidates : int
+        At most about this many designs are considered.
+    gap : float
+        Share of the total excess that need not be proven.
+    time_limit : float
+        Seconds for choosing.
+    database, job : str, optional
+        Where the batch is kept, if not in its folder.
+
+    Returns
+    -------
+    SizeRange
+
+    Raises
+    ------
+    InputError
+        There is no such batch, or so few variants cannot serve all rows.
+    """
+    _check(variants, candidates, gap, time_limit)
+    started = time.monotonic()
+    if isinstance(source, BatchResult):
+        database, job, catalogs, own = source.database, source.job, source.catalogs, source.own
+    else:
+        catalogs = own = None
+    with _opened(source, database) as store:
+        found = _job(store, source, job)
+        batch = _Batch(store, found, objective, catalogs, own)
+    batch.prepare(per_row)
+    chosen_from = batch.thinned(candidates)
+    costs, values = batch.costs(chosen_from)
+    evaluated = time.monotonic() - started
+    served = np.isfinite(costs).any(axis=1)
+    if not served.any():
+        raise InputError("rows", batch.job.source, "at least one row with a feasible design")
+    weights = np.array([asked.weight for asked in batch.asked], dtype=float)
+    begin = time.monotonic()
+    chooser = Chooser(costs[served], weights[served], gap)
+    fewest, bound = chooser.fewest(begin + 0.25 * time_limit)
+    if variants is not None and variants < len(fewest):
+        proven = "" if bound == len(fewest) else f" (not fewer than {bound} in any case)"
+        raise InputError("variants", variants, f"at least {len(fewest)}: fewer do not serve all rows{proven}")
+    number = len(fewest) if variants is None else variants
+    choice = chooser.best(number, begin + 0.6 * time_limit, fewest)
+    points = _curve(chooser, choice, number, fewest, begin + time_limit)
+    statistics = {
+        "rows_served": int(weights[served].sum()),
+        "questions": len(batch.asked),
+        "designs": batch.designs,
+        "candidates": len(chosen_from),
+        "candidates_not_dominated": chooser.columns,
+        "pairs": int(np.isfinite(costs).sum()),
+        "seconds": {"evaluate": evaluated, "choose": time.monotonic() - begin},
+    }
+    return batch.result(choice, chosen_from, costs, values, points, (fewest, bound), statistics)
+
+
+def _check(variants: Any, candidates: Any, gap: Any, time_limit: Any) -> None:
+    if variants is not None:
+        whole_number(variants, "variants", INPUT_LIMITS.listed, path=("variants",))
+    whole_number(candidates, "candidates", INPUT_LIMITS.listed, path=("candidates",))
+    if not isinstance(gap, (int, float)) or isinstance(gap, bool) or not 0 <= gap < 1:
+        raise InputError("gap", gap, "a fraction from 0 to below 1, for example 0.001")
+    if not isinstance(time_limit, (int, float)) or isinstance(time_limit, bool) or not 0 < time_limit < math.inf:
+        raise InputError("time_limit", time_limit, "a positive number of seconds")
+
+
+def _opened(source: Any, database: Any) -> Store:
+    if database is not None:
+        return Store(database, create=False)
+    file = Path(source) / DATABASE
+    if not file.is_file():
+        raise InputError("DIR", str(source), f"the folder of a batch, with {DATABASE} in it (or its database)")
+    return Store(file_url(file.resolve()), create=False)
+
+
+def _job(store: Store, source: Any, job: str | None) -> Job:
+    """Return the job that is meant: by its id, or the latest that was written to the folder."""
+    jobs = store.jobs()
+    if job is not None:
+        fitting = [found for found in jobs if found.id == job]
+    else:
+        folder = str(Path(source).resolve())
+        fitting = [found for found in jobs if found.folder == folder] or (jobs if len(jobs) == 1 else [])
+    if not fitting:
+        raise InputError("DIR", str(source), "the folder that a batch was written to")
+    return max(fitting, key=lambda found: found.updated)
+
+
+class _Batch:
+    """The questions and designs of a job, and everything that is said of them."""
+
+    def __init__(self, store: Store, job: Job, objective: str | None, catalogs: Any, own: Any) -> None:
+        self.job = job
+        content = job.content
+        if content["own"] is not None and own is None:
+            raise InputError("DIR", job.source, "the BatchResult itself: its problem is not registered")
+        self.problem = own
+        if content["catalogs"] == "memory" and catalogs is None:
+            raise InputError("DIR", job.source, "the BatchResult itself: its tables were in memory")
+        self.catalogs = as_catalogs(catalogs if content["catalogs"] == "memory" else content["catalogs"])
+        self.rows = [
+            {
+                "line": row.line, "key": row.key, "family": row.family, "status": status_of(row),
+                "explanation": explanation_of(row),
+                "designs": [] if row.content is None else row.content.get("designs", []),
+            }
+            for row in store.rows(job.id, canonical=False)
+        ]  # fmt: skip
+        self.layouts = list(store.layouts(job.id).values())
+        questions = {key: content for key, _, content in store.questions(job.id)}
+        self.objective, self.sense = self._objective(objective)
+        self.sign = 1.0 if self.sense == "min" else -1.0
+        self.designs = 0
+        self.reasons: dict[str, str] = {}
+        self.asked: list[Asked] = []
+        self.own: dict[str, list[dict[str, Any]]] = {}
+        weight: dict[str, int] = {}
+        for row in self.rows:
+            if row["designs"]:
+                weight[row["key"]] = weight.get(row["key"], 0) + 1
+                self.own[row["key"]] = row["designs"]
+        for key in sorted(weight):
+            best = min(self.sign * d["objectives"][self.objective] for d in self.own[key])
+            self.asked.append(Asked(key, questions[key], weight[key], best))
+
+    def _objective(self, asked: str | None) -> tuple[str, str]:
+        """Return the objective that counts, and its sense; every row must have it."""
+        if not self.layouts:
+            raise InputError("DIR", self.job.source, "a batch with at least one feasible row")
+        shared = [name for name in self.layouts[0]["senses"] if all(name in x["senses"] for x in self.layouts)]
+        if asked is None and not shared:
+            raise InputError("objective", None, "an objective that all families of the batch have")
+        if asked is not None and asked not in shared:
+            raise InputError("objective", asked, f"an objective of the whole batch: {', '.join(shared) or 'none'}")
+        name = shared[0] if asked is None else asked
+        return name, str(self.layouts[0]["senses"][name])
+
+    # -- structures and candidates -------------------------------------------------------------
+
+    def prepare(self, per_row: Sequence[str] | None) -> None:
+        """Sort the questions by structure, and make variants of the designs."""
+        problems: dict[str, Any] = {}
+        self.structures: dict[str, Structure] = {}
+        self.place: dict[str, list[int]] = {}  # structure -> its questions among all
+        self.models: dict[str, Model] = {}
+        for k, asked in enumerate(self.asked):
+            question = asked.question
+            label = json.dumps([question["family"], question["options"]])
+            if label not in problems:
+                own = self.problem is not None and self.problem.name == question["family"]
+                problems[label] = load(self.problem if own else question["family"], **question["options"])
+            name = json.dumps([label, sorted(question["requirements"])])
+            if name not in self.structures:
+                self.structures[name] = Structure(problems[label], self.catalogs)
+                self.place[name] = []
+                given = frozenset(question["requirements"])
+                self.models[name] = problems[label].model(given, self.catalogs)
+            self.structures[name].asked.append(asked)
+            self.place[name].append(k)
+        self.used: dict[str, frozenset[str]] = {}
+        for family in sorted({a.question["family"] for a in self.asked}):
+            own = [a.question for a in self.asked if a.question["family"] == family]
+            model = next(m for n, m in self.models.items() if self.structures[n].problem.name == family)
+            pinned = pinned_by_all(own, model)
+            if per_row is not None:
+                names = [n for n in per_row if n in {v.name for v in model.variables}]
+                loose = next((n for n in names if n not in pinned), None)
+                if loose is not None:
+                    raise InputError("per_row", loose, f"variables that every row of {family} pins")
+                pinned = frozenset(names)
+            self.used[family] = pinned
+        self._collect()
+
+    def _collect(self) -> None:
+        """Collect the distinct variants of all designs, each with the questions it is the answer to."""
+        known: dict[str, int] = {}
+        self.candidates: list[Variant] = []
+        self.source: list[list[int]] = []  # per candidate
+        for k, asked in enumerate(self.asked):
+            family = asked.question["family"]
+            for design in self.own[asked.key]:
+                self.designs += 1
+                values = {n: v for n, v in design["values"].items() if n not in self.used[family]}
+                variant = Variant(family, values, design["choices"], design["parts"])
+                place = known.setdefault(variant.label, len(self.candidates))
+                if place == len(self.candidates):
+                    self.candidates.append(variant)
+                    self.source.append([])
+                self.source[place].append(k)
+
+    def thinned(self, most: int) -> list[int]:
+        """Return at most about so many candidates: over all sizes those that serve most, and one for every row."""
+        if len(self.candidates) <= most:
+            return list(range(len(self.candidates)))
+        step = max(len(self.asked) // SAMPLE, 1)
+        sample = set(range(0, len(self.asked), step))
+        costs, values = self.costs(list(range(len(self.candidates))), sample)
+        finite = np.isfinite(costs)
+        serves = finite.sum(axis=0)
+        size = np.where(serves > 0, np.nansum(np.where(finite, values, np.nan), axis=0) / np.maximum(serves, 1), np.inf)
+        order = np.lexsort((np.arange(len(size)), size))
+        chosen = {int(group[np.argmax(serves[group])]) for group in np.array_split(order, most)}
+        left = finite.any(axis=1) & ~finite[:, sorted(chosen)].any(axis=1)
+        while left.any():
+            best = int(np.argmax(finite[left].sum(axis=0)))
+            chosen.add(best)
+            left &= ~finite[:, best]
+        return sorted(chosen)
+
+    def costs(self, chosen: list[int], only: set[int] | None = None) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return, per question and candidate, the excess (infinite where it cannot serve) and the objective in SI."""
+        values = np.full((len(self.asked), len(chosen)), np.nan)
+        reasons = [""] * len(self.asked)
+        for name, structure in self.structures.items():
+            family = structure.problem.name
+            columns = [j for j, c in enumerate(chosen) if self.candidates[c].family == family]
+            places = [k for k in self.place[name] if only is None or k in only]
+            part = Structure(structure.problem, structure.catalogs, [self.asked[k] for k in places])
+            found, why = objective_of_pairs(
+                part, [self.candidates[chosen[j]] for j in columns], self.objective, self.used[family]
+            )
+            if places and columns:
+                values[np.ix_(places, columns)] = found
+            for k, text in zip(places, why, strict=True):
+                reasons[k] = text
+        signed = self.sign * values
+        least = np.nanmin(np.where(np.isnan(signed), np.inf, signed), axis=1, initial=np.inf)
+        excess = np.where(np.isnan(signed), np.inf, signed - np.where(np.isfinite(least), least, 0.0)[:, None])
+        self.reasons = {a.key: text for a, text in zip(self.asked, reasons, strict=True)}
+        return excess, values
+
+    # -- the result ----------------------------------------------------------------------------
+
+    def result(
+        self,
+        choice: Choice,
+        chosen_from: list[int],
+        costs: NDArray[Any],
+        values: NDArray[Any],
+        points: list[Choice],
+        fewest: tuple[list[int], int],
+        statistics: Mapping[str, Any],
+    ) -> SizeRange:
+        """Say everything in terms of rows and designs."""
+        unit = next(iter(self.models.values())).units[self.objective]
+        serving = self._serving(choice, costs)
+        order = sorted(set(serving.values()), key=lambda j: (self.candidates[chosen_from[j]].family,
+                       float(np.nanmean(values[:, j])), self.candidates[chosen_from[j]].label))  # fmt: skip
+        number = {j: k + 1 for k, j in enumerate(order)}
+        assignment, unserved = [], []
+        index = {asked.key: k for k, asked in enumerate(self.asked)}
+        scale = float(shown_value(1.0, unit) or 1.0)
+        count, total, most = dict.fromkeys(order, 0), dict.fromkeys(order, 0.0), dict.fromkeys(order, -math.inf)
+        for row in self.rows:
+            k = index.get(row["key"]) if row["key"] is not None else None
+            if k is None or k not in serving:
+                unserved.append(self._unserved(row, k))
+                continue
+            j = serving[k]
+            count[j] += 1
+            total[j] += float(costs[k, j]) * scale
+            most[j] = max(most[j], self.sign * float(values[k, j]))
+            assignment.append({
+                "line": row["line"], "row": row["key"][:SHORT], "family": row["family"], "variant": number[j],
+                header(self.objective, unit): shown_value(float(values[k, j]), unit),
+                header("own_best", unit): shown_value(self.sign * self.asked[k].best, unit),
+                header("excess", unit): float(costs[k, j]) * scale,
+            })  # fmt: skip
+        table = []
+        for j in order:
+            variant = self.candidates[chosen_from[j]]
+            shown = shown_value(self.sign * most[j], unit)
+            table.append({
+                "variant": number[j], "family": variant.family, "rows": count[j],
+                header("total_excess", unit): total[j], header(self.objective, unit): shown, **self._columns(variant),
+            })  # fmt: skip
+        return SizeRange(
+            objective=self.objective, unit=unit, sense=self.sense, variants=table, assignment=assignment,
+            unserved=unserved,
+            points=[{"variants": len(p.columns), "cost": p.cost * scale, "gap": p.gap} for p in points],
+            fewest=len(fewest[0]), fewest_proven=fewest[1] == len(fewest[0]), cost=choice.cost * scale, gap=choice.gap,
+            statistics=statistics,
+            taken_from_row={family: sorted(names) for family, names in self.used.items() if names},
+        )  # fmt: skip
+
+    def _serving(self, choice: Choice, costs: NDArray[Any]) -> dict[int, int]:
+        """Return question -> column of the cheapest chosen variant; of equal ones the first."""
+        columns = list(choice.columns)
+        part = costs[:, columns]
+        best = np.argmin(part, axis=1)
+        return {k: columns[int(best[k])] for k in range(len(costs)) if np.isfinite(part[k, best[k]])}
+
+    def _unserved(self, row: Mapping[str, Any], k: int | None) -> dict[str, Any]:
+        reason = row["explanation"] or "it has not been solved"
+        if k is not None:
+            reason = self.reasons.get(row["key"]) or "no candidate serves it"
+        return {
+            "line": row["line"], "row": (row["key"] or "")[:SHORT], "family": row["family"], "status": row["status"],
+            "reason": reason,
+        }  # fmt: skip
+
+    def _columns(self, variant: Variant) -> dict[str, Any]:
+        units = next(m for n, m in self.models.items() if self.structures[n].problem.name == variant.family).units
+        sizes = {header(n, units[n]): shown_value(v, units[n]) for n, v in variant.values.items() if n in units}
+        return {**sizes, **variant.choices, **variant.parts}
+
+
+def _curve(chooser: Chooser, choice: Choice, number: int, fewest: list[int], deadline: float) -> list[Choice]:
+    """Return the best choice for every number of variants, from the fewest until no row has an excess.
+
+    Where the time does not reach for every number, numbers further and further apart are taken.
+    """
+    found = {number: choice}
+    start, before, k = fewest, math.inf, len(fewest)
+    step = 1
+    while k <= chooser.columns and before > 0.0 and time.monotonic() < deadline:
+        if k not in found:
+            left = deadline - time.monotonic()
+            found[k] = chooser.best(k, time.monotonic() + max(left / 4, 0.5), start, exact=left > 30.0)
+        start, before = chooser.inner(found[k].columns), found[k].cost
+        if len(found) > CURVE_POINTS / 2:
+            step = max(step, k // 8)
+        k += step
+    if before > 0.0 and chooser.columns >= len(fewest):
+        found.setdefault(chooser.columns, chooser.best(chooser.columns, deadline, start, exact=False))
+    return [found[k] for k in sorted(found)]

@@ -1,0 +1,608 @@
+"""Independent check of a front, saved or just computed: the record, every design, and the claim itself.
+
+What decides is not shared with the search: designs are evaluated by CasADi on the written-out formulas, not by the
+generated evaluator of the model, limits are read here, and the claim is proven again by a tree of its own
+(``synth.proof.tree``) with an interval arithmetic of its own. What says *what was asked* is shared, so that a fault
+there is not found here: the reading of units, tables, options and declarations into the question
+(``synth.question.instance``, with requirement values, bounds, grids and the combinations that are allowed), the
+recorded formulas (``synth.model.program``, ``synth.special``) and the tolerance at which a limit holds
+(``synth.feasibility``). Elasticities, statistics and explanations are only covered by the checksum of the file.
+
+On purpose limits are read a second time, here and in ``synth.proof.tree``: sides, scales, guards and what makes a limit
+void come from the declaration itself, not from the constraints that everything else reads. Of what a user limits both
+take the quantity, sense and bound of the question, and nothing else.
+
+A file that contradicts itself is told in a sentence (``synth.verification.contradictions``) before anything is
+computed from it; whatever fails after that is a fault of the program and is not caught.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from synth.analysis.restate import asked_again, problem_of
+from synth.errors import InputError
+from synth.feasibility import Status, holds, residual, utilisation
+from synth.files import read_bytes
+from synth.model.problem import DesignProblem
+from synth.proof.questions import Outcome, Point
+from synth.proof.tree import NO_SCALE, ProofTree, void_without
+from synth.proof_limits import PROOF, ProofLimits
+from synth.question.inputs import inputs_of_design
+from synth.question.instance import Instance
+from synth.results.front_record import changed
+from synth.results.verification import Verification, percent
+from synth.special import expanded
+from synth.units import format_quantity
+from synth.verification.contradictions import contradiction
+
+if TYPE_CHECKING:
+    from synth.results import Design, ParetoFront
+from synth.verification.pareto_regions import uncovered
+
+SAME = 1e-9  # relative; numbers that agree so far are the same
+NOISE = 1e-15  # absolute; below it nothing is compared
+
+
+def verify(
+    front: ParetoFront,
+    problem: str | type[DesignProblem] | DesignProblem | None = None,
+    catalogs: Any = None,
+    time_limit: float = 120.0,
+) -> Verification:
+    """Check a front without help of the search that made it.
+
+    Parameters
+    ----------
+    front : ParetoFront
+        From ``synthesize`` or ``load_front``.
+    problem : family name, DesignProblem subclass or instance, optional
+        For a front of a problem of your own that was loaded from a file.
+    catalogs : folder or mapping, optional
+        Own tables that were in memory; those that were files are read again.
+    time_limit : float
+        Seconds for the proof.
+
+    Returns
+    -------
+    Verification
+
+    Raises
+    ------
+    InputError
+        When the problem or its tables cannot be had.
+    """
+    started = time.monotonic()
+    check = checked(front, problem, catalogs, started + time_limit)
+    return Verification(
+        findings=tuple(check.findings),
+        open=tuple(check.open),
+        certificate=front.certificate.kind,
+        designs=len(front.designs),
+        claimed_gap=front.certificate.gap,
+        amounts=front.certificate.amounts() if check.readable else "",
+        proven_gap=check.proven,
+        nodes=check.nodes,
+        seconds=time.monotonic() - started,
+    )
+
+
+def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float, limits: ProofLimits = PROOF) -> Check:
+    """Return the check of a front, done; see ``verify``."""
+    check = Check(front, deadline, limits)
+    if not check.read():
+        return check
+    if front.question is not None and problem is None and catalogs is None:
+        check.ask(front.question)
+    else:
+        own, tables = problem_of(front, problem, catalogs)
+        try:
+            check.ask(asked_again(front, own, tables))
+        except InputError as error:
+            check.find(f"the question of the record cannot be asked: {error}")
+            return check
+    if check.listed():
+        check.claim()
+    return check
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """How a limit stands at a design."""
+
+    name: str
+    value: float
+    bound: float
+    sense: str
+    scale: float
+    guard: bool = False
+    void: bool = False
+
+    @property
+    def residual(self) -> float:
+        """How far the limit is missed; not a number where a side does not exist, and then it does not hold."""
+        return float(residual(self.value, self.bound, self.sense, self.scale))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the limit is kept."""
+        return bool(holds(self.residual, self.guard))
+
+
+class Check:
+    """One verification in progress."""
+
+    def __init__(self, front: ParetoFront, deadline: float, limits: ProofLimits = PROOF) -> None:
+        self.front, self.deadline, self.limits = front, deadline, limits
+        self.readable = True
+        self.findings: list[str] = []
+        self.open: list[str] = []
+        self.proven: float | None = None
+        self.nodes = 0
+
+    def find(self, sentence: str) -> None:
+        """Note what is not as claimed."""
+        self.findings.append(sentence)
+
+    # -- the record ----------------------------------------------------------------------------
+
+    def read(self) -> bool:
+        """Compare what was read with its checksum and with the other files; tell whether it can be read at all."""
+        record, folder = self.front.record, self.front.folder
+        if record is None:
+            return True
+        fault = changed(record)
+        if fault:
+            self.find(fault)
+        strange = contradiction(self.front)
+        self.readable = not strange
+        if strange:
+            self.find(f"front.json contradicts itself ({strange})")
+        elif folder is not None:
+            self._files(folder)
+        return self.readable
+
+    def _files(self, folder: Path) -> None:
+        for name, text in self.front.files().items():
+            path = folder / name
+            try:
+                same = name == "front.json" or read_bytes(path, name).decode("utf-8") == text
+            except InputError:
+                self.find(f"{name} is missing")
+            except UnicodeDecodeError:
+                self.find(f"{name} is not the text that was saved")
+            else:
+                if not same:
+                    self.find(f"{name} says something else than front.json")
+
+    # -- the designs ---------------------------------------------------------------------------
+
+    def ask(self, instance: Instance) -> None:
+        """Take the question that the front answers."""
+        self.instance, self.model = instance, instance.model
+        self._evaluate = _evaluator(instance)
+        self._refused = _refusal_functions(instance)
+        self._void_without = void_without(instance.model)
+
+    def listed(self) -> bool:
+        """Check what the record says of the question and of the designs; tell whether it claims what can be proven."""
+        front, frame = self.front, self.front.frame
+        self._frame()
+        for design in front.designs:
+            self._design(design)
+        if any(name not in self.model.quantity_sx for name in frame.objectives) or not frame.objectives:
+            self.find(f"objectives: {', '.join(frame.objectives) or 'none'} is not what the problem can give")
+            return False
+        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in frame.objectives.values()])
+        values = [[d.objectives.get(name, math.nan) for name in frame.objectives] for d in front.designs]
+        self.signed = np.array(values, dtype=float).reshape(-1, len(self.senses)) * self.senses
+        if len(front.designs):
+            if not np.isfinite(self.signed).all():
+                self.find("an objective of a design has no value")
+                return False
+            self._ranking()
+            self._dominance()
+        self._numbers()
+        if front.certificate.kind != "global":
+            return False
+        gap = front.certificate.gap
+        if front.designs and not (isinstance(gap, float) and 0 < gap < 1):
+            self.find("the certificate claims a proof but no gap")
+            return False
+        return not front.designs or self._measured(front.certificate.resolution, gap or 0.0)
+
+    def _frame(self) -> None:
+        frame, model = self.front.frame, self.model
+        for name, value in self.instance.requirements.items():
+            if not _same(frame.requirement_values.get(name, math.nan), value):
+                self.find(f"requirement_values_si: {name} is not what the requirements say")
+        own = self.instance.own
+        limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in own}
+        units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in own}
+        kinds = {name: kind for name, _, kind in model.declaration.quantities()}
+        told = {
+            "limit_senses": (frame.limit_senses, limits),
+            "limit_units": (frame.limit_units, units),
+            "units": (frame.units, model.units),
+            "kinds": (frame.kinds, kinds),
+        }
+        for name, (saved, right) in told.items():
+            if dict(saved) != right:
+                self.find(f"{name}: they are not those of the problem")
+        if list(frame.not_asked) != list(self.instance.not_asked):
+            self.find("not_asked: other requirements were left out")
+
+    def _design(self, design: Design) -> None:
+        label = f"design {design.rank}"
+        point = self._point(design, label)
+        if point is None:
+            return
+        values, limits, remarks = self._evaluate(point)
+        for name, value in values.items():
+            if name not in design.values or not _same(design.values[name], value):
+                self.find(f"{label}: {name} is {design.values.get(name)}, evaluated it is {value}")
+        for name in self.front.frame.objectives:
+            if name in values and not _same(design.objectives.get(name, math.nan), values[name]):
+                self.find(f"{label}: objective {name} is {design.objectives.get(name)}, evaluated {values[name]}")
+        if {text.split(":")[0] for text in design.advice} - {"unusual_part"} != remarks:
+            self.find(f"{label}: the remarks are {sorted(design.advice)}, evaluated they are {sorted(remarks)}")
+        self._limits(design, label, point, limits, values)
+        self._bounds(design, label, point)
+        self._claims_of_design(design, label)
+
+    def _point(self, design: Design, label: str) -> Point | None:
+        """Return the inputs of a design, or None where they do not exist."""
+        rows: dict[str, int] = {}
+        for slot in self.instance.selection.slots:
+            part = design.parts.get(slot.slot)
+            offered = [slot.table.designations[r] for r in slot.rows]
+            if part is None or str(part) not in offered:
+                self.find(f"{label}: {slot.slot} {part} is not a row that this question may use")
+                return None
+            index = slot.table.row_index(str(part))
+            current = slot.table.row(index)
+            told = {k: v for k, v in part.items() if k not in ("table", "hash")}
+            if part["table"] != slot.table.name or part["hash"] != slot.table.hashes[index] or told != current:
+                self.find(f"{label}: {slot.slot} {part} is not the row of table {slot.table.name} in force")
+            rows[slot.slot] = offered.index(str(part))
+        selection = self.instance.selection
+        for name, allowed in selection.counts.items():
+            if not np.any(np.abs(allowed - design.values.get(name, math.nan)) < SAME):
+                self.find(f"{label}: {name} {design.values.get(name)} is not a value that this question may use")
+                return None
+        for name, indices in selection.choices.items():
+            labels = [self.model.declaration.choices[name].labels[int(k)] for k in indices]
+            if design.choices.get(name) not in labels:
+                self.find(f"{label}: {name} {design.choices.get(name)} is not a label that this question may use")
+                return None
+        variables = np.array([design.values.get(v.name, math.nan) for v in self.model.variables], dtype=float)
+        slots = {s.slot: s for s in selection.slots}
+        data = inputs_of_design(
+            self.model, self.instance.requirements, self.instance.row_values, design.values, design.choices,
+            lambda entry: float(slots[entry.name].columns[entry.column][rows[entry.name]]),
+        )  # fmt: skip
+        return Point(variables, data, rows)
+
+    def _limits(
+        self,
+        design: Design,
+        label: str,
+        point: Point,
+        limits: Mapping[str, tuple[float, float]],
+        values: Mapping[str, float],
+    ) -> None:
+        for x in self._readings(point, values, limits):
+            name, value, bound, void = x.name, x.value, x.bound, x.void
+            r = math.nan if void else x.residual
+            used = None if void else float(utilisation(value, bound, x.sense))
+            if not void and not x.holds:
+                self.find(f"{label}: limit {name} does not hold")
+            saved = design.limits.get(name, (math.nan, math.nan))
+            told = design.utilisation.get(name)
+            if not (_same(saved[0], value) and _same(saved[1], bound)):
+                self.find(f"{label}: limit {name} has sides {saved}, evaluated they are {(value, bound)}")
+            if (told is None) != (used is None) or (told is not None and used is not None and not _same(told, used)):
+                self.find(f"{label}: utilisation of {name} is {told}, evaluated it is {used}")
+            if not _close(design.residuals.get(name, math.nan), r):
+                self.find(f"{label}: residual of {name} is {design.residuals.get(name)}, evaluated it is {r}")
+            if void != any(text.startswith(f"not checked: {name},") for text in design.not_checked):
+                self.find(f"{label}: limit {name} is {'void' if void else 'not void'}, which not_checked does not say")
+        if design.violated:
+            self.find(f"{label}: {', '.join(design.violated)} are said to be violated")
+
+    def _bounds(self, design: Design, label: str, point: Point) -> None:
+        instance = self.instance
+        for k, (v, grid) in enumerate(zip(self.model.variables, instance.grids(), strict=True)):
+            x = float(point.variables[k])
+            reach = SAME * max(abs(instance.lower[k]), abs(instance.upper[k]))
+            if not instance.lower[k] - reach <= x <= instance.upper[k] + reach:
+                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
+            elif len(grid) and not np.any(np.abs(grid - x) <= SAME * np.abs(grid)):
+                self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
+        for code, refused in self._refusals(point):
+            if refused:
+                self.find(f"{label}: refused, {code}")
+
+    def _readings(
+        self, point: Point, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
+    ) -> Iterator[_Reading]:
+        """Yield how every limit stands at a design; behind a guard that fails the guard alone says that it is none."""
+        for x in self.model.limits:
+            void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
+            yield _Reading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
+        for own in self.instance.own:
+            yield _Reading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
+
+    def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
+        """Yield the refusals over several slots, and whether each forbids a design."""
+        inputs = [*point.variables, *point.data]
+        for code, places, function in self._refused:
+            yield code, float(function.call([inputs[k] for k in places])[0]) > 0.5
+
+    def _claims_of_design(self, design: Design, label: str) -> None:
+        certificate = self.front.certificate
+        if design.status not in (Status.OPTIMAL, Status.FEASIBLE):
+            self.find(f"{label}: status {design.status.value} on a front of feasible designs")
+        proven = certificate.kind == "global" and certificate.gap is not None
+        if design.status is Status.OPTIMAL and not proven:
+            self.find(f"{label}: status optimal, but the certificate proves no gap")
+        if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + SAME)):
+            self.find(f"{label}: gap {percent(design.gap)} is above what the certificate claims")
+
+    # -- the front -----------------------------------------------------------------------------
+
+    def _ranking(self) -> None:
+        """Rank again: weighted distance to the ideal in normalised objectives."""
+        designs, frame = self.front.designs, self.front.frame
+        if [d.rank for d in designs] != list(range(1, len(designs) + 1)):
+            self.find("ranks are not 1, 2, 3, ... in the order of the designs")
+        weights = self.front.settings.get("weights", {})
+        shares = np.array([float(weights.get(name, 1.0)) for name in frame.objectives])
+        low, high = self.signed.min(axis=0), self.signed.max(axis=0)
+        unit = (self.signed - low) / np.where(high > low, high - low, 1.0)
+        scores = np.sqrt((unit**2 * shares).sum(axis=1) / shares.sum())
+        for design, score in zip(designs, scores, strict=True):
+            if design.score is None or abs(design.score - score) > SAME:
+                self.find(f"design {design.rank}: score {design.score}, ranked again it is {score}")
+        if np.any(np.diff(scores) < -SAME):
+            self.find("the designs are not in the order of their scores")
+        self._notes(unit, low, high)
+
+    def _notes(self, unit: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
+        """Every remark stands at one design, and that one deserves it."""
+        designs, frame = self.front.designs, self.front.frame
+        deserving: dict[str, np.ndarray] = {}
+        reach = SAME * np.maximum(np.abs(low), np.abs(high))
+        if len(designs) > 1:
+            for k, (name, sense) in enumerate(frame.objectives.items()):
+                word = "smallest" if sense == "min" else "largest"
+                deserving[f"{word} {name}"] = self.signed[:, k] <= low[k] + reach[k]
+            if len(designs) > 2 and len(frame.objectives) > 1:
+                total = unit.sum(axis=1)
+                deserving["knee"] = total <= total.min() + SAME
+        elif len(frame.objectives) == 1:
+            deserving["optimum"] = np.ones(1, dtype=bool)
+        elif self.front.complete:
+            deserving["only non-dominated design"] = np.ones(1, dtype=bool)
+        told = [[note for note in d.note.split("; ") if note] for d in designs]
+        for word, right in deserving.items():
+            at = [k for k, notes in enumerate(told) if word in notes]
+            if len(at) != 1 or not right[at[0]]:
+                self.find(f"the note {word!r} is not at the design that deserves it")
+        for design, notes in zip(designs, told, strict=True):
+            if strange := [note for note in notes if note not in deserving]:
+                self.find(f"design {design.rank}: note {strange[0]!r} means nothing here")
+
+    def _dominance(self) -> None:
+        reach = SAME * np.abs(self.signed)
+        for k, own in enumerate(self.signed):
+            better = np.all(self.signed <= own + reach[k], axis=1)
+            better[k] = False
+            for j in np.flatnonzero(better)[:1]:
+                other = self.front.designs[int(j)]
+                equal = np.all(np.abs(self.signed[j] - own) <= reach[k])
+                word = "equals" if equal else "dominates"
+                if not equal or j < k:
+                    self.find(f"design {other.rank} {word} design {self.front.designs[k].rank}")
+
+    def _numbers(self) -> None:
+        front = self.front
+        points = front.settings.get("points")
+        proven = front.certificate.kind == "global"
+        if not isinstance(points, int) or len(front.designs) > points:
+            self.find(f"{len(front.designs)} designs where at most {points} were asked for")
+        elif front.designs and proven and len(front.designs) < points and not front.complete:
+            few = f"{len(front.designs)} designs where {points} were asked for"
+            self.find(f"{few}, and not said to be complete: some are missing")
+        if front.complete and not proven:
+            self.find("complete is claimed without a proof")
+        if front.interrupted and proven:
+            self.find("the search was stopped, so that it cannot have proven anything")
+        if front.certificate.combinations != self.instance.combinations.count:
+            self.find(
+                f"the certificate speaks of {front.certificate.combinations} combinations, "
+                f"the question has {self.instance.combinations.count}"
+            )
+        if not front.designs and front.status not in (Status.INFEASIBLE, Status.NOT_SOLVED):
+            self.find(f"status {front.status.value} without a design")
+        if front.designs and front.status not in (Status.OPTIMAL, Status.FEASIBLE):
+            self.find(f"status {front.status.value} with designs")
+        if front.status is Status.OPTIMAL and not proven:
+            self.find("status optimal, but the certificate is no proof")
+
+    def against(self, values: Mapping[str, np.ndarray], gap: float, resolution: Mapping[str, float]) -> None:
+        """Prove that no design of this question improves some others by more than a gap in every objective.
+
+        ``values``: objectives of the others in SI, and of the designs of this front; ``resolution``: as certified.
+        """
+        self.signed = np.stack([values[name] for name in self.front.frame.objectives], axis=1) * self.senses
+        if not self._measured(resolution, gap):
+            return
+        self.tree = ProofTree(self.instance, self.front.frame.objectives, self.limits)
+        outcome = self._prove(self._thresholds(gap))
+        self._judge(outcome, f"no design improves one listed by more than {percent(gap)}", "feasible")
+
+    # -- the claim -----------------------------------------------------------------------------
+
+    def claim(self) -> None:
+        """Prove what the certificate claims; where that fails, look for the gap that can be proven."""
+        front = self.front
+        self.tree = ProofTree(self.instance, front.frame.objectives, self.limits)
+        if not front.designs:
+            everywhere = np.full((1, len(self.senses)), math.inf)
+            self._judge(self._prove(everywhere), "no design is feasible", "feasible")
+            return
+        gap = front.certificate.gap or 0.0
+        if front.complete:
+            outcome = self._prove(uncovered(self._thresholds(gap)))
+            if self._judge(outcome, "the front is complete", "feasible and no listed design covers it"):
+                self.proven = gap
+                return
+        outcome = self._prove(self._thresholds(gap))
+        self.proven, decisive = (gap, outcome) if outcome.closed else self._smallest_gap(gap, outcome)
+        self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "")
+
+    def _measured(self, resolution: Mapping[str, float], gap: float) -> bool:
+        """Read what a gap is a share of: the value, or what makes it the amount that the certificate tells."""
+        amounts = np.array([resolution.get(name, math.nan) for name in self.front.frame.objectives])
+        self.per_gap = amounts / gap
+        unclear = np.isnan(amounts) & ~np.all(self.signed > 0, axis=0) | ~(np.isnan(amounts) | (amounts > 0))
+        for name, doubtful in zip(self.front.frame.objectives, unclear, strict=True):
+            if doubtful:
+                self.find(f"the certificate does not tell by how much {name} must be better to count")
+        return not unclear.any()
+
+    def _prove(self, ends: np.ndarray) -> Outcome:
+        """Prove that no feasible design lies below any of the ends (rows) in all objectives."""
+        outcome = self.tree.prove(ends, lambda point: self._lies_below(point, ends), self.deadline)
+        self.nodes += outcome.nodes
+        return outcome
+
+    def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
+        """Tell whether a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
+        values, limits, _ = self._evaluate(point)
+        if not np.any(np.all(self._signed_values(values) < ends, axis=1)):
+            return False
+        kept = all(x.void or x.holds for x in self._readings(point, values, limits))
+        return kept and not any(refused for _, refused in self._refusals(point))
+
+    def _signed_values(self, values: Mapping[str, float]) -> np.ndarray:
+        signed: np.ndarray = np.array([values[name] for name in self.front.frame.objectives]) * self.senses
+        return signed
+
+    def _thresholds(self, gap: float) -> np.ndarray:
+        """Return, per design, what a design must undercut in every objective to improve it by more than the gap."""
+        ends: np.ndarray = self.signed - gap * self._sizes() - SAME * np.abs(self.signed)
+        return ends
+
+    def _sizes(self) -> np.ndarray:
+        """Return what a gap of an objective is a share of: its value, or what makes it the amount that is told."""
+        return np.where(np.isnan(self.per_gap), np.abs(self.signed), self.per_gap)
+
+    def _improvement(self, point: Point) -> tuple[float, int]:
+        """Return by how much a design improves a listed one in every objective, and which."""
+        signed = self._signed_values(self._evaluate(point)[0])
+        with np.errstate(all="ignore"):
+            share = np.min((self.signed - signed) / self._sizes(), axis=1)
+        best = int(np.argmax(share))
+        return float(share[best]), best
+
+    def _smallest_gap(self, gap: float, outcome: Outcome) -> tuple[float | None, Outcome]:
+        """Return a gap that can be proven, near the smallest one, and the first outcome that refutes the one claimed.
+
+        A design that improves one by more than a larger gap refutes the smaller gap as well.
+        """
+        decisive, refuted = outcome, gap
+        while True:
+            if outcome.witness is not None:
+                refuted = max(refuted, self._improvement(outcome.witness)[0])
+            gap = 2 * refuted
+            if gap > self.limits.widest_gap or time.monotonic() > self.deadline:
+                return None, decisive
+            outcome = self._prove(self._thresholds(gap))
+            if outcome.closed:
+                break
+            decisive, refuted = (outcome if decisive.witness is None else decisive), max(refuted, gap)
+        for _ in range(self.limits.narrowings):
+            between = math.sqrt(refuted * gap)
+            outcome = self._prove(self._thresholds(between))
+            if outcome.closed:
+                gap = between
+            else:
+                decisive, refuted = (outcome if decisive.witness is None else decisive), between
+        return gap, decisive
+
+    def _judge(self, outcome: Outcome, claim: str, what: str) -> bool:
+        """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open."""
+        point = outcome.witness
+        if point is not None:
+            self.find(f"the claim that {claim} is wrong: {self._told(point)} is {what or self._gain(point)}")
+        elif not outcome.closed:
+            self.open.append(f"the claim that {claim} could not be proven again with {outcome.nodes} boxes")
+        return outcome.closed
+
+    def _gain(self, point: Point) -> str:
+        share, k = self._improvement(point)
+        return f"feasible and improves design {self.front.designs[k].rank} by {percent(share)} in every objective"
+
+    def _told(self, point: Point) -> str:
+        """Return the variables, parts, counts and choices of a design."""
+        words = [
+            f"{v.name} {format_quantity(float(x), v.unit)}"
+            for v, x in zip(self.model.variables, point.variables, strict=True)
+        ]
+        words += [f"{s.slot} {s.table.designations[s.rows[point.rows[s.slot]]]}" for s in self.instance.selection.slots]
+        for entry, value in zip(self.model.data_inputs, point.data, strict=True):
+            if entry.kind == "count":
+                words.append(f"{entry.name} {value:g}")
+            elif entry.kind == "choice":
+                words.append(f"{entry.name} {self.model.declaration.choices[entry.name].labels[int(value)]}")
+        return ", ".join(words)
+
+
+def _evaluator(instance: Instance) -> Any:
+    """Return a function of a point: values, sides of limits and remarks, by CasADi on the written-out formulas."""
+    model = instance.model
+    outputs = list(model.quantity_sx.values()) + [side for x in model.limits for side in (x.value, x.limit)]
+    outputs += [a.when for a in model.declaration.advices]
+    written = expanded(ca.vertcat(*outputs), model.calls)
+    function = ca.Function("check", [ca.vertcat(*model.inputs)], [written])
+
+    def evaluate(point: Point) -> tuple[dict[str, float], dict[str, tuple[float, float]], set[str]]:
+        numbers = iter(np.asarray(function([*point.variables, *point.data])).ravel().tolist())
+        values = {name: next(numbers) for name in model.quantity_sx}
+        limits = {x.name: (next(numbers), next(numbers)) for x in model.limits}
+        return values, limits, {a.code for a in model.declaration.advices if next(numbers) > 0.5}
+
+    return evaluate
+
+
+def _refusal_functions(instance: Instance) -> list[tuple[str, list[int], Any]]:
+    """Return the refusals over several slots: code, positions of the inputs they read, and the condition."""
+    place = {str(symbol): k for k, symbol in enumerate(instance.model.inputs)}
+    functions = []
+    for refusal in instance.joint_refusals:
+        when = expanded(refusal.when, instance.model.calls)
+        used = ca.symvar(when)
+        functions.append((refusal.code, [place[str(s)] for s in used], ca.Function("refused", used, [when])))
+    return functions
+
+
+def _same(a: float | None, b: float) -> bool:
+    """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself."""
+    if a is None:
+        return math.isnan(b)
+    return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=SAME, abs_tol=NOISE)
+
+
+def _close(a: float, b: float) -> bool:
+    """Tell whether two relative differences are the same."""
+    return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= SAME

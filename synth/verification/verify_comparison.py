@@ -1,0 +1,177 @@
+"""Independent check of a saved comparison: the own front of every family, the designs listed, and the claim over all.
+
+As for a single front no proof is shared with the search: each family proves by the tree of ``synth.proof.tree`` that it
+has no design that improves one of those listed, whichever family they are of. The designs listed are evaluated from
+their files as ``check`` does. What ``synth.verification.verify`` shares with the search is shared here too.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from synth.analysis.evaluate import evaluate
+from synth.errors import InputError
+from synth.files import read_json
+from synth.model.registry import load
+from synth.output_folder import settle
+from synth.question.spec import read_spec
+from synth.results import ParetoFront
+from synth.results.loading import COMPARISON, unchecked_front
+from synth.results.verification import Verification
+from synth.robust.counterpart import posed
+from synth.verification.verify import checked
+
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class _Listed:
+    """A design that a comparison lists, as its record tells it."""
+
+    rank: int
+    objectives: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What a comparison claims, read from its record.
+
+    ``folders``: that of each family with a front, by label; ``senses`` of the objectives.
+    """
+
+    folders: Mapping[str, str]
+    senses: Mapping[str, str]
+    designs: Sequence[_Listed]
+    kind: str
+    gap: float | None
+    resolution: Mapping[str, float]
+
+
+def _told(content: Any) -> _Told:
+    """Read the record of a comparison.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError, AttributeError
+        When it is none.
+    """
+    certificate, senses = content["certificate"], {str(n): str(s) for n, s in content["objectives"].items()}
+    return _Told(
+        folders={str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"] is not None},
+        senses=senses,
+        designs=[_Listed(int(x["rank"]), {n: float(x["objectives"][n]) for n in senses}) for x in content["designs"]],
+        kind=str(certificate["kind"]),
+        gap=None if certificate["gap"] is None else float(certificate["gap"]),
+        resolution={str(n): float(x) for n, x in certificate.get("resolution", {}).items()},
+    )
+
+
+def is_comparison(folder: str | Path) -> bool:
+    """Tell whether a folder holds a comparison of families."""
+    return (Path(folder) / COMPARISON).is_file()
+
+
+def verify_comparison(folder: str | Path, time_limit: float = 120.0) -> Verification:
+    """Check a saved comparison without help of the search that made it.
+
+    Parameters
+    ----------
+    folder : path
+        What ``Comparison.save`` has written.
+    time_limit : float
+        Seconds for each family.
+
+    Returns
+    -------
+    Verification
+
+    Raises
+    ------
+    InputError
+        When there is no comparison, or a family cannot be had.
+    """
+    started = time.monotonic()
+    path = Path(folder)
+    settle(path)
+    content = read_json(path / COMPARISON, "comparison", "a folder that run has written for several families")
+    try:
+        told = _told(content)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            "comparison", str(path), f"a folder that run has written for several families ({error})"
+        ) from error
+    findings: list[str] = []
+    unproven: list[str] = []
+    nodes = 0
+    values = _values(path, told, findings)
+    for label, name in told.folders.items():
+        front = unchecked_front(path / name)
+        check = checked(front, None, None, time.monotonic() + time_limit)
+        alike = check.readable and dict(front.frame.objectives) == dict(told.senses)
+        if alike:
+            _among(front, label, told.designs, findings)
+        elif check.readable:
+            findings.append(f"{label}: its objectives are not those of the comparison")
+        provable = alike and told.kind == "global" and bool(values) and not check.findings
+        if provable and told.gap is not None and front.certificate.kind == "global" and front.designs:
+            check.deadline = time.monotonic() + time_limit
+            check.against(values, told.gap, told.resolution)
+        elif told.kind == "global" and front.certificate.kind != "global":
+            findings.append(f"{label}: its own front is not proven, so that nothing over all families can be")
+        findings += [f"{label}: {finding}" for finding in check.findings]
+        unproven += [f"{label}: {claim}" for claim in check.open]
+        nodes += check.nodes
+    return Verification(
+        findings=tuple(findings),
+        open=tuple(unproven),
+        certificate=told.kind,
+        designs=len(told.designs),
+        claimed_gap=told.gap,
+        proven_gap=told.gap if told.kind == "global" and not findings and not unproven else None,
+        nodes=nodes,
+        seconds=time.monotonic() - started,
+    )
+
+
+def _values(path: Path, told: _Told, findings: list[str]) -> dict[str, np.ndarray]:
+    """Return the objectives of the designs listed, evaluated again from their files."""
+    rows: dict[str, list[float]] = {name: [] for name in told.senses}
+    width = max(2, len(str(len(told.designs))))
+    for listed in told.designs:
+        label = f"design {listed.rank}"
+        try:
+            spec = read_spec(path / f"design_{listed.rank:0{width}d}.yaml")
+            problem = posed(load(spec.family, **spec.options), spec.robust or None, spec.limits)
+            given = {"values": spec.values, "parts": spec.parts}
+            design = evaluate(
+                problem, spec.requirements, given, catalogs=spec.catalogs, limits=spec.limits, objectives=told.senses
+            )
+        except InputError as error:
+            findings.append(f"{label}: its file cannot be evaluated ({error})")
+            continue
+        if design.violated:
+            findings.append(f"{label}: {', '.join(design.violated)} do not hold")
+        for name, own in rows.items():
+            value = float(design.values[name])
+            own.append(value)
+            if abs(value - listed.objectives[name]) > SAME * abs(value):
+                findings.append(f"{label}: {name} is {listed.objectives[name]}, evaluated it is {value}")
+    return {name: np.array(own) for name, own in rows.items()} if all(rows.values()) else {}
+
+
+def _among(front: ParetoFront, label: str, designs: Sequence[_Listed], findings: list[str]) -> None:
+    """No design of a family's own front may beat one that is listed."""
+    objectives = front.frame.objectives
+    for listed in designs:
+        own = np.array([listed.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
+        for design in front.designs:
+            mine = np.array([design.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
+            room = SAME * np.abs(own)
+            if np.all(mine <= own + room) and np.any(mine < own - room):
+                findings.append(f"{label}: its design {design.rank} beats design {listed.rank} of the comparison")
