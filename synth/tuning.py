@@ -325,7 +325,7 @@ class ConflictLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointHeuristics:
+class JointHeuristicLimits:
     """How long designs are looked for of questions that are asked together.
 
     Parameters
@@ -378,7 +378,7 @@ class HeuristicLimits:
         By drawing parts.
     conflicts : ConflictLimits
         Where nothing is feasible.
-    joint : JointHeuristics
+    joint : JointHeuristicLimits
         Of questions that are asked together.
     """
 
@@ -387,7 +387,7 @@ class HeuristicLimits:
     settle: SettleLimits = field(default_factory=SettleLimits)
     parts: PartSampling = field(default_factory=PartSampling)
     conflicts: ConflictLimits = field(default_factory=ConflictLimits)
-    joint: JointHeuristics = field(default_factory=JointHeuristics)
+    joint: JointHeuristicLimits = field(default_factory=JointHeuristicLimits)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -108,3 +108,13 @@ def test_only_results_ask_the_facade() -> None:
 def test_imports_point_one_way() -> None:
     wrong = {pair for ends, pairs in arrows().items() if LEVELS[ends[1]] >= LEVELS[ends[0]] for pair in pairs}
     assert wrong == set()
+
+
+def test_no_class_name_stands_for_two_things() -> None:
+    homes: dict[str, list[str]] = {}
+    for module, path in modules().items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef):
+                homes.setdefault(node.name, []).append(module)
+    assert len(homes) > 100
+    assert {name: found for name, found in homes.items() if len(found) > 1} == {}

@@ -87,7 +87,7 @@ def fired_guards(instance: Instance) -> list[FiredGuard]:
     found = []
     for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
         if len(kinds) <= 1:
-            one = _Refused(instance, refusal, next(iter(kinds), ""))
+            one = _RefusedChoices(instance, refusal, next(iter(kinds), ""))
             if one.fires(instance):
                 found.append(one.told())
     return found
@@ -109,7 +109,7 @@ def columns_of(instance: Instance, code: str) -> list[str]:
     return [e.label for e in model.data_inputs if e.kind == "part" and str(e.sx) in used]
 
 
-class _Refused:
+class _RefusedChoices:
     """One refusal, over everything that a slot, count or choice offers."""
 
     def __init__(self, instance: Instance, refusal: Refusal, name: str) -> None:

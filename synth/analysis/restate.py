@@ -10,7 +10,7 @@ from synth.model.registry import load
 from synth.question.catalogs import catalogs_for
 from synth.question.instance import Instance
 from synth.question.request import Request
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.tables.catalogs import Catalogs
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def problem_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) ->
     """
     own = load(front.frame.family, **front.frame.options) if problem is None else load(problem)
     restated = front.frame.restated
-    own = posed(own, restated.get("robust"), restated.get("limits"))
+    own = robust_counterpart(own, restated.get("robust"), restated.get("limits"))
     return own, catalogs_for(own, restated.get("catalogs") if catalogs is None else catalogs)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from synth.bounds import compiled_rules as rules
 from synth.bounds.compiled_subtrees import CapTables, Grown, Halves, bind, grow
 from synth.bounds.contractor import CONSTANT, Code, Contractor, Root
-from synth.bounds.statements import Assign, Check, Enclose, Hold, Kill, Narrow, Statement
+from synth.bounds.statements import Assign, Enclose, EndOfFirstSweep, Hold, Kill, Narrow, Statement
 from synth.compiled.c_text import EXPRESSIONS, template
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.compiled.compiler import FLAGS, library
@@ -54,7 +54,7 @@ CTYPES: dict[str, type[ctypes.c_longlong | ctypes.c_double]] = {
 }
 
 
-class _Batch(ctypes.Structure):
+class _BatchStructure(ctypes.Structure):
     """The structure of the same name in the C source."""
 
     _fields_ = (
@@ -64,7 +64,7 @@ class _Batch(ctypes.Structure):
 
 
 @dataclass(frozen=True)
-class Question:
+class CompiledQuestion:
     """What the contraction of boxes reads of one question.
 
     Parameters
@@ -122,10 +122,10 @@ class Prepared:
     Parameters
     ----------
     contractor : Contractor
-    question : Question
+    question : CompiledQuestion
     """
 
-    def __init__(self, contractor: Contractor, question: Question) -> None:
+    def __init__(self, contractor: Contractor, question: CompiledQuestion) -> None:
         self.n, self.factors, self.sizes = len(question.lower), len(question.spreads), question.sizes
         width = -(-question.steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
@@ -164,9 +164,9 @@ class BoxCode:
     def __init__(self, loaded: ctypes.CDLL, limits: int) -> None:
         self.limits = limits
         self._contract = loaded.contract
-        self._contract.argtypes = [ctypes.POINTER(_Batch)]
+        self._contract.argtypes = [ctypes.POINTER(_BatchStructure)]
         self._contract.restype = ctypes.c_longlong
-        self._grow = bind(loaded, _Batch)
+        self._grow = bind(loaded, _BatchStructure)
 
     def contract(
         self,
@@ -271,7 +271,7 @@ class BoxCode:
             lambda work: _all_done(work, workers),
         )
 
-    def _run(self, batches: Sequence[_Batch], workers: int) -> list[int]:
+    def _run(self, batches: Sequence[_BatchStructure], workers: int) -> list[int]:
         kept = [0] * len(batches)
 
         def part(k: int) -> Callable[[], None]:
@@ -304,7 +304,7 @@ def _batches(
     moving: Mapping[str, np.ndarray],
     still: Mapping[str, np.ndarray] | None = None,
     **numbers: int,
-) -> Callable[[int, int], _Batch]:
+) -> Callable[[int, int], _BatchStructure]:
     """Return what makes a batch of the boxes from a first to a last one.
 
     ``moving`` arrays have a row per box, so that a batch begins so many rows further on; ``still`` ones serve all.
@@ -312,11 +312,11 @@ def _batches(
     fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)} | dict(still or {})
     shared = {**prepared.numbers, "weights_step": weights.shape[1], "bits": len(weights).bit_length() - 1, **numbers}
 
-    def batch(first: int, last: int) -> _Batch:
+    def batch(first: int, last: int) -> _BatchStructure:
         # A batch knows addresses only: the arrays live as long as this function does.
         places = {name: a.ctypes.data for name, a in fixed.items()}
         places |= {name: a.ctypes.data + first * a.strides[0] for name, a in moving.items()}
-        return _Batch(count=last - first, goals=moving["bounds"].shape[1], passes=passes, **shared, **places)
+        return _BatchStructure(count=last - first, goals=moving["bounds"].shape[1], passes=passes, **shared, **places)
 
     return batch
 
@@ -530,7 +530,7 @@ def _in_c(statement: Statement, owner: Contractor) -> list[str]:
         # Which nodes are narrowed is a matter of requirement values: for the others the root is not a number.
         k = statement.node
         return [f"l{k} = v_fmax(l{k}, RL[{k}]); h{k} = v_fmin(h{k}, RH[{k}]);"]
-    if isinstance(statement, Check):
+    if isinstance(statement, EndOfFirstSweep):
         return ["if (!any(~dead)) return dead;"]
     ends = [f"both(l{k}, h{k})" for k in statement.args]
     if isinstance(statement, Enclose):

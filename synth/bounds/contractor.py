@@ -21,8 +21,18 @@ import numpy as np
 
 from synth.bounds.intervals import BACKWARD, CANCELLATION, FORWARD, ROUNDING, SLACK, Interval, loosened, whole
 from synth.bounds.numpy_code import python_function, python_text
-from synth.bounds.statements import Assign, Check, Enclose, Hold, Kill, Narrow, Statement, Sweeps, special_range
-from synth.model.constraints import Cut, Goal
+from synth.bounds.statements import (
+    Assign,
+    Enclose,
+    EndOfFirstSweep,
+    Hold,
+    Kill,
+    Narrow,
+    Statement,
+    SweepStatements,
+    special_range,
+)
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
 
 ROOT_SWEEPS = 4
@@ -31,7 +41,7 @@ CONSTANT, TABLE, VARIABLE, INNER = range(4)
 
 
 @dataclass(frozen=True)
-class Layout:
+class MovingInputs:
     """Which inputs of a program move, and with what.
 
     Parameters
@@ -70,7 +80,7 @@ class Code:
     """
 
     contractor: Contractor
-    sweeps: Sweeps
+    sweeps: SweepStatements
     compiled: Any = None
     hopeless: bool = False
     _functions: dict[bytes, Callable[..., Any]] = field(default_factory=dict)
@@ -90,8 +100,8 @@ class Contractor:
     Parameters
     ----------
     program : Program
-    layout : Layout
-    cuts : list of Cut
+    layout : MovingInputs
+    cuts : list of NodeConstraint
         Limits; ``bound`` of a constant right side is handed over with each question.
     goals : list of Goal
     pivots : list of int
@@ -100,7 +110,12 @@ class Contractor:
     """
 
     def __init__(
-        self, program: Program, layout: Layout, cuts: Sequence[Cut], goals: Sequence[Goal], pivots: Sequence[int] = ()
+        self,
+        program: Program,
+        layout: MovingInputs,
+        cuts: Sequence[NodeConstraint],
+        goals: Sequence[Goal],
+        pivots: Sequence[int] = (),
     ) -> None:
         self.program, self.layout, self.pivots = program, layout, tuple(pivots)
         self.cuts, self.goals = list(cuts), list(goals)
@@ -262,7 +277,7 @@ class _Writer:
         self.owner, self.program, self.root, self.capped = owner, owner.program, root, capped
         self.kind = owner.kind
         self.out: list[Statement] = []
-        self.sweeps = Sweeps(
+        self.sweeps = SweepStatements(
             first=self._sweep(later=False),
             later=self._sweep(later=True),
             constants=tuple(owner.constants),
@@ -293,7 +308,7 @@ class _Writer:
     def _sweep(self, later: bool) -> tuple[Statement, ...]:
         self.out = []
         self._forward(later)
-        self.out.append(Check())
+        self.out.append(EndOfFirstSweep())
         self._backward()
         return tuple(self.out)
 

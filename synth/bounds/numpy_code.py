@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from synth.bounds.intervals import BACKWARD, FORWARD, Interval, loosened, whole
-from synth.bounds.statements import Assign, Enclose, Hold, Kill, Narrow, Statement, Sweeps, special_range
+from synth.bounds.statements import Assign, Enclose, Hold, Kill, Narrow, Statement, SweepStatements, special_range
 from synth.model.program import Program
 from synth.special import SpecialFunction
 
 
-def python_text(sweeps: Sweeps, narrowed: np.ndarray) -> str:
+def python_text(sweeps: SweepStatements, narrowed: np.ndarray) -> str:
     """Return the code of ``contract(V, L, K, B, C, RL, RH, passes, n) -> (dead, goals, open)``.
 
     V: ends of the variables (tightened in place), L: ends of tables, K: constants, B: constant right

@@ -13,10 +13,10 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.clusters import Cells, ClusterTree, Factor
-from synth.bounds.compiled_boxes import BoxCode, Packed, Prepared, Question, compiled
+from synth.bounds.compiled_boxes import BoxCode, CompiledQuestion, Packed, Prepared, compiled
 from synth.bounds.compiled_subtrees import CapTables, Grown, Halves
-from synth.bounds.contractor import INNER, Code, Contractor, Layout
-from synth.model.constraints import Cut, Goal
+from synth.bounds.contractor import INNER, Code, Contractor, MovingInputs
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import OP_SPECIAL
 from synth.question.instance import Instance
 from synth.special import SpecialCall, expanded
@@ -49,7 +49,7 @@ class Propagation:
     Parameters
     ----------
     instance : Instance
-    cuts : list of Cut
+    cuts : list of NodeConstraint
         Limits, with the constant right sides of this question.
     goals : list of Goal
         Objectives: those to trade off first.
@@ -67,7 +67,7 @@ class Propagation:
     def __init__(
         self,
         instance: Instance,
-        cuts: Sequence[Cut],
+        cuts: Sequence[NodeConstraint],
         goals: Sequence[Goal],
         bounded: int,
         conflict: bool = False,
@@ -83,7 +83,7 @@ class Propagation:
         self.bounds = [cut.bound for cut in cuts]
         model = self.model
         names, owner = instance.combinations.names, instance.owners()
-        layout = Layout(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
+        layout = MovingInputs(self.n, owner, tuple(k for k, e in enumerate(model.data_inputs) if not e.required))
         plain = tuple(replace(c, bound=0.0) for c in cuts)
 
         def contractor(wanted: Sequence[Goal], pivots: tuple[int, ...]) -> Contractor:
@@ -534,9 +534,9 @@ class Propagation:
         many = self._compiled and self._contracted[every, capped] > self.compiling.boxes
         return many or (self.compiled_at_once and capped and not every)
 
-    def _question(self, every: bool, margins: tuple[float, float]) -> Question:
+    def _question(self, every: bool, margins: tuple[float, float]) -> CompiledQuestion:
         instance = self.instance
-        return Question(
+        return CompiledQuestion(
             tables=self._tables[every],
             constants=np.array(self._constants[every]),
             rights=np.array(self.bounds),

@@ -52,15 +52,15 @@ class Narrow:
 
 
 @dataclass(frozen=True)
-class Check:
+class EndOfFirstSweep:
     """The first sweep over all nodes is over: dead boxes need not be followed further."""
 
 
-Statement = Assign | Kill | Enclose | Hold | Narrow | Check
+Statement = Assign | Kill | Enclose | Hold | Narrow | EndOfFirstSweep
 
 
 @dataclass(frozen=True)
-class Sweeps:
+class SweepStatements:
     """The statements of the first forward-backward sweep and of those that follow, and what they read and give.
 
     ``l3`` and ``h3`` are the ends of node 3, ``B`` the constant right sides, ``C`` the caps, ``RL`` and ``RH``

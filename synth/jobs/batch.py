@@ -19,11 +19,11 @@ from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.outputs import write_outputs
-from synth.jobs.row_questions import Asked, Questioner, canonical_position, read_mapping
+from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
 from synth.jobs.runner import Runner, Shares
 from synth.jobs.store import DONE, OPEN, Store, digest, encoded, file_url
-from synth.jobs.warm_starts import School
+from synth.jobs.warm_starts import WarmStarts
 from synth.model.registry import families, load
 from synth.output_folder import claimed, settle
 from synth.plain_text import as_meant
@@ -285,7 +285,7 @@ class BatchJob:
             return True
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
-            asked, first, school = 0, list[Asked](), School()
+            asked, first, school = 0, list[ReadRow](), WarmStarts()
             for count, row in enumerate(self.questioner.rows(), start=1):
                 if row.key is not None and row.question is not None:
                     asked += 1
@@ -322,7 +322,7 @@ class BatchJob:
             self.store.set_folder(self.id, str(self.folder.resolve()))
         self.store.set_state(self.id, OPEN, "continued", f"was {job.state}")
 
-    def _refuse(self, rows: list[Asked], count: int) -> None:
+    def _refuse(self, rows: list[ReadRow], count: int) -> None:
         if not rows:
             raise InputError(self.table.name, "a header only", "at least one row below the header")
         fault = rows[0].faults[0]
@@ -356,7 +356,7 @@ class BatchJob:
         files = self.catalogs.files()
         return files if isinstance(self.catalog_spec, Mapping) and set(files) == set(self.catalog_spec) else "memory"
 
-    def _recorded(self, row: Asked) -> dict[str, Any]:
+    def _recorded(self, row: ReadRow) -> dict[str, Any]:
         if row.faults:
             self.bad += 1
             for fault in row.faults:
@@ -452,7 +452,7 @@ def work_off(
     return stopped
 
 
-def _taught(school: School, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
+def _taught(school: WarmStarts, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
     """Return a row as it is kept: with the question whose experience helps it."""
     question = record["question"]
     if question is None:

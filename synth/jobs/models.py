@@ -40,7 +40,7 @@ class Job(Base):
     content: Mapped[dict[str, Any]] = mapped_column(JSON)
 
 
-class Unit(Base):
+class WorkUnit(Base):
     """Some rows of one structure, solved together: a piece of work of about a second.
 
     ``state`` is open, running or done. A unit that runs belongs to ``owner`` until ``lease``; ``token`` counts how
@@ -59,7 +59,7 @@ class Unit(Base):
     attempts: Mapped[int] = mapped_column(Integer)
 
 
-class Question(Base):
+class RowQuestion(Base):
     """What some row asks, in full; rows that ask the same share it.
 
     ``key`` is made of its content. ``position`` orders the questions of one structure by their content,

@@ -31,7 +31,7 @@ LETTER = re.compile(r"[^\W\d_]|[/%°]")  # then the cell has a unit of its own
 
 
 @dataclass(frozen=True)
-class Column:
+class RowColumn:
     """One column of the table: its heading as it stands there, and what it means."""
 
     position: int
@@ -67,7 +67,7 @@ class Fault:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ReadRow:
     """A row that was read: its question, or its faults."""
 
     line: int
@@ -86,8 +86,8 @@ class _Variant:
     """A family with the options of some row: what its columns mean."""
 
     problem: DesignProblem
-    columns: list[tuple[Column, Word]]
-    unused: list[Column]
+    columns: list[tuple[RowColumn, Word]]
+    unused: list[RowColumn]
     checked: set[frozenset[str]] = field(default_factory=set)
 
 
@@ -111,7 +111,7 @@ def read_mapping(path: str | Path | None) -> dict[str, str]:
     return {heading.strip(): name.strip() for heading, name in content.items()}
 
 
-def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe) -> tuple[Column, ...]:
+def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe) -> tuple[RowColumn, ...]:
     """Read the header of a table.
 
     Parameters
@@ -134,7 +134,7 @@ def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe
             close = difflib.get_close_matches(heading, titles, n=1, cutoff=0.5)
             raise InputError(f"mapping: {heading}", heading, close[0] if close else f"a heading of {table.name}")
     present = {mapping.get(title, title).partition("[")[0].strip() for title in titles}
-    columns: list[Column] = []
+    columns: list[RowColumn] = []
     for position, title in enumerate(titles):
         stated = mapping.get(title, title)
         carried = stated == CARRY
@@ -153,7 +153,7 @@ def read_columns(table: RowTable, mapping: Mapping[str, str], universe: Universe
                 raise InputError(where, title, hint)
             if name in STRUCTURE and any(c.name == name and not c.carried for c in columns):
                 raise InputError(where, title, f"one column {name}")
-        columns.append(Column(position, title, name, unit, carried))
+        columns.append(RowColumn(position, title, name, unit, carried))
     return tuple(columns)
 
 
@@ -222,12 +222,12 @@ class Questioner:
 
     # -- rows ----------------------------------------------------------------------------------
 
-    def rows(self) -> Iterator[Asked]:
+    def rows(self) -> Iterator[ReadRow]:
         """Read and check the rows, one after the other."""
         for line, cells in self.table.lines():
             yield self._row(line, cells)
 
-    def _row(self, line: int, cells: tuple[str, ...]) -> Asked:
+    def _row(self, line: int, cells: tuple[str, ...]) -> ReadRow:
         family, structure = "", ""
         try:
             self._check_width(line, cells)
@@ -237,8 +237,8 @@ class Questioner:
             structure = digest([question["family"], question["options"], sorted(question["requirements"])])
             key = self._check(line, question)
         except _Wrong as wrong:
-            return Asked(line, cells, family, None, None, structure, (), (), tuple(wrong.faults))
-        return Asked(line, cells, family, key, question, structure, place(values), tuple(unused), ())
+            return ReadRow(line, cells, family, None, None, structure, (), (), tuple(wrong.faults))
+        return ReadRow(line, cells, family, key, question, structure, place(values), tuple(unused), ())
 
     def _check_width(self, line: int, cells: tuple[str, ...]) -> None:
         if len(cells) != len(self.columns):
@@ -273,7 +273,7 @@ class Questioner:
         given: dict[str, dict[str, Any]] = {
             name: {str(k): v for k, v in self.common.get(name, {}).items()} for name in (LIMITS, FIX, PARTS)
         }
-        sources: dict[str, Column] = {}
+        sources: dict[str, RowColumn] = {}
         for name in (LIMITS, FIX, PARTS):
             text = self._cell(name, cells)
             if text:
@@ -315,7 +315,7 @@ class Questioner:
         return question, [numbers[name] for name in question["requirements"]], unused
 
     @staticmethod
-    def _value(column: Column, word: Word, text: str) -> tuple[str, float]:
+    def _value(column: RowColumn, word: Word, text: str) -> tuple[str, float]:
         """Return a cell with its unit, and its number in SI (0 for words); refuse what is no number of the kind."""
         if word.unit is None or (word.kind == "count" and is_list(text)):
             return text, 0.0
@@ -338,7 +338,7 @@ class Questioner:
     def _variant(self, line: int, cells: tuple[str, ...], family: str) -> tuple[_Variant, dict[str, str], list[str]]:
         text = self._cell(OPTIONS, cells)
         stated: dict[str, str] = {}
-        places: dict[str, Column] = {}
+        places: dict[str, RowColumn] = {}
         if text:
             try:
                 stated = dict(READERS[OPTIONS](text, ""))  # type: ignore[arg-type]
@@ -387,7 +387,7 @@ class Questioner:
                 raise
             return error
         words = words_of(declaration, problem.simulation_settings)
-        used, unused = list[tuple[Column, Word]](), list[Column]()
+        used, unused = list[tuple[RowColumn, Word]](), list[RowColumn]()
         for column in self.columns:
             if column in self.carried or column.name in STRUCTURE:
                 continue
@@ -405,7 +405,7 @@ class Questioner:
         """Return the problem of a family with the options of a row."""
         return load(self.own if self.own is not None and family == self.default else family, **options)
 
-    def _check_column(self, column: Column, word: Word) -> None:
+    def _check_column(self, column: RowColumn, word: Word) -> None:
         where = f"{self.table.name}, line 1, column {column.title}"
         if column.unit is None:
             return

@@ -27,7 +27,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, IntegrityError, NoSuchModu
 from sqlalchemy.orm import Session
 
 from synth.errors import InputError
-from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Question, Result, Row, Unit, moment
+from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 
 HEAD = "1"  # the last of the migrations
 PATIENCE = 60.0  # seconds that whoever opens or writes waits for others
@@ -394,7 +394,7 @@ class Store:
         for some in _chunks(rows):
             asked = [{"job": job, "unit": None, **row["question"]} for row in some if row["question"] is not None]
             if asked:
-                connection.execute(self._insert_once(Question), asked)
+                connection.execute(self._insert_once(RowQuestion), asked)
             connection.execute(
                 sa.insert(Row), [{"job": job, **{k: v for k, v in row.items() if k != "question"}} for row in some]
             )
@@ -403,7 +403,7 @@ class Store:
 
     def _copy_known(self, connection: sa.Connection, job: str, basis: str) -> int:
         """Take the answers that another job of the same basis has; return how many."""
-        asked = sa.select(Question.key).where(Question.job == job)
+        asked = sa.select(RowQuestion.key).where(RowQuestion.job == job)
         others = sa.select(Job.id).where(Job.basis == basis, Job.id != job)
         usable = sa.and_(Result.job.in_(others), Result.key.in_(asked), Result.status != "failed")
         answers = sa.select(
@@ -421,11 +421,11 @@ class Store:
         )
 
     def _write_units(self, connection: sa.Connection, job: str, rows_per_unit: int) -> int:
-        order = (Question.structure, Question.position, Question.key)
+        order = (RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         answered = sa.select(Result.key).where(Result.job == job)
         asked = connection.execute(
-            sa.select(Question.structure, Question.key)
-            .where(Question.job == job, Question.key.not_in(answered))
+            sa.select(RowQuestion.structure, RowQuestion.key)
+            .where(RowQuestion.job == job, RowQuestion.key.not_in(answered))
             .order_by(*order)
         ).all()
         units = [
@@ -441,12 +441,12 @@ class Store:
     def _add_units(connection: sa.Connection, job: str, units: Sequence[Sequence[str]], attempts: int) -> None:
         new = {"job": job, "state": OPEN, "token": 0, "attempts": attempts}
         numbers = connection.execute(
-            sa.insert(Unit).returning(Unit.id, sort_by_parameter_order=True), [new for _ in units]
+            sa.insert(WorkUnit).returning(WorkUnit.id, sort_by_parameter_order=True), [new for _ in units]
         ).scalars()
         members = [{"of_unit": unit, "of_key": key} for unit, keys in zip(numbers, units, strict=True) for key in keys]
         connection.execute(
-            sa.update(cast(sa.Table, Question.__table__))
-            .where(Question.job == job, Question.key == sa.bindparam("of_key"))
+            sa.update(cast(sa.Table, RowQuestion.__table__))
+            .where(RowQuestion.job == job, RowQuestion.key == sa.bindparam("of_key"))
             .values(unit=sa.bindparam("of_unit")),
             members,
         )  # fmt: skip
@@ -471,21 +471,21 @@ class Store:
 
     def claim(self, job: str, owner: str, most: int, lease: float = LEASE) -> list[Claim]:
         """Take units that are open, or whose owner has not renewed its lease."""
-        free = sa.or_(Unit.state == OPEN, sa.and_(Unit.state == RUNNING, Unit.lease < moment()))
+        free = sa.or_(WorkUnit.state == OPEN, sa.and_(WorkUnit.state == RUNNING, WorkUnit.lease < moment()))
         # PostgreSQL passes over what others are just taking; SQLite has one writer at a time and ignores the clause.
         wanted = (
-            sa.select(Unit.id)
-            .where(Unit.job == job, free)
-            .order_by(Unit.id)
+            sa.select(WorkUnit.id)
+            .where(WorkUnit.job == job, free)
+            .order_by(WorkUnit.id)
             .limit(most)
             .with_for_update(skip_locked=True)
             .cte("wanted")
         )
         take = (
-            sa.update(Unit)
-            .where(Unit.id.in_(sa.select(wanted.c.id)))
-            .values(state=RUNNING, owner=owner, lease=moment() + lease, token=Unit.token + 1)
-            .returning(Unit.id, Unit.token, Unit.attempts)
+            sa.update(WorkUnit)
+            .where(WorkUnit.id.in_(sa.select(wanted.c.id)))
+            .values(state=RUNNING, owner=owner, lease=moment() + lease, token=WorkUnit.token + 1)
+            .returning(WorkUnit.id, WorkUnit.token, WorkUnit.attempts)
             .execution_options(synchronize_session=False)
         )
         with self.engine.begin() as connection:
@@ -493,9 +493,9 @@ class Store:
             if not taken:
                 return []
             asked = connection.execute(
-                sa.select(Question.unit, Question.key, Question.content)
-                .where(Question.unit.in_([unit[0] for unit in taken]))
-                .order_by(Question.position, Question.key)
+                sa.select(RowQuestion.unit, RowQuestion.key, RowQuestion.content)
+                .where(RowQuestion.unit.in_([unit[0] for unit in taken]))
+                .order_by(RowQuestion.position, RowQuestion.key)
             ).all()
         return [
             Claim(unit, token, attempts, {key: content for of, key, content in asked if of == unit})
@@ -506,15 +506,17 @@ class Store:
         """Give a sign of life: everything that an owner works on stays its own."""
         with self.engine.begin() as connection:
             connection.execute(
-                sa.update(Unit).where(Unit.owner == owner, Unit.state == RUNNING).values(lease=moment() + lease)
+                sa.update(WorkUnit)
+                .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
+                .values(lease=moment() + lease)
             )
 
     def release(self, owner: str) -> None:
         """Give back everything that an owner works on; that is no failed attempt."""
         with self.engine.begin() as connection:
             connection.execute(
-                sa.update(Unit)
-                .where(Unit.owner == owner, Unit.state == RUNNING)
+                sa.update(WorkUnit)
+                .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
                 .values(state=OPEN, owner=None, lease=None)
             )
 
@@ -522,7 +524,7 @@ class Store:
         """Take units back from processes of this machine that are gone, without waiting for their leases."""
         with self.engine.begin() as connection:
             owners = connection.scalars(
-                sa.select(Unit.owner).where(Unit.job == job, Unit.state == RUNNING).distinct()
+                sa.select(WorkUnit.owner).where(WorkUnit.job == job, WorkUnit.state == RUNNING).distinct()
             ).all()
         dead = [owner for owner in owners if owner is not None and has_died(owner)]
         for owner in dead:
@@ -566,7 +568,7 @@ class Store:
         }
         with self.engine.begin() as connection:
             held = connection.execute(
-                sa.update(Unit).where(*_held(claim, owner)).values(state=DONE, lease=None, attempts=attempts)
+                sa.update(WorkUnit).where(*_held(claim, owner)).values(state=DONE, lease=None, attempts=attempts)
             )
             if held.rowcount != 1:
                 return False
@@ -598,7 +600,7 @@ class Store:
         """Return how many units are open, and how many somebody works on."""
         with self.engine.begin() as connection:
             counted = connection.execute(
-                sa.select(Unit.state, sa.func.count()).where(Unit.job == job).group_by(Unit.state)
+                sa.select(WorkUnit.state, sa.func.count()).where(WorkUnit.job == job).group_by(WorkUnit.state)
             )
             found = {state: count for state, count in counted}
         return int(found.get(OPEN, 0)), int(found.get(RUNNING, 0))
@@ -639,9 +641,9 @@ class Store:
     def questions(self, job: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
         """Return the questions of a job in canonical order: key, structure, content."""
         asked = (
-            sa.select(Question.key, Question.structure, Question.content)
-            .where(Question.job == job)
-            .order_by(Question.structure, Question.position, Question.key)
+            sa.select(RowQuestion.key, RowQuestion.structure, RowQuestion.content)
+            .where(RowQuestion.job == job)
+            .order_by(RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         )
         with self.engine.connect().execution_options(stream_results=True, yield_per=CHUNK) as connection:
             for row in connection.execute(asked):
@@ -671,7 +673,12 @@ class Store:
 
 
 def _held(claim: Claim, owner: str) -> tuple[Any, ...]:
-    return (Unit.id == claim.unit, Unit.state == RUNNING, Unit.owner == owner, Unit.token == claim.token)
+    return (
+        WorkUnit.id == claim.unit,
+        WorkUnit.state == RUNNING,
+        WorkUnit.owner == owner,
+        WorkUnit.token == claim.token,
+    )
 
 
 def _tell(connection: sa.Connection, job: str, kind: str, text: str) -> None:

@@ -31,7 +31,7 @@ def place(values: Sequence[float]) -> tuple[float, ...]:
     return tuple(np.arcsinh(np.asarray(values, dtype=float) / SMALL).tolist())
 
 
-class School:
+class WarmStarts:
     """The teachers of a job. All its questions are shown first; then each may ask who teaches it."""
 
     def __init__(self) -> None:

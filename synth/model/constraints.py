@@ -10,7 +10,7 @@ from synth.model.constraint import Constraint
 
 
 @dataclass(frozen=True)
-class Cut:
+class NodeConstraint:
     """A limit as the propagation sees it: nodes of both sides (or a constant right side) and its sense."""
 
     sense: str
@@ -21,11 +21,11 @@ class Cut:
     guard: bool = False
 
     @staticmethod
-    def of(constraint: Constraint) -> Cut:
+    def of(constraint: Constraint) -> NodeConstraint:
         """Return the row of a constraint."""
         x = constraint
         node, bound = (x.bound, 0.0) if isinstance(x.bound, int) else (None, x.bound)
-        return Cut(x.sense, x.value, node, x.scale, bound, x.guard)
+        return NodeConstraint(x.sense, x.value, node, x.scale, bound, x.guard)
 
 
 @dataclass(frozen=True)

@@ -76,11 +76,11 @@ def refusal_of(asked: SlotComparison, d: Declaration) -> Refusal:
     """
     with at("parts", asked.slot):
         condition = parse_condition(asked.text)
-        holds = _Reader(condition, asked.slot, d).read(condition.joint())
+        holds = _ConditionReader(condition, asked.slot, d).read(condition.joint())
     return Refusal(f"parts: {asked.slot}", ca.logic_not(holds), f"parts with {asked.text}")
 
 
-class _Reader:
+class _ConditionReader:
     """Writes a condition as an expression of the columns."""
 
     def __init__(self, condition: Condition, slot: str, d: Declaration) -> None:

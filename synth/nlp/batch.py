@@ -22,7 +22,7 @@ import numpy as np
 
 from synth import deadline
 from synth.model.program import Program
-from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Layout, Problems
+from synth.nlp.interior_point import CONVERGED, INFEASIBLE, Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_c import Solver, native
 from synth.nlp.interior_point_c_interpreted import General, general
 from synth.nlp.interior_point_numpy import InteriorPoint
@@ -285,9 +285,9 @@ class BatchNlp:
         return np.array(values[:rows]), np.array(values[rows:]).reshape(-1, len(points))
 
     @cached_property
-    def layout(self) -> Layout:
+    def layout(self) -> SparsityPattern:
         """Where the nonzero derivatives stand."""
-        return Layout(self.functions)
+        return SparsityPattern(self.functions)
 
     @cached_property
     def _first_order(self) -> Any:

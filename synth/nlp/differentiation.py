@@ -155,7 +155,7 @@ class Rule:
     choices: tuple[Face | None, Face | None] = (None, None)
 
 
-class Sweeps:
+class DerivativeSweeps:
     """Gradients of some nodes, and second derivatives of their weighted sum.
 
     Parameters

@@ -93,7 +93,7 @@ class Ends:
     evaluations: np.ndarray
 
 
-class Layout:
+class SparsityPattern:
     """Where the nonzero derivatives stand, prepared for sums over rows and columns."""
 
     def __init__(self, functions: RowFunctions) -> None:

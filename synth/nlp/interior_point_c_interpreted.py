@@ -17,7 +17,7 @@ from synth.compiled.c_text import EXPRESSIONS, bodies, filled, template
 from synth.compiled.compilation import switched_on
 from synth.compiled.compiler import library
 from synth.model.program import COMPARISONS, OP_SELECT
-from synth.nlp.interior_point import Ends, Layout, Problems
+from synth.nlp.interior_point import Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_c import Solver
 from synth.nlp.interior_point_c_source import settings, translation_unit
 from synth.nlp.row_functions import RowFunctions
@@ -88,7 +88,7 @@ class General(Solver):
         super().__init__(functions, code)
         self.evaluations = 0
         self._counting = threading.Lock()  # several threads may solve at a time
-        layout = Layout(functions)
+        layout = SparsityPattern(functions)
         constants, steps, outputs, slots = _listed(functions)
         numbers = {
             "n": layout.n, "rows": layout.rows, "cuts": layout.cuts, "goals": layout.goals,

@@ -21,7 +21,7 @@ from synth.tuning import InteriorPointSettings
 
 def source(functions: RowFunctions, own: InteriorPointSettings) -> str:
     """Return the translation unit of one set of row functions."""
-    layout = method.Layout(functions)
+    layout = method.SparsityPattern(functions)
     parts = {
         "SIZES": _sizes(functions, own),
         "STORED_IN_STATE": "vd stored[AT_LEAST_ONE(STORED)];",
@@ -51,7 +51,7 @@ def settings(own: InteriorPointSettings) -> list[str]:
 
 
 def _sizes(functions: RowFunctions, own: InteriorPointSettings) -> str:
-    layout = method.Layout(functions)
+    layout = method.SparsityPattern(functions)
     numbers = {
         "N": layout.n, "ROWS": layout.rows, "CUTS": layout.cuts, "GOALS": layout.goals, "NONZEROS": len(layout.row),
         "CURVATURES": len(layout.hessian), "STORED": len(functions.stored),
@@ -120,7 +120,7 @@ def _place(functions: RowFunctions, k: int) -> str:
     return f"jacobian[{k - rows}]" if k < rows + nonzeros else f"hessian[{k - rows - nonzeros}]"
 
 
-def _transposed(layout: method.Layout) -> str:
+def _transposed(layout: method.SparsityPattern) -> str:
     lines = []
     for a, places in enumerate(layout.columns):
         terms = [f"jacobian[{k}] * vector[{layout.row[k]}]" for k in places]
@@ -128,7 +128,7 @@ def _transposed(layout: method.Layout) -> str:
     return "\n".join(lines)
 
 
-def _times(layout: method.Layout) -> str:
+def _times(layout: method.SparsityPattern) -> str:
     lines = []
     for r in range(layout.rows):
         terms = [f"jacobian[{k}] * direction[{layout.column[k]}]" for k in np.flatnonzero(layout.row == r)]
@@ -136,7 +136,7 @@ def _times(layout: method.Layout) -> str:
     return "\n".join(lines)
 
 
-def _gram(layout: method.Layout) -> str:
+def _gram(layout: method.SparsityPattern) -> str:
     lines = [f"    const vd w{k} = jacobian[{k}] * vector[{layout.row[k]}];" for k in range(len(layout.row))]
     for a, b, first, second in layout.pairs:
         terms = [f"w{i} * jacobian[{j}]" for i, j in zip(first, second, strict=True)]

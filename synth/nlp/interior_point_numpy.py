@@ -18,8 +18,8 @@ from synth.nlp.interior_point import (
     STOPPED,
     STUCK,
     Ends,
-    Layout,
     Problems,
+    SparsityPattern,
     solve_shifted,
     split,
 )
@@ -45,7 +45,7 @@ class InteriorPoint:
         self.functions, self.settings = functions, settings
         self.steps = 0
         self.point = functions.compile_point()
-        self.layout = Layout(functions)
+        self.layout = SparsityPattern(functions)
 
     def solve(self, problems: Problems) -> Ends:
         """Solve all problems, each from its start."""
@@ -55,12 +55,12 @@ class InteriorPoint:
             np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64),
         )  # fmt: skip
         waiting, most, refill = 0, self.settings.lanes, self.settings.refill
-        lanes: Lanes | None = None
+        lanes: InteriorPointBatch | None = None
         with np.errstate(all="ignore"):
             while lanes is not None or waiting < count:
                 if waiting < count and (lanes is None or len(lanes) < refill * most):
                     upto = min(count, waiting + most - (0 if lanes is None else len(lanes)))
-                    fresh = Lanes.of(self.layout, self.settings.method, problems, np.arange(waiting, upto))
+                    fresh = InteriorPointBatch.of(self.layout, self.settings.method, problems, np.arange(waiting, upto))
                     lanes = fresh if lanes is None else lanes.joined(fresh)
                     waiting = upto
                 assert lanes is not None
@@ -72,14 +72,14 @@ class InteriorPoint:
 
 
 @dataclass
-class Lanes:
+class InteriorPointBatch:
     """Problems on their way: numbers, point, trial point and direction of each, one column per lane.
 
     ``multipliers`` are those of the rows, above the least they can be (0, or minus the penalty for an equality);
     names that end in ``_change`` belong to the full step, ``uncorrected`` and ``forecast`` to the last Newton step.
     """
 
-    layout: Layout
+    layout: SparsityPattern
     method: InteriorPointSettings
     stored: list[Any]
     number: np.ndarray
@@ -124,7 +124,9 @@ class Lanes:
     status: np.ndarray
 
     @staticmethod
-    def of(layout: Layout, method: InteriorPointSettings, problems: Problems, number: np.ndarray) -> Lanes:
+    def of(
+        layout: SparsityPattern, method: InteriorPointSettings, problems: Problems, number: np.ndarray
+    ) -> InteriorPointBatch:
         """Return lanes for some of the problems, at their starts."""
         n, rows, count = layout.n, layout.rows, len(number)
         low, high = problems.low[:, number], problems.high[:, number]
@@ -136,7 +138,7 @@ class Lanes:
         t_free = (t_weight != 0) & np.any((slopes != 0) & counts, axis=0)
         per_row, per_variable, zero = np.zeros((rows, count)), np.zeros((n, count)), np.zeros(count)
         none = np.zeros(count, dtype=np.int64)
-        return Lanes(
+        return InteriorPointBatch(
             layout=layout,
             method=method,
             stored=[x if np.ndim(x) == 0 else x[number] for x in problems.stored],
@@ -159,18 +161,20 @@ class Lanes:
     def __len__(self) -> int:
         return len(self.number)
 
-    def joined(self, other: Lanes) -> Lanes:
+    def joined(self, other: InteriorPointBatch) -> InteriorPointBatch:
         """Return these lanes and others after them."""
         mine, its = self._arrays(), other._arrays()
         stored = [
             x if np.ndim(x) == 0 else np.concatenate([x, y]) for x, y in zip(self.stored, other.stored, strict=True)
         ]
-        return Lanes(self.layout, self.method, stored, **{k: np.concatenate([mine[k], its[k]], axis=-1) for k in mine})
+        return InteriorPointBatch(
+            self.layout, self.method, stored, **{k: np.concatenate([mine[k], its[k]], axis=-1) for k in mine}
+        )
 
     def _arrays(self) -> dict[str, np.ndarray]:
         return {field.name: getattr(self, field.name) for field in fields(self)[3:]}
 
-    def without_finished(self, ends: Ends) -> Lanes | None:
+    def without_finished(self, ends: Ends) -> InteriorPointBatch | None:
         """Write finished lanes to their places and return those that go on."""
         done = self.status != 0
         if not done.any():
@@ -184,7 +188,9 @@ class Lanes:
             return None
         keep = np.flatnonzero(~done)
         stored = [x if np.ndim(x) == 0 else x[keep] for x in self.stored]
-        return Lanes(self.layout, self.method, stored, **{k: v[..., keep] for k, v in self._arrays().items()})
+        return InteriorPointBatch(
+            self.layout, self.method, stored, **{k: v[..., keep] for k, v in self._arrays().items()}
+        )
 
     # -- one step ------------------------------------------------------------------------------
 

@@ -27,7 +27,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.model.constraints import Cut
+from synth.model.constraints import NodeConstraint
 from synth.model.program import OP_SELECT, Program
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks, worth_of
 from synth.nlp.rows import Rows
@@ -138,7 +138,7 @@ class Pieces:
         place = iter(made.outputs)
         cuts = [replace(c, value=next(place), limit=None if c.limit is None else next(place)) for c in rows.cuts]
         goals = tuple(replace(g, node=next(place)) for g in rows.goals)
-        cuts += [Cut("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
+        cuts += [NodeConstraint("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
         return made, Rows(tuple(cuts), goals, (*rows.log_cuts, *self.log), rows.log_goals, rows.log_variables)
 
     def at(self, inputs: Sequence[Any], reach: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

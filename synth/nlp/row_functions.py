@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from synth.model.program import TEMPLATES, Node, Program
-from synth.nlp.differentiation import LOG, Graph, Rule, Sweeps, reached, with_shared_inverses
+from synth.nlp.differentiation import LOG, DerivativeSweeps, Graph, Rule, reached, with_shared_inverses
 from synth.nlp.rows import Rows
 
 # A lower limit of a positive quantity is continued linearly below this ratio of value to limit, far from where it
@@ -62,7 +62,7 @@ class RowFunctions:
         inputs = [s for group in (y, data, bounds, sizes, scales) for s in _scalars(group)]
         written = Program(inputs, sides)
         graph = Graph(n)
-        sweeps = Sweeps(graph)
+        sweeps = DerivativeSweeps(graph)
         forms = [self._form(sweeps, j, k) for j, k in enumerate(graph.take(written, written.outputs))]
         gradients = [sweeps.gradient(k) for k in forms]
         places = sorted((i, j) for j, gradient in enumerate(gradients) for i in gradient)
@@ -106,7 +106,7 @@ class RowFunctions:
             sides.append(values[goal.node] if rows.log_goals[j] else values[goal.node] * sizes[self.n_cuts + j])
         return sides
 
-    def _form(self, sweeps: Sweeps, j: int, side: int) -> int:
+    def _form(self, sweeps: DerivativeSweeps, j: int, side: int) -> int:
         """Return a row as a node."""
         graph, rows = sweeps.graph, self.rows
         if j >= self.n_cuts:
@@ -166,7 +166,7 @@ class RowFunctions:
         return _function("def evaluate(y, weights, stored):", code)
 
 
-def _continued_logarithm(sweeps: Sweeps, ratio: int) -> int:
+def _continued_logarithm(sweeps: DerivativeSweeps, ratio: int) -> int:
     """Return minus the logarithm of a ratio, continued linearly below a small one."""
     graph = sweeps.graph
     edge, zero = graph.constant(SMALLEST_RATIO), graph.constant(0.0)

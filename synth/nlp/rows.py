@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 
 # A guard holds only strictly, by so much: beyond it the other formulas do not exist.
 GUARD_MARGIN = 1e-6
@@ -16,7 +16,7 @@ class Rows:
 
     Parameters
     ----------
-    cuts : tuple of Cut
+    cuts : tuple of NodeConstraint
         Limits; a constant right side is handed over with each call.
     goals : tuple of Goal
         Objectives.
@@ -26,7 +26,7 @@ class Rows:
         Which variables are positive.
     """
 
-    cuts: tuple[Cut, ...]
+    cuts: tuple[NodeConstraint, ...]
     goals: tuple[Goal, ...]
     log_cuts: tuple[bool, ...]
     log_goals: tuple[bool, ...]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from synth.parametric.joint_question import LARGEST, different, groups_of
-from synth.parametric.joint_search import TogetherSearch, Wider
+from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search.archive import Candidate, distinct
@@ -55,11 +55,11 @@ def joint_answers(
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
     """
-    search = TogetherSearch if len(questions[0].chosen) == 1 else FrontsSearch
+    search = JointSearch if len(questions[0].chosen) == 1 else JointFrontSearch
     return search(questions, workers, progress, time_limit).answers()
 
 
-class FrontsSearch:
+class JointFrontSearch:
     """One search for the fronts of several questions.
 
     Parameters
@@ -84,8 +84,8 @@ class FrontsSearch:
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
         self.between = questions[0].settings.points - 2
         moving = different([q.instance for q in questions])
-        self.others: list[tuple[TogetherSearch, np.ndarray]] = []  # with the positions of the questions that each asks
-        self.wider, self.reverse = (Wider(questions, moving, first) for first in questions[0].chosen)
+        self.others: list[tuple[JointSearch, np.ndarray]] = []  # with the positions of the questions that each asks
+        self.wider, self.reverse = (SharedBounds(questions, moving, first) for first in questions[0].chosen)
         self.first = self._search(np.arange(len(self.questions)), self.wider)
 
     def answers(self) -> list[ParetoFront | None]:
@@ -108,10 +108,10 @@ class FrontsSearch:
         fronts = [distinct(first.form.as_they_are(own), 2, self.tuning) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
-    def _search(self, positions: np.ndarray, wider: Wider, **more: Any) -> TogetherSearch:
+    def _search(self, positions: np.ndarray, wider: SharedBounds, **more: Any) -> JointSearch:
         left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
         questions = [self.questions[q] for q in positions]
-        return TogetherSearch(questions, self.workers, self.progress, left, wider=wider, **more)
+        return JointSearch(questions, self.workers, self.progress, left, wider=wider, **more)
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
@@ -138,7 +138,7 @@ class FrontsSearch:
 
     # -- designs between -----------------------------------------------------------------------
 
-    def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> TogetherSearch:
+    def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> JointSearch:
         """Return the search for the least second objective, the first one being capped.
 
         Parameters

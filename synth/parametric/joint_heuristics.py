@@ -5,41 +5,41 @@ from __future__ import annotations
 import numpy as np
 
 from synth.nlp.batch import Tasks
-from synth.parametric.joint_question import Each, Together
+from synth.parametric.joint_question import BestPerScenario, JointInstance
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import cover
+from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
-from synth.search.primal_heuristics import Seeker
-from synth.tuning import JointHeuristics
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.tuning import JointHeuristicLimits
 
 
-class Lookout:
+class JointHeuristics:
     """Looks for good designs of questions asked together; nothing that it finds is proven.
 
     Parameters
     ----------
-    together : Together
+    together : JointInstance
     clock : Clock
     rng : Generator
     thorough : bool
         Look longer, where boxes are costly.
-    limits : JointHeuristics
+    limits : JointHeuristicLimits
     """
 
     def __init__(
         self,
-        together: Together,
+        together: JointInstance,
         clock: Clock,
         rng: np.random.Generator,
         thorough: bool,
-        limits: JointHeuristics,
+        limits: JointHeuristicLimits,
     ) -> None:
         self.together, self.clock, self.rng, self.thorough = together, clock, rng, thorough
         self.codec, self.limits = together.combinations, limits
         # Where to look first: variables, by the combination that they are of in any question.
         self.starts: dict[int, np.ndarray] = {}
 
-    def first(self, purpose: Each, pool: Boxes) -> None:
+    def first(self, purpose: BestPerScenario, pool: Boxes) -> None:
         """Look for good designs of every question: beside the best of each, and with what is good in any other.
 
         ``pool``: boxes that hold everything.
@@ -49,12 +49,12 @@ class Lookout:
             self._anywhere(purpose)
         for effort in self.limits.first_boxes:
             if not len(purpose.known):
-                cover(purpose.form, pool, purpose, self.clock, self.rng, effort)
+                branch_and_bound(purpose.form, pool, purpose, self.clock, self.rng, effort)
         self.improve(purpose)
         if self.thorough and self._further_away(purpose):
             self.improve(purpose)
 
-    def recalled(self, purpose: Each) -> None:
+    def recalled(self, purpose: BestPerScenario) -> None:
         """Try the designs to begin with in every question."""
         combinations, points = np.array(list(self.starts), dtype=np.int64), np.array(list(self.starts.values()))
         questions = np.repeat(np.flatnonzero(purpose.asked), len(combinations))
@@ -62,14 +62,14 @@ class Lookout:
         if len(combinations):
             self.tried(purpose, self.codec.joined(questions, combinations[own]), points[own])
 
-    def _anywhere(self, purpose: Each) -> None:
+    def _anywhere(self, purpose: BestPerScenario) -> None:
         """Try combinations at random, some of each question: where designs are many, one is found soon."""
         questions, count = np.flatnonzero(purpose.asked), self.limits.anywhere
         every = questions[np.arange(count) % len(questions)]
         every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=count)))
         self.tried(purpose, every, purpose.form.inside(purpose.form.leaves(every), 0.5))
 
-    def improve(self, purpose: Each) -> None:
+    def improve(self, purpose: BestPerScenario) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
         elsewhere, made, expanded = set[tuple[int, bytes]](), set[tuple[int, bytes]](), set[tuple[int, int]]()
         for _ in range(self.limits.rounds if len(purpose.known) else 0):
@@ -79,7 +79,7 @@ class Lookout:
             if not found:
                 return
 
-    def _everywhere(self, purpose: Each, tried: set[tuple[int, bytes]], as_made: bool = False) -> int:
+    def _everywhere(self, purpose: BestPerScenario, tried: set[tuple[int, bytes]], as_made: bool = False) -> int:
         """Try known combinations in every question; return how many designs are of use.
 
         ``tried`` are those of earlier rounds. ``as_made``: with the makeable values that they have.
@@ -95,7 +95,7 @@ class Lookout:
         every = self.codec.joined(np.repeat(questions, len(place)), own[rows])
         return self.tried(purpose, every, known.variables[rows], as_made)
 
-    def _beside(self, purpose: Each, expanded: set[tuple[int, int]]) -> int:
+    def _beside(self, purpose: BestPerScenario, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
         # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
         questions = purpose.known.questions() * self.limits.places // len(self.together.each)
@@ -112,7 +112,7 @@ class Lookout:
             every, start = every[chosen], start[chosen]
         return self.tried(purpose, every, start)
 
-    def _further_away(self, purpose: Each) -> int:
+    def _further_away(self, purpose: BestPerScenario) -> int:
         """Exchange two parts at a time of the best design of a few questions; return how many designs are of use."""
         known, every, start = purpose.known, [np.empty(0, dtype=np.int64)], [np.empty((0, purpose.form.n))]
         limits = self.limits
@@ -124,13 +124,15 @@ class Lookout:
             start.append(np.tile(known.variables[k], (len(every[-1]), 1)))
         return self.tried(purpose, np.concatenate(every), np.concatenate(start))
 
-    def tried(self, purpose: Each, combinations: np.ndarray, start: np.ndarray, as_made: bool = False) -> int:
+    def tried(
+        self, purpose: BestPerScenario, combinations: np.ndarray, start: np.ndarray, as_made: bool = False
+    ) -> int:
         """Solve continuous problems and round off the best of each question; return how many designs are of use.
 
         ``as_made``: makeable values stay what they are to begin with.
         """
         form, k, known = purpose.form, purpose.columns[0], purpose.known
-        seeker = Seeker(form, purpose, self.rng, False)
+        seeker = PrimalHeuristics(form, purpose, self.rng, False)
         keep = form.not_refused(combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
@@ -161,7 +163,7 @@ class Lookout:
             # What a combination leaves of the grid may lie far from where it is best without one.
             left = best[found.phi[best, k] < purpose.needed()[questions[best]]]
             if len(left):
-                cover(
+                branch_and_bound(
                     form,
                     form.leaves(combinations[left]),
                     purpose,

@@ -27,7 +27,7 @@ from synth.tuning import TUNING, Tuning
 LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
 
 
-class Together(Instance):
+class JointInstance(Instance):
     """Several questions as one: the first digit of a combination tells which.
 
     Parameters
@@ -109,12 +109,12 @@ def alike(question: Question) -> tuple[Any, ...]:
     )
 
 
-class BestOfEach(Archive):
+class IncumbentPerScenario(Archive):
     """The best feasible design of each question in one objective.
 
     Parameters
     ----------
-    together : Together
+    together : JointInstance
     column : int
         Number of the objective.
     variables, objectives : int
@@ -126,7 +126,7 @@ class BestOfEach(Archive):
 
     def __init__(
         self,
-        together: Together,
+        together: JointInstance,
         column: int,
         variables: int,
         objectives: int,
@@ -163,14 +163,14 @@ class BestOfEach(Archive):
         return result
 
 
-class Each:
+class BestPerScenario:
     """Find the best design of each question in one objective.
 
     Parameters
     ----------
     form : Formulation
         Of questions together.
-    known : BestOfEach
+    known : IncumbentPerScenario
     slack : callable
         Takes phi of the best designs; returns how much better a design must be to be of use.
     asked : array of bool (questions,)
@@ -180,7 +180,11 @@ class Each:
     proves = False
 
     def __init__(
-        self, form: Formulation, known: BestOfEach, slack: Callable[[np.ndarray], np.ndarray], asked: np.ndarray
+        self,
+        form: Formulation,
+        known: IncumbentPerScenario,
+        slack: Callable[[np.ndarray], np.ndarray],
+        asked: np.ndarray,
     ) -> None:
         self.form, self.known, self._slack, self.asked = form, known, slack, asked
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie

@@ -12,24 +12,24 @@ import numpy as np
 
 from synth.analysis.designs import make_frame, offered
 from synth.feasibility import Status
-from synth.parametric.joint_heuristics import Lookout
-from synth.parametric.joint_question import BestOfEach, Each, Together
+from synth.parametric.joint_heuristics import JointHeuristics
+from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
 from synth.question.objectives import with_ties
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.search.archive import Candidate, rows_of
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import cover
+from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
-from synth.search.polishing import settle_ties
+from synth.search.polishing import break_ties
 from synth.search.question import Question
 from synth.search.resolution import rounded_up, slack
 from synth.search.sensitivity import elasticities
 
 
-class Wider:
+class SharedBounds:
     """What holds for many questions, found once for all searches of some of them.
 
     Parameters
@@ -37,20 +37,20 @@ class Wider:
     questions : list of Question
         Alike.
     moving : collection of str
-        As for :class:`Together`.
+        As for :class:`JointInstance`.
     first : str, optional
         Of several chosen objectives that which comes first; the others settle ties.
     """
 
     def __init__(self, questions: Sequence[Question], moving: Collection[str], first: str | None = None) -> None:
         self.moving, self._tuning = moving, questions[0].tuning
-        self._together = Together([q.instance for q in questions], moving)
+        self._together = JointInstance([q.instance for q in questions], moving)
         chosen = dict(questions[0].chosen)
         in_order = {first: chosen[first], **chosen} if first is not None else chosen
         self.goals = with_ties(self._together.model, in_order)
         self._forms: dict[bool, Formulation] = {}
 
-    def among(self, together: Together, conflict: bool) -> Formulation | None:
+    def among(self, together: JointInstance, conflict: bool) -> Formulation | None:
         """Return questions prepared for a search; None where their numbers are not among those of these."""
         if conflict not in self._forms:
             self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict, tuning=self._tuning)
@@ -60,7 +60,7 @@ class Wider:
 class _Attempt:
     """One way of bounding what questions may have, which goes on where it stopped."""
 
-    def __init__(self, search: TogetherSearch, form: Formulation, known: BestOfEach, boxes: Boxes) -> None:
+    def __init__(self, search: JointSearch, form: Formulation, known: IncumbentPerScenario, boxes: Boxes) -> None:
         self.search, self.form, self.known, self.left = search, form, known, boxes
 
     def open_questions(self, asked: np.ndarray, effort: float) -> np.ndarray:
@@ -74,9 +74,11 @@ class _Attempt:
             rows = asked[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.contracted, form.nlp_solves
-        purpose = Each(form, self.known, search._slack(search.sought), asked)
+        purpose = BestPerScenario(form, self.known, search._slack(search.sought), asked)
         for _ in range(2):
-            self.left = cover(form, self.left, purpose, search.clock, search.rng, min(effort, joint.most_boxes)).open
+            self.left = branch_and_bound(
+                form, self.left, purpose, search.clock, search.rng, min(effort, joint.most_boxes)
+            ).open
             if not 0 < len(self.left) < joint.nearly_closed * effort:
                 break
         if self.known is not search.known:
@@ -86,7 +88,7 @@ class _Attempt:
         return purpose.open_questions(self.left)
 
 
-class TogetherSearch:
+class JointSearch:
     """One search for several questions.
 
     Parameters
@@ -99,12 +101,12 @@ class TogetherSearch:
         Seconds; then ``Stopped`` is raised.
     ideas : list of Design
         Designs of similar questions, where to look first. They prove nothing.
-    wider : Wider, optional
+    wider : SharedBounds, optional
         Of questions that these are among.
     sought : int
         Number of the objective that is sought.
     caps : mapping, optional
-        As for :class:`Together`.
+        As for :class:`JointInstance`.
     """
 
     def __init__(
@@ -114,7 +116,7 @@ class TogetherSearch:
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
         ideas: Sequence[Design] = (),
-        wider: Wider | None = None,
+        wider: SharedBounds | None = None,
         sought: int = 0,
         caps: Mapping[int, np.ndarray] | None = None,
     ) -> None:
@@ -123,7 +125,7 @@ class TogetherSearch:
         first = questions[0]
         self.tuning, self.joint = first.tuning, first.tuning.joint
         self.wider, self.workers, self.sought = wider, workers, sought
-        self.together = Together([q.instance for q in questions], () if wider is None else wider.moving, caps)
+        self.together = JointInstance([q.instance for q in questions], () if wider is None else wider.moving, caps)
         self.gap = first.settings.gap
         self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
         self.form = self._prepared()
@@ -136,7 +138,7 @@ class TogetherSearch:
         self.rng = np.random.default_rng(first.settings.seed)
         self.pool = self.form.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
-        self.look = Lookout(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
+        self.look = JointHeuristics(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
         self.look.starts = self._starts(ideas)
 
     def answers(self) -> list[ParetoFront | None]:
@@ -158,7 +160,7 @@ class TogetherSearch:
         """Return good designs of the questions, of which nothing is proven."""
         self.pool, self.look.thorough = self.form.root(), False
         if len(self.pool):
-            purpose = Each(self.form, self.known, self._slack(self.sought), self.told_apart())
+            purpose = BestPerScenario(self.form, self.known, self._slack(self.sought), self.told_apart())
             self.look.recalled(purpose)
             self.look.improve(purpose)
         return list(self.known)
@@ -184,7 +186,7 @@ class TogetherSearch:
         self.pool = self.form.root()
         if not len(self.pool) or not asked.any():
             return asked
-        self.look.first(Each(self.form, self.known, self._slack(self.sought), asked), self.pool)
+        self.look.first(BestPerScenario(self.form, self.known, self._slack(self.sought), asked), self.pool)
         found, unproven = np.isfinite(self.known.best()), asked.copy()
         if not found.any() and not excluded:
             return np.zeros_like(asked)
@@ -197,7 +199,7 @@ class TogetherSearch:
             if not unproven.any():
                 break
             self.look.thorough = True
-            self.look.improve(Each(self.form, self.known, self._slack(self.sought), unproven))
+            self.look.improve(BestPerScenario(self.form, self.known, self._slack(self.sought), unproven))
             conflict = self._in_conflict() if conflict is None else conflict
             sure = int((unproven & np.isfinite(self.known.best())).sum())
             effort = surely * sure + doubtfully * (int(unproven.sum()) - sure)
@@ -232,10 +234,10 @@ class TogetherSearch:
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
         asked &= self.told_apart()
-        purpose = Each(form, known, self._slack(self.sought), asked)
+        purpose = BestPerScenario(form, known, self._slack(self.sought), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self.look.tried(purpose, combinations, self._points([design for _, _, design in rows]))
-        outcome = cover(
+        outcome = branch_and_bound(
             form, form.leaves(combinations), purpose, self.clock, self.rng, self.joint.given_parts * len(rows)
         )
         left = purpose.open_questions(outcome.open)
@@ -254,8 +256,10 @@ class TogetherSearch:
         form.archive = known = self._none_known()
         return _Attempt(self, form, known, form.root())
 
-    def _none_known(self) -> BestOfEach:
-        return BestOfEach(self.together, self.sought, self.form.n, len(self.form.goals), self.plain, self.tuning)
+    def _none_known(self) -> IncumbentPerScenario:
+        return IncumbentPerScenario(
+            self.together, self.sought, self.form.n, len(self.form.goals), self.plain, self.tuning
+        )
 
     def _prepared(self, conflict: bool = False) -> Formulation:
         form = None if self.wider is None else self.wider.among(self.together, conflict)
@@ -316,7 +320,7 @@ class TogetherSearch:
         """
         form, together = self.form, self.together
         fronts: list[ParetoFront | None] = [None] * len(together.each)
-        found = settle_ties(form, self.pool, chosen, traded) if chosen else []
+        found = break_ties(form, self.pool, chosen, traded) if chosen else []
         every = np.array(sorted(form.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.combinations.question(every), minlength=len(together.each))
         for number, designs in self._designs(found, traded).items():
@@ -399,12 +403,12 @@ class TogetherSearch:
         questions = self.together.combinations.question(np.array([c.combination for c in chosen]))
         plain = self.plain.copy()
         plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
-        known = BestOfEach(self.together, following, form.n, len(form.goals), plain, self.tuning)
+        known = IncumbentPerScenario(self.together, following, form.n, len(form.goals), plain, self.tuning)
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
         known.add(*rows_of(chosen))
-        purpose = Each(form, known, self._slack(following), asked)
+        purpose = BestPerScenario(form, known, self._slack(following), asked)
         self.look.improve(purpose)
-        cover(form, self.pool, purpose, self.clock, self.rng, self.joint.tie * len(chosen))
+        branch_and_bound(form, self.pool, purpose, self.clock, self.rng, self.joint.tie * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]

@@ -60,7 +60,7 @@ class Enclosed:
 
 
 @dataclass(frozen=True)
-class Cut:
+class NodeComparison:
     """What a limit says of one instruction, against another one or a value: +1 at most, -1 at least, 0 equal."""
 
     other: int | Expr
@@ -123,7 +123,7 @@ class Encloser(Ranges):
         nodes: Sequence[Node],
         order: Iterable[int],
         inputs: Sequence[Enclosed],
-        cuts: Mapping[int, Sequence[Cut]] | None = None,
+        cuts: Mapping[int, Sequence[NodeComparison]] | None = None,
         prefix: Key = (),
     ) -> dict[int, Enclosed]:
         """Return the enclosures of instructions; narrow ranges only where cuts are given."""
@@ -484,7 +484,9 @@ class Encloser(Ranges):
 
     # -- narrow ranges: forward and back -------------------------------------------------------
 
-    def _narrow(self, k: int, node: Node, found: Mapping[int, Enclosed], cuts: Mapping[int, Sequence[Cut]]) -> None:
+    def _narrow(
+        self, k: int, node: Node, found: Mapping[int, Enclosed], cuts: Mapping[int, Sequence[NodeComparison]]
+    ) -> None:
         v = found[k]
         args = [found[a] for a in node.args]
         if all(a.narrow[0] is a.range[0] and a.narrow[1] is a.range[1] for a in args):
@@ -509,7 +511,7 @@ class Encloser(Ranges):
                 self._mark(v.sign, low, high)
             v.narrow = (low, high)
 
-    def _loosened(self, end: Expr, cut: Cut, direction: float) -> Expr:
+    def _loosened(self, end: Expr, cut: NodeComparison, direction: float) -> Expr:
         if cut.loose == 0:
             return end
         size = self.do("maximum", self.do("absolute", end), cut.scale)

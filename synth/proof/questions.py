@@ -50,7 +50,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ProofOutcome:
     """How a proof ended: closed, or refuted by a design, or neither."""
 
     closed: bool

@@ -13,7 +13,7 @@ from synth.proof.tape import Expr, Ref, sign_of
 
 
 @dataclass(frozen=True)
-class Row:
+class ProofRow:
     """A limit, or an objective against the end of a region, as a value that must not be above 0.
 
     ``least`` bounds it for feasible designs, ``anywhere`` for all points of the box.
@@ -42,7 +42,7 @@ class _Step:
         self._e, self._do, self._where = encloser, encloser.do, encloser.tape.where
         self._ends, self._halves, self._coordinates, self._groups = ends, halves, coordinates, groups
 
-    def narrowed(self, rows: Sequence[Row], levels: Sequence[Ref], narrow: Sequence[Pair]) -> list[Expr]:
+    def narrowed(self, rows: Sequence[ProofRow], levels: Sequence[Ref], narrow: Sequence[Pair]) -> list[Expr]:
         """Return what narrow ranges tell: the largest row, new ends, and least objectives."""
         worst: Expr = -INF
         floors = []
@@ -54,7 +54,7 @@ class _Step:
         floors = [self._do("add", x, level) for x, level in zip(floors, levels, strict=False)]
         return [worst, *(x for x, _ in ends), *(x for _, x in ends), *floors]
 
-    def sloped(self, rows: Sequence[Row], levels: Sequence[Ref], widths: Sequence[Ref], groups: int) -> list[Expr]:
+    def sloped(self, rows: Sequence[ProofRow], levels: Sequence[Ref], widths: Sequence[Ref], groups: int) -> list[Expr]:
         """Return what slopes tell: as ``narrowed``, then how much each group spreads the rows, and the middle."""
         do = self._do
         worst: Expr = -INF

@@ -28,11 +28,11 @@ import numpy as np
 from synth.model.model import Model
 from synth.model.program import Program
 from synth.proof.clusters import FAR, TINY, Clusters
-from synth.proof.enclosure import Cut, Enclosed, Encloser
+from synth.proof.enclosure import Enclosed, Encloser, NodeComparison
 from synth.proof.interval_arithmetic import INF, LOOSE
-from synth.proof.questions import Coordinate, LimitSides, Outcome, Point
+from synth.proof.questions import Coordinate, LimitSides, Point, ProofOutcome
 from synth.proof.tape import Ref, Tape
-from synth.proof.tightening import Row, _Step
+from synth.proof.tightening import ProofRow, _Step
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.instance import Instance
 from synth.special import expanded
@@ -41,7 +41,7 @@ NO_SCALE = 1e-9  # of limits that the user added
 
 
 @dataclass
-class Boxes:
+class ProofBoxes:
     """Open boxes: ends of the continuous variables, and ends of ladders, nodes of slots and of the regions."""
 
     real: np.ndarray  # (2 variables, boxes): low ends, then high ends
@@ -50,18 +50,20 @@ class Boxes:
     def __len__(self) -> int:
         return int(self.whole.shape[1])
 
-    def take(self, which: Any) -> Boxes:
+    def take(self, which: Any) -> ProofBoxes:
         """Return some of the boxes."""
-        return Boxes(self.real[:, which], self.whole[:, which])
+        return ProofBoxes(self.real[:, which], self.whole[:, which])
 
-    def each(self) -> Iterator[Boxes]:
+    def each(self) -> Iterator[ProofBoxes]:
         """Yield the boxes one by one."""
         return (self.take(slice(k, k + 1)) for k in range(len(self)))
 
     @staticmethod
-    def joined(parts: Sequence[Boxes]) -> Boxes:
+    def joined(parts: Sequence[ProofBoxes]) -> ProofBoxes:
         """Return several batches as one."""
-        return Boxes(np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.whole for p in parts], axis=1))
+        return ProofBoxes(
+            np.concatenate([p.real for p in parts], axis=1), np.concatenate([p.whole for p in parts], axis=1)
+        )
 
 
 def void_without(model: Model) -> dict[str, list[int]]:
@@ -195,15 +197,15 @@ class ProofTree:
         c = self._coordinates[coordinate]
         return c.kind == "column" and bool(np.isnan(self._tables[c.group][:, c.column]).any())
 
-    def _cuts(self) -> dict[int, list[Cut]]:
-        cuts: dict[int, list[Cut]] = {}
+    def _cuts(self) -> dict[int, list[NodeComparison]]:
+        cuts: dict[int, list[NodeComparison]] = {}
         for x in self._limits:
             if not x.void:
                 direction = {"at_most": 1, "at_least": -1, "equal": 0}[x.sense]
                 loose = 0.0 if x.guard else LOOSE  # a guard has no tolerance
-                cuts.setdefault(x.value, []).append(Cut(x.bound, direction, x.scale, loose))
+                cuts.setdefault(x.value, []).append(NodeComparison(x.bound, direction, x.scale, loose))
                 if isinstance(x.bound, int):
-                    cuts.setdefault(x.bound, []).append(Cut(x.value, -direction, x.scale, loose))
+                    cuts.setdefault(x.bound, []).append(NodeComparison(x.value, -direction, x.scale, loose))
         return cuts
 
     # -- the root box --------------------------------------------------------------------------
@@ -294,7 +296,7 @@ class ProofTree:
         encloser = Encloser(tape, self.program, known=scout.record)
         cuts = self._cuts()
         for goal, sense, cap in zip(self._goals, self._senses, caps, strict=True):
-            cuts.setdefault(goal, []).append(Cut(cap, sense, loose=0.0))
+            cuts.setdefault(goal, []).append(NodeComparison(cap, sense, loose=0.0))
         inputs = [leaves[x] if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
         found = encloser.run(self.program.nodes, self._order, inputs, cuts)
         rows = [self._goal_row(encloser, found, k, levels[k]) for k in range(len(self._goals))]
@@ -302,7 +304,7 @@ class ProofTree:
             rows += self._limit_rows(encloser, found, limit, masks)
         for k in self._refusals:
             surely = encloser.do("subtract", found[k].narrow[0], 0.5)
-            rows.append(Row(surely, surely, surely, {}))
+            rows.append(ProofRow(surely, surely, surely, {}))
 
         step = _Step(
             encloser, ends, halves, self._coordinates, [self._group_of(c) for c in self._coordinates], self.limits.pad
@@ -322,7 +324,7 @@ class ProofTree:
         first = {"variable": 0, "ladder": len(self._variables), "column": len(self._variables) + len(self._ladders)}
         return first[c.kind] + c.group
 
-    def _goal_row(self, encloser: Encloser, found: Mapping[int, Enclosed], k: int, level: Ref) -> Row:
+    def _goal_row(self, encloser: Encloser, found: Mapping[int, Enclosed], k: int, level: Ref) -> ProofRow:
         v, do = found[self._goals[k]], encloser.do
         if self.positive[k]:
             ends = (do("log", v.uncut[0]), do("log", v.range[0]), do("log", v.center[0]))
@@ -333,11 +335,11 @@ class ProofTree:
             ends = (do("negative", v.uncut[1]), do("negative", v.range[1]), do("negative", v.center[1]))
             slopes = {q: encloser.negative(s) for q, s in encloser.linear(v).items()}
         least, anywhere, center = (do("subtract", x, level) for x in ends)
-        return Row(least, anywhere, center, slopes)
+        return ProofRow(least, anywhere, center, slopes)
 
     def _limit_rows(
         self, encloser: Encloser, found: Mapping[int, Enclosed], x: LimitSides, masks: Mapping[Any, Ref]
-    ) -> list[Row]:
+    ) -> list[ProofRow]:
         value = found[x.value]
         bound = found[x.bound] if isinstance(x.bound, int) else Enclosed.constant(x.bound)
         void = masks[x.void] if x.void else None
@@ -348,7 +350,7 @@ class ProofTree:
             rows.append(self._limit_row(encloser, bound, value, x, void))
         return rows
 
-    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> Row:
+    def _limit_row(self, e: Encloser, small: Enclosed, large: Enclosed, x: LimitSides, void: Ref | None) -> ProofRow:
         """Return small <= large as a row: log(small/large), or their difference over their size."""
         do, scale, limits = e.do, x.scale, self.limits
         share = limits.guard_tolerance if x.guard else limits.row_tolerance
@@ -357,7 +359,7 @@ class ProofTree:
             for a, b in ((small.uncut, large.uncut), (small.range, large.range), (small.center, large.center)):
                 ends.append(do("subtract", do("log", do("divide", a[0], b[1])), share))
             slopes = e.merged(e.logarithmic(small), e.logarithmic(large), e.subtract)
-            return Row(ends[0], ends[1], ends[2], slopes, void)
+            return ProofRow(ends[0], ends[1], ends[2], slopes, void)
         size = do("maximum", do("absolute", large.center[0]), do("maximum", do("absolute", small.center[0]), scale))
         factor = do("divide", 1.0, size)
         pair = (factor, factor)
@@ -367,11 +369,11 @@ class ProofTree:
             ends.append(do("subtract", do("subtract", a[0], b[1]), tolerance))
         ends[1:] = [do("multiply", factor, x) for x in ends[1:]]
         slopes = e.merged(e.linear(small), e.linear(large), e.subtract)
-        return Row(ends[0], ends[1], ends[2], {k: e.multiply(pair, s) for k, s in slopes.items()}, void)
+        return ProofRow(ends[0], ends[1], ends[2], {k: e.multiply(pair, s) for k, s in slopes.items()}, void)
 
     # -- the tree ------------------------------------------------------------------------------
 
-    def prove(self, ends: np.ndarray, confirm: Callable[[Point], bool], deadline: float = INF) -> Outcome:
+    def prove(self, ends: np.ndarray, confirm: Callable[[Point], bool], deadline: float = INF) -> ProofOutcome:
         """Prove that no feasible design lies in any region: below an end in every objective.
 
         Parameters
@@ -384,7 +386,7 @@ class ProofTree:
             On the clock of ``time.monotonic``.
         """
         if self.empty:
-            return Outcome(True, 0)
+            return ProofOutcome(True, 0)
         with np.errstate(all="ignore"):
             logs = np.where(ends > 0, np.log(np.maximum(ends, TINY)), -INF)  # nothing positive lies below 0
             levels = np.where(self.positive, logs, ends)
@@ -394,12 +396,12 @@ class ProofTree:
             regions = Clusters(levels, np.zeros(levels.shape[1], dtype=bool), scale)
             return self._grow(regions, confirm, deadline)
 
-    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float) -> Outcome:
+    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float) -> ProofOutcome:
         limits, tries = self.limits, self.limits.tries
         pool, nodes, stuck = [self._begin(regions)], 0, 0
         while pool:
             if time.monotonic() > deadline or nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
-                return Outcome(False, nodes)
+                return ProofOutcome(False, nodes)
             batch = _batch(pool, limits.chunk)
             nodes += len(batch)
             boxes, scores, middle = self._tightened(batch, regions)
@@ -413,32 +415,32 @@ class ProofTree:
             hopeful = np.argsort(middle)[:tries]
             few = [left.take(np.flatnonzero(~single)[:tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
             # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
-            for point in map(self._point, Boxes.joined([left.take(single), *few]).each()):
+            for point in map(self._point, ProofBoxes.joined([left.take(single), *few]).each()):
                 if confirm(point):
-                    return Outcome(False, nodes, point)
+                    return ProofOutcome(False, nodes, point)
             stuck += int(np.count_nonzero(~single))
             if stuck > limits.most_stuck:
-                return Outcome(False, nodes)
+                return ProofOutcome(False, nodes)
             if not small.all():
                 pool.append(self._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
-        return Outcome(not stuck, nodes)
+        return ProofOutcome(not stuck, nodes)
 
-    def _begin(self, regions: Clusters) -> Boxes:
+    def _begin(self, regions: Clusters) -> ProofBoxes:
         """Return boxes that cover everything, split blindly to a useful number."""
         real = [c.low for c in self._coordinates if c.kind == "variable"]
         real += [c.high for c in self._coordinates if c.kind == "variable"]
         whole = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
-        boxes = Boxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
+        boxes = ProofBoxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
         while len(boxes) < self.limits.first:
             widths = self._widths(boxes, regions)
             if not np.any(widths > 0):
                 break
             group = np.argmax(widths, axis=0)
             fixed = widths.max(axis=0) <= 0
-            boxes = Boxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
+            boxes = ProofBoxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
         return boxes
 
-    def _tightened(self, boxes: Boxes, regions: Clusters) -> tuple[Boxes, np.ndarray, np.ndarray]:
+    def _tightened(self, boxes: ProofBoxes, regions: Clusters) -> tuple[ProofBoxes, np.ndarray, np.ndarray]:
         """Return what is left of boxes, how much each group spreads the rows, and the largest row at the middle."""
         result = self._narrowing.run(self._handed(boxes, regions, False))
         boxes, _ = self._placed(boxes, regions, result)
@@ -451,7 +453,7 @@ class ProofTree:
         # A spread without a bound counts as large, but not so that widths no longer matter.
         return boxes, np.where(np.isfinite(scores), scores, FAR), np.broadcast_to(result[-1], count)[kept]
 
-    def _handed(self, boxes: Boxes, regions: Clusters, slopes: bool) -> list[np.ndarray]:
+    def _handed(self, boxes: ProofBoxes, regions: Clusters, slopes: bool) -> list[np.ndarray]:
         """Return the arrays that a kernel takes, in its order."""
         v, m = len(self._variables), len(self._ladders)
         nodes, region = boxes.whole[2 * m : -1], boxes.whole[-1]
@@ -485,7 +487,7 @@ class ProofTree:
             handed += list(np.where(np.isfinite(widths), widths, 0.0))
         return handed
 
-    def _placed(self, boxes: Boxes, regions: Clusters, result: Sequence[Any]) -> tuple[Boxes, np.ndarray]:
+    def _placed(self, boxes: ProofBoxes, regions: Clusters, result: Sequence[Any]) -> tuple[ProofBoxes, np.ndarray]:
         """Return the boxes that are not dead, between their new ends, and which of the old ones they are."""
         count, n = len(boxes), len(self._coordinates)
         low = [np.broadcast_to(x, count) for x in result[1 : 1 + n]]
@@ -518,9 +520,9 @@ class ProofTree:
         floor = np.where(np.isnan(floor), -INF, floor)
         whole[-1] = regions.narrowed(whole[-1], floor, np.full(floor.shape, INF))
         kept &= whole[-1] >= 0
-        return Boxes(real[:, kept], whole[:, kept]), alive[kept]
+        return ProofBoxes(real[:, kept], whole[:, kept]), alive[kept]
 
-    def _widths(self, boxes: Boxes, regions: Clusters) -> np.ndarray:
+    def _widths(self, boxes: ProofBoxes, regions: Clusters) -> np.ndarray:
         """Return how wide each group of a box is; 0 where it cannot be split."""
         v, m = len(self._variables), len(self._ladders)
         result = np.zeros((self._groups, len(boxes)))
@@ -540,7 +542,7 @@ class ProofTree:
         result[-1] = regions.spread[boxes.whole[-1]]
         return result
 
-    def _single(self, boxes: Boxes) -> np.ndarray:
+    def _single(self, boxes: ProofBoxes) -> np.ndarray:
         """Tell which boxes are a single design in all that the question sees; regions may be many."""
         v, m = len(self._variables), len(self._ladders)
         single: np.ndarray = np.all(boxes.real[:v] == boxes.real[v:], axis=0)
@@ -549,23 +551,23 @@ class ProofTree:
             single &= slot.left[nodes] < 0
         return single
 
-    def _split(self, boxes: Boxes, scores: np.ndarray, widths: np.ndarray, regions: Clusters) -> Boxes:
+    def _split(self, boxes: ProofBoxes, scores: np.ndarray, widths: np.ndarray, regions: Clusters) -> ProofBoxes:
         """Return boxes split where the rows are spread most, once, or more often where there are few."""
         while True:
             score = np.where(widths > 0, scores + 1e-9 * widths, -1.0)
             group = np.argmax(score, axis=0)
             fixed = score.max(axis=0) < 0
             scores[group, np.arange(len(boxes))] *= 0.5
-            boxes = Boxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
+            boxes = ProofBoxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
             if len(boxes) >= self.limits.few or fixed.any():
                 return boxes
             scores, widths = np.concatenate([scores, scores], axis=1), self._widths(boxes, regions)
 
-    def _halved(self, boxes: Boxes, group: np.ndarray, regions: Clusters) -> Boxes:
+    def _halved(self, boxes: ProofBoxes, group: np.ndarray, regions: Clusters) -> ProofBoxes:
         """Return all left halves, then all right halves."""
         v, m = len(self._variables), len(self._ladders)
-        left = Boxes(boxes.real.copy(), boxes.whole.copy())
-        right = Boxes(boxes.real.copy(), boxes.whole.copy())
+        left = ProofBoxes(boxes.real.copy(), boxes.whole.copy())
+        right = ProofBoxes(boxes.real.copy(), boxes.whole.copy())
         for c in self._coordinates:
             at = np.flatnonzero(group == self._group_of(c)) if c.kind != "column" else np.empty(0, dtype=np.int64)
             if not len(at):
@@ -585,9 +587,9 @@ class ProofTree:
             at = np.flatnonzero(group == v + m + k)
             node = boxes.whole[2 * m + k, at]
             left.whole[2 * m + k, at], right.whole[2 * m + k, at] = tree.left[node], tree.right[node]
-        return Boxes.joined([left, right])
+        return ProofBoxes.joined([left, right])
 
-    def _point(self, box: Boxes) -> Point:
+    def _point(self, box: ProofBoxes) -> Point:
         """Return a design in the middle of a box, of rows and makeable values."""
         model, v, m = self.instance.model, len(self._variables), len(self._ladders)
         values = [0.0] * self.program.n_inputs
@@ -621,13 +623,13 @@ def _between(values: np.ndarray, low: float, high: float, snap: float) -> np.nda
     return (values >= low - reach) & (values <= high + reach)
 
 
-def _batch(pool: list[Boxes], chunk: int) -> Boxes:
+def _batch(pool: list[ProofBoxes], chunk: int) -> ProofBoxes:
     """Take boxes from the end of the pool: one chunk, or less where there are fewer."""
     taken, count = [], 0
     while pool and count < chunk:
         taken.append(pool.pop())
         count += len(taken[-1])
-    boxes = Boxes.joined(taken)
+    boxes = ProofBoxes.joined(taken)
     if len(boxes) > chunk:
         pool.append(boxes.take(slice(chunk, None)))
         boxes = boxes.take(slice(0, chunk))

@@ -38,7 +38,7 @@ MOST_OPEN = 3  # things of unknown direction that all corners are posed of
 Position = tuple[float | None, ...]
 
 
-def posed(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None) -> DesignProblem:
+def robust_counterpart(problem: DesignProblem, robust: Any, limits: Mapping[str, Any] | None) -> DesignProblem:
     """Return a problem whose limits hold over a range; the problem itself where designs are only rated.
 
     Parameters

@@ -76,7 +76,7 @@ def robust_front(
     """
     deadline = math.inf if time_limit is None else time.monotonic() + time_limit
 
-    def ask(asked: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _Answer:
+    def ask(asked: Uncertainty, known: Sequence[Design], front: ParetoFront | None = None) -> _RatedFront:
         question = pose(asked)
         check_rows(rater.things, question.instance.selection.slots)
         if front is None:
@@ -85,7 +85,7 @@ def robust_front(
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))
         more = len(question.instance.model.limits) - len(rater.model.limits)
-        return _Answer(asked, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
+        return _RatedFront(asked, front, ratings, front.interrupted or stopped, more, question.tuning.robust)
 
     got, searches = ask(rater.asked, known, first), 1
     while got.asked.mode == LIMITS and got.failing and not got.stopped and searches < got.limits.searches:
@@ -101,7 +101,7 @@ def robust_front(
 
 
 @dataclass(frozen=True)
-class _Answer:
+class _RatedFront:
     """A front with the ratings of its designs, and what stopped the work if something did."""
 
     asked: Uncertainty

@@ -122,7 +122,7 @@ def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list
     InputError
         When the problem has no such thing, or it cannot scatter so.
     """
-    reader = _Reader(d, where)
+    reader = _RangeReader(d, where)
     found: list[Scattered] = []
     for key, text in asked.ranges.items():
         with at("robust", key):
@@ -147,7 +147,7 @@ def scattered(asked: Uncertainty, d: Declaration, where: str = "robust") -> list
     return found
 
 
-class _Reader:
+class _RangeReader:
     """Reads ranges for one declaration."""
 
     def __init__(self, d: Declaration, where: str) -> None:

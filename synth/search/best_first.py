@@ -15,11 +15,11 @@ import numpy as np
 
 from synth.effort import SearchEffort
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import Covered, further
+from synth.search.branch_and_bound import TreeOutcome, further
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import Seeker
-from synth.search.pruning import Purpose, Tabled, reaches_beyond
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import PruningRule, TabledPruningRule, reaches_beyond
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,12 +61,12 @@ class OpenBoxes:
     Parameters
     ----------
     form : Formulation
-    purpose : Purpose
+    purpose : PruningRule
     most : int
         When more boxes wait, those of the lowest level are taken first.
     """
 
-    def __init__(self, form: Formulation, purpose: Purpose, most: int) -> None:
+    def __init__(self, form: Formulation, purpose: PruningRule, most: int) -> None:
         self.form, self.purpose, self.most, self.tree = form, purpose, most, form.tuning.tree
         self.levels: list[list[Boxes]] = [[] for _ in range(self.tree.levels)]
         self.counts = np.zeros(self.tree.levels, dtype=np.int64)
@@ -129,12 +129,12 @@ class OpenBoxes:
 def best_first(
     form: Formulation,
     boxes: Boxes,
-    purpose: Tabled,
+    purpose: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
     effort: SearchEffort,
     over: Callable[[], bool] | None = None,
-) -> Covered:
+) -> TreeOutcome:
     """Go on with boxes that are open until they are closed, no longer close, or the budget of time is spent.
 
     Parameters
@@ -154,7 +154,7 @@ def best_first(
     over = (lambda: time.monotonic() > end) if over is None else over
     every = reaches_beyond(purpose, form.bounded)
     form.focus()
-    seeker, looked, spent = Seeker(form, purpose, rng, every), 0, False
+    seeker, looked, spent = PrimalHeuristics(form, purpose, rng, every), 0, False
     boxes = boxes if every else form.lean(boxes)
     waiting, stuck = OpenBoxes(form, purpose, effort.most_waiting), boxes.take(slice(0, 0))
     waiting.add(boxes)
@@ -175,4 +175,4 @@ def best_first(
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck
     left = Boxes.joined([stuck, *waiting.batches])
-    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)
+    return TreeOutcome(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)

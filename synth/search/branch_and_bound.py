@@ -16,12 +16,12 @@ from synth.search.archive import Candidate
 from synth.search.boxes import Boxes, Subtrees
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import Seeker
-from synth.search.pruning import Cover, Purpose, Tabled, reaches_beyond
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, reaches_beyond
 
 
 @dataclass(frozen=True)
-class Covered:
+class TreeOutcome:
     """What a cover left open, how many boxes were looked into, and why it stopped.
 
     ``full``: enough is known; ``spent``: its time was over.
@@ -38,15 +38,15 @@ class Covered:
         return not len(self.open) and not self.full
 
 
-def cover(
+def branch_and_bound(
     form: Formulation,
     boxes: Boxes,
-    purpose: Tabled,
+    purpose: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
     effort: float = np.inf,
     enough: int | None = None,
-) -> Covered:
+) -> TreeOutcome:
     """Cover everything that boxes may hold by known designs.
 
     Parameters
@@ -54,7 +54,7 @@ def cover(
     form : Formulation
     boxes : Boxes
         Where to search.
-    purpose : Tabled
+    purpose : TabledPruningRule
         Feasible designs go there, and into the archive of the formulation.
     clock : Clock
     rng : Generator
@@ -69,7 +69,7 @@ def cover(
     """
     tree, every = form.tuning.tree, reaches_beyond(purpose, form.bounded)
     form.focus()
-    seeker, looked = Seeker(form, purpose, rng, every), 0
+    seeker, looked = PrimalHeuristics(form, purpose, rng, every), 0
     boxes = boxes if every else form.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck = nothing, [boxes], nothing
@@ -80,7 +80,7 @@ def cover(
                 continue
         clock.check([queue, *fresh, stuck])
         if enough is not None and len(form.archive) > enough:
-            return Covered(Boxes.joined([queue, *fresh, stuck]), looked, True)
+            return TreeOutcome(Boxes.joined([queue, *fresh, stuck]), looked, True)
         batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
         children, small, seen = further(form, batch, purpose, seeker, every, effort - looked)
         looked += seen
@@ -89,20 +89,20 @@ def cover(
         if len(children):
             fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
-    return Covered(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+    return TreeOutcome(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
 
 
 def further(
-    form: Formulation, batch: Boxes, purpose: Tabled, seeker: Seeker, every: bool, effort: float
+    form: Formulation, batch: Boxes, purpose: TabledPruningRule, seeker: PrimalHeuristics, every: bool, effort: float
 ) -> tuple[Boxes, Boxes, int]:
     """Tighten boxes, look for designs in them and split them.
 
     Parameters
     ----------
     form, purpose
-        As for :func:`cover`.
+        As for :func:`branch_and_bound`.
     batch : Boxes
-    seeker : Seeker
+    seeker : PrimalHeuristics
     every : bool
         Whether the purpose speaks of more than the first objectives.
     effort : float
@@ -134,7 +134,9 @@ def further(
     return batch, Boxes.joined(stuck) if stuck else none, looked
 
 
-def _grown(form: Formulation, boxes: Boxes, purpose: Tabled, seeker: Seeker, effort: float) -> Subtrees | None:
+def _grown(
+    form: Formulation, boxes: Boxes, purpose: TabledPruningRule, seeker: PrimalHeuristics, effort: float
+) -> Subtrees | None:
     """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
     levels = form.tuning.tree.generations
     if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
@@ -153,17 +155,17 @@ def best(
     rng: np.random.Generator,
     start: Candidate | None = None,
     effort: float = np.inf,
-) -> tuple[Candidate | None, Covered]:
+) -> tuple[Candidate | None, TreeOutcome]:
     """Find the least phi of one objective, the others capped, and prove it within the slack.
 
     Designs of the archive of the formulation, and ``start``, are known already.
     """
-    purpose = Cover([column], np.array([slack]), plain, form.new_archive([column]))
+    purpose = EpsilonCover([column], np.array([slack]), plain, form.new_archive([column]))
     if len(form.archive):
         purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
         purpose.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
-    found = cover(form, boxes, purpose, clock, rng, effort)
+    found = branch_and_bound(form, boxes, purpose, clock, rng, effort)
     return (purpose.known[0] if len(purpose.known) else None), found
 
 
@@ -180,7 +182,7 @@ def _latest(fresh: list[Boxes], generation: int) -> Boxes:
     return Boxes.joined(taken[::-1])
 
 
-def _most_open(form: Formulation, waiting: Boxes, purpose: Purpose) -> Boxes:
+def _most_open(form: Formulation, waiting: Boxes, purpose: PruningRule) -> Boxes:
     """Return boxes with most room first; covered ones are dropped."""
     lower = form.phi_of(waiting.bounds)
     space = purpose.room(lower, waiting.cell)

@@ -11,20 +11,20 @@ import numpy as np
 
 from synth.search.archive import Candidate
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import Covered, best, cover
+from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.polishing import settle_variables
-from synth.search.primal_heuristics import Seeker
-from synth.search.pruning import Cover, Staircase
+from synth.search.polishing import polish_variables
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import EpsilonCover, NonImprovement
 
 CAPPED, SOUGHT = 0, 1
 
 
-def cover_by_steps(
-    form: Formulation, pool: Boxes, purpose: Cover, clock: Clock, rng: np.random.Generator, effort: float
-) -> Covered:
-    """Cover everything by known designs, as ``cover`` does, for two objectives.
+def cover_by_epsilon_constraint(
+    form: Formulation, pool: Boxes, purpose: EpsilonCover, clock: Clock, rng: np.random.Generator, effort: float
+) -> TreeOutcome:
+    """Cover everything by known designs, as ``branch_and_bound`` does, for two objectives.
 
     Most of the slack is for the proof of a step, the rest for the choice of the design that stands for it: the one that
     reaches furthest in the other objective. Where little is left between the two ends it is covered at once: each step
@@ -35,7 +35,7 @@ def cover_by_steps(
     form : Formulation
     pool : Boxes
         Everything that may hold a feasible design.
-    purpose : Cover
+    purpose : EpsilonCover
         Its slack is what counts; designs go into the archive of the formulation.
     clock : Clock
     rng : Generator
@@ -56,7 +56,7 @@ def cover_by_steps(
     # The other end first: good designs there are often not far from good in both.
     first, end = best(form, pool, CAPPED, plain, purpose.slack[CAPPED], clock, rng, effort=effort)
     looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
-    Seeker(form, purpose, rng, False).beside(clock)
+    PrimalHeuristics(form, purpose, rng, False).beside(clock)
     if end.closed and first is not None:
         corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - purpose.slack[CAPPED])
     while True:
@@ -76,19 +76,19 @@ def cover_by_steps(
         if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= tree.narrow * purpose.slack[CAPPED]:
             # Nothing is better in the first objective than its end, so nothing useful is worse than that in the second.
             between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - purpose.slack[SOUGHT], plain)
-            rest = Cover(purpose.columns, purpose.slack, between, form.archive)
-            outcome = cover(form, pool, rest, clock, rng, min(effort, 2 * outcome.looked))
+            rest = EpsilonCover(purpose.columns, purpose.slack, between, form.archive)
+            outcome = branch_and_bound(form, pool, rest, clock, rng, min(effort, 2 * outcome.looked))
             looked += outcome.looked
             if outcome.closed:
                 break
             narrow = False
     still = Boxes.joined(left)
-    return Covered(still.take(purpose.room(form.phi_of(still.bounds)) > 0), looked)
+    return TreeOutcome(still.take(purpose.room(form.phi_of(still.bounds)) > 0), looked)
 
 
-def prove_by_steps(
-    form: Formulation, pool: Boxes, stairs: Staircase, clock: Clock, rng: np.random.Generator, effort: float
-) -> Covered:
+def prove_by_epsilon_constraint(
+    form: Formulation, pool: Boxes, stairs: NonImprovement, clock: Clock, rng: np.random.Generator, effort: float
+) -> TreeOutcome:
     """Prove the designs of a staircase, as a cover of it does, design by design; the ends first.
 
     A design that is beaten is replaced by the best that its step allows, which is thereby proven itself.
@@ -96,8 +96,8 @@ def prove_by_steps(
     Parameters
     ----------
     form, pool, clock, rng, effort
-        As for :func:`cover_by_steps`.
-    stairs : Staircase
+        As for :func:`cover_by_epsilon_constraint`.
+    stairs : NonImprovement
         Designs, of two objectives; those that need no proof are left out.
 
     Returns
@@ -125,7 +125,7 @@ def prove_by_steps(
         plain = nowhere.copy()
         plain[CAPPED] = design.phi[CAPPED] - stairs.slack[CAPPED]
         least(SOUGHT, plain, design.phi[SOUGHT])
-    return Covered(Boxes.joined(left), looked)
+    return TreeOutcome(Boxes.joined(left), looked)
 
 
 def _bar(form: Formulation, k: int, phi: float) -> Candidate:
@@ -137,7 +137,7 @@ def _stretch(form: Formulation, found: Candidate, room: float) -> None:
     """Add what the parts of a design reach in the first objective while the second gives way a little."""
     given = np.where(np.arange(len(found.phi)) == SOUGHT, room, 0.0)
     loose = Candidate(found.combination, found.variables, found.phi + given)
-    points = settle_variables(form, [loose], 2, [CAPPED])[0].variables[None, :]
+    points = polish_variables(form, [loose], 2, [CAPPED])[0].variables[None, :]
     combination = np.array([found.combination])
     rows, phi = form.feasible_rows(points, combination)
     form.archive.add(combination[rows], points[rows], phi[rows])

@@ -16,7 +16,7 @@ from synth.bounds.propagation import Propagation
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.margins import above, below
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.model import Evaluation
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
@@ -68,7 +68,7 @@ class Formulation:
         ]
         self.constraints = instance.constraints
         # All that the search knows of limits is made of these rows, one of each constraint.
-        self.cuts = cuts = [Cut.of(x) for x in self.constraints]
+        self.cuts = cuts = [NodeConstraint.of(x) for x in self.constraints]
         self.bounds = [cut.bound for cut in cuts]
         # A single objective needs bounds of the next one as well, which settles ties.
         self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
@@ -415,7 +415,7 @@ class Formulation:
         """Return the positions of the points that are feasible by the full tolerance alone, and phi of all points.
 
         Where something that moves continuously enters a limit such a point is of use only if nothing near to it keeps
-        the limit more closely: ``Seeker.on_edge``.
+        the limit more closely: ``PrimalHeuristics.on_edge``.
         """
         phi, held = self._judged(variables, combinations, np.full(len(self.cuts), TOLERANCE))
         rows = np.flatnonzero(held)
@@ -548,7 +548,7 @@ class Formulation:
 
     # -- the continuous problem ----------------------------------------------------------------
 
-    def _both_positive(self, cut: Cut) -> bool:
+    def _both_positive(self, cut: NodeConstraint) -> bool:
         positive = self.propagation.surely_positive
         # Where nothing is feasible nothing proves a sign, and logarithms would not exist.
         right = cut.bound > 0 if cut.limit is None else positive(cut.limit)

@@ -25,21 +25,21 @@ from synth.results.assembly import front_of, ranked
 from synth.search.archive import Archive, Candidate, distinct, rows_of
 from synth.search.best_first import best_first
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import Covered, best, cover
+from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
 from synth.search.budget import Clock
-from synth.search.epsilon_constraint import cover_by_steps, prove_by_steps
+from synth.search.epsilon_constraint import cover_by_epsilon_constraint, prove_by_epsilon_constraint
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
-from synth.search.large_neighbourhood import dive
+from synth.search.large_neighbourhood import large_neighbourhood_search
 from synth.search.least_infeasible import explain_infeasible
-from synth.search.part_sampling import BEGUN_ANEW, passed_over, search_parts, study_file
-from synth.search.polishing import polish_extremes, settle_ties, settle_variables, solve_everywhere
-from synth.search.primal_heuristics import Seeker
+from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
+from synth.search.polishing import break_ties, polish_extremes, polish_variables, solve_everywhere
+from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.proven_gap import Bound, least_gap
-from synth.search.pruning import Cover, Purpose, Staircase, Tabled
+from synth.search.pruning import EpsilonCover, NonImprovement, PruningRule, TabledPruningRule
 from synth.search.resolution import ROOM, ranges, rounded_up
 from synth.search.sensitivity import elasticities
-from synth.search.warm_start import recall
+from synth.search.warm_start import warm_start
 from synth.tuning import TUNING, TreeLimits, Tuning
 
 
@@ -107,9 +107,9 @@ class FrontSearch:
         self.solves_to_find: int | None = None  # of the designs listed; settling ties and prices come after
         self.open_combinations = float(instance.combinations.count)
         self.purpose = self._purpose(None)
-        self.covering: Cover | None = None  # the finest cover that is finished
+        self.covering: EpsilonCover | None = None  # the finest cover that is finished
         self.under_way: np.ndarray | None = None  # the slack of the tree that is under way, if it speaks of all designs
-        self.stairs: Staircase | None = None  # the proof of designs that is under way
+        self.stairs: NonImprovement | None = None  # the proof of designs that is under way
         self.proven_designs = set[bytes]()
         self.looked = 0
         self.by_steps = False  # whether a front at once has turned out to cost too much
@@ -128,11 +128,11 @@ class FrontSearch:
         form.workers = self.workers
         return form
 
-    def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> Cover:
+    def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> EpsilonCover:
         """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
         form = self.form
         slack = np.maximum(form.slack(self.gap, ranges)[: self.m], least)
-        return Cover(range(self.m), slack, np.full(len(form.goals), np.inf), form.archive)
+        return EpsilonCover(range(self.m), slack, np.full(len(form.goals), np.inf), form.archive)
 
     def begin_from(self, front: ParetoFront) -> None:
         """Begin with the front of an earlier search of the same question: none of its designs is lost."""
@@ -364,16 +364,16 @@ class FrontSearch:
             self.open_combinations = 0.0
         return found
 
-    def _for_best(self, k: int, plain: np.ndarray, slack: float, known: Candidate | None) -> Cover:
+    def _for_best(self, k: int, plain: np.ndarray, slack: float, known: Candidate | None) -> EpsilonCover:
         """Return the search for the design that is best in one objective."""
-        purpose = Cover([k], np.array([slack]), plain, self.form.new_archive([k]))
+        purpose = EpsilonCover([k], np.array([slack]), plain, self.form.new_archive([k]))
         if known is not None:
             purpose.take(*rows_of([known]))
         return purpose
 
     def _best_within(
         self, k: int, plain: np.ndarray, start: Candidate | None, effort: float
-    ) -> tuple[Candidate | None, Covered, float]:
+    ) -> tuple[Candidate | None, TreeOutcome, float]:
         """Return the best design found with so much effort, how the search ended, and the slack it had."""
         form = self.form
         slack = float(form.slack(self.gap, None if start is None else np.abs(start.phi))[k])
@@ -389,7 +389,7 @@ class FrontSearch:
 
     def _tree_for_best(
         self, k: int, plain: np.ndarray, slack: float, start: Candidate | None, effort: float
-    ) -> tuple[Candidate | None, Covered]:
+    ) -> tuple[Candidate | None, TreeOutcome]:
         self._begin_tree(np.array([slack]) if self.m == 1 else None)
         found = best(self.form, self.pool, k, plain, slack, self.clock, self.rng, start, effort)
         self.under_way = None
@@ -407,7 +407,7 @@ class FrontSearch:
         self.under_way = slack
         self.clock.open, self.clock.beyond = [], ()
 
-    def _close(self, left: Boxes, purpose: Tabled) -> Boxes:
+    def _close(self, left: Boxes, purpose: TabledPruningRule) -> Boxes:
         """Go on with boxes that a first effort has left open; return what stays open, and note what is proven then.
 
         Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
@@ -425,14 +425,14 @@ class FrontSearch:
             seed, trials = self.settings.seed, self.tuning.heuristics.parts.trials
             journal = study_file(self.instance, self.chosen, seed, self.tuning)
             self._say("parts", 0.0, BEGUN_ANEW if passed_over(journal) else "")
-            self.outer_trials += search_parts(self.form, left, purpose, self.clock, journal, seed, trials)
+            self.outer_trials += sample_parts(self.form, left, purpose, self.clock, journal, seed, trials)
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
         if len(purpose.columns) == self.m:
             self.bounds.append(Bound(purpose.slack, self.form.phi_of(left.bounds)[:, : self.m]))
         return left
 
-    def _solve_few(self, boxes: Boxes, purpose: Purpose) -> bool:
+    def _solve_few(self, boxes: Boxes, purpose: PruningRule) -> bool:
         """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
         combinations = self.form.cells.all_members(boxes.cell, self.limits.few_combinations + 1)
         few = len(combinations) <= self.limits.few_combinations
@@ -440,7 +440,7 @@ class FrontSearch:
             solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
         return few
 
-    def _go_on(self, left: Boxes, purpose: Tabled) -> Boxes:
+    def _go_on(self, left: Boxes, purpose: TabledPruningRule) -> Boxes:
         """Go on with boxes while they keep closing and there is time; return what stays open."""
         self._begin_tree(purpose.slack if len(purpose.columns) == self.m else None)
         begun = time.monotonic()
@@ -466,7 +466,7 @@ class FrontSearch:
 
     def _coarse(self) -> None:
         """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
-        if self.recalled and recall(self.form, self.purpose, self.recalled, self.rng):
+        if self.recalled and warm_start(self.form, self.purpose, self.recalled, self.rng):
             # For one objective little is left to look for, where what is worth splitting is known as well.
             if self.m > 1 or not self.taught:
                 self._seek(self._fine())
@@ -528,35 +528,37 @@ class FrontSearch:
             return False
         if self.in_conflict:
             self._begin_again(conflict=False)
-        dive(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
+        large_neighbourhood_search(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
         self._seek(self._fine())
         return len(self.form.archive) < self.tuning.heuristics.seeker.scarce
 
-    def _fine(self) -> Cover:
+    def _fine(self) -> EpsilonCover:
         """Return the cover that is as fine as the points asked for need, at most as the gap."""
         phi = self.form.archive.phi[:, : self.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.m)
         return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.purpose.slack))
 
-    def _seek(self, purpose: Cover) -> None:
+    def _seek(self, purpose: EpsilonCover) -> None:
         """Look for designs beside those that are known."""
-        Seeker(self.form, purpose, self.rng, False).beside(self.clock)
+        PrimalHeuristics(self.form, purpose, self.rng, False).beside(self.clock)
 
-    def _with_slack(self, slack: np.ndarray) -> Cover:
-        return Cover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
+    def _with_slack(self, slack: np.ndarray) -> EpsilonCover:
+        return EpsilonCover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
 
-    def _covered(self, purpose: Cover, effort: float, enough: int | None = None) -> Covered:
+    def _covered(self, purpose: EpsilonCover, effort: float, enough: int | None = None) -> TreeOutcome:
         """Cover everything with one slack; if the time runs out, the boxes that are open tell what is proven."""
         self._begin_tree(purpose.slack)
-        outcome = cover(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
+        outcome = branch_and_bound(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
         return self._noted(purpose, outcome)
 
-    def _in_steps(self, purpose: Cover) -> Covered:
+    def _in_steps(self, purpose: EpsilonCover) -> TreeOutcome:
         """Cover everything with one slack, one objective capped step by step."""
         self._begin_tree(purpose.slack)
-        return self._noted(purpose, cover_by_steps(self.form, self.pool, purpose, self.clock, self.rng, self.effort))
+        return self._noted(
+            purpose, cover_by_epsilon_constraint(self.form, self.pool, purpose, self.clock, self.rng, self.effort)
+        )
 
-    def _noted(self, purpose: Cover, outcome: Covered) -> Covered:
+    def _noted(self, purpose: EpsilonCover, outcome: TreeOutcome) -> TreeOutcome:
         """Count the boxes; what is covered with one slack stays known if the time runs out later."""
         self.under_way = None
         self.looked += outcome.looked
@@ -565,7 +567,7 @@ class FrontSearch:
             self.bounds.append(Bound(purpose.slack, np.empty((0, self.m))))
         return outcome
 
-    def _multiple(self, purpose: Cover) -> float:
+    def _multiple(self, purpose: EpsilonCover) -> float:
         """Return the slack of a cover in units of the slack that the gap stands for."""
         return float(np.max(purpose.slack / self.purpose.slack))
 
@@ -644,7 +646,7 @@ class FrontSearch:
             rough = [c for c in self._spread(list(archive), most) if c.phi[: self.m].tobytes() not in done]
             if not rough:
                 break
-            better = settle_variables(form, rough, self.m, range(self.m))
+            better = polish_variables(form, rough, self.m, range(self.m))
             done.update(c.phi[: self.m].tobytes() for c in better)
             archive.add(*rows_of(better))
         return self._spread(self._distinct(list(archive)), most)
@@ -663,14 +665,14 @@ class FrontSearch:
     def _prove(self) -> bool:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
         form, proven = self.form, self.proven_designs
-        stairs = Staircase(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
+        stairs = NonImprovement(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
         self.stairs = stairs
         if self.by_steps:
             self._begin_tree(None)  # the boxes of one step are not all that is open
-            outcome = prove_by_steps(form, self.pool, stairs, self.clock, self.rng, self.effort)
+            outcome = prove_by_epsilon_constraint(form, self.pool, stairs, self.clock, self.rng, self.effort)
         else:
             self._begin_tree(stairs.slack)
-            outcome = cover(form, self.pool, stairs, self.clock, self.rng, self.limits.boxes)
+            outcome = branch_and_bound(form, self.pool, stairs, self.clock, self.rng, self.limits.boxes)
         self.looked += outcome.looked
         left = self._close(outcome.open, stairs)
         self.stairs, self.under_way = None, None
@@ -712,11 +714,11 @@ class FrontSearch:
         nothing = form.new_archive(range(m))
         slack = form.slack(self.gap, sizes)[:m]
         self.against = np.maximum(self.against, (slack + ROOM) * form.goal_scales[:m])
-        stairs = Staircase(designs, range(m), slack, nothing, own)
+        stairs = NonImprovement(designs, range(m), slack, nothing, own)
         stairs.take(form.archive.combination, form.archive.variables, form.archive.phi)
-        outcome = cover(form, self.pool, stairs, Clock(deadline, self._working), self.rng, self.limits.boxes)
+        outcome = branch_and_bound(form, self.pool, stairs, Clock(deadline, self._working), self.rng, self.limits.boxes)
         better = [c for c in stairs.designs if c.combination >= 0 and c.phi.tobytes() not in own]
-        return outcome.closed, settle_variables(form, distinct(better, m, self.tuning), m, range(m))
+        return outcome.closed, polish_variables(form, distinct(better, m, self.tuning), m, range(m))
 
     def reported(self, candidates: Sequence[Candidate]) -> list[Design]:
         """Return designs for more candidates, ties settled."""
@@ -760,7 +762,7 @@ class FrontSearch:
             chosen[0] = chosen[0] if better is None else better
         pairs: list[tuple[Candidate, tuple[str, ...]]] = []
         while chosen:
-            settled = settle_ties(form, self.pool, chosen, self.m)
+            settled = break_ties(form, self.pool, chosen, self.m)
             listed = form.as_they_are([c for c, _ in settled])
             pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
             stay = {id(c) for c in distinct([c for c, _ in pairs], self.m, self.tuning)}

@@ -11,13 +11,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from synth.nlp.batch import Tasks
-from synth.search.branch_and_bound import cover
+from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.pruning import Cover
+from synth.search.pruning import EpsilonCover
 
 
-def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator) -> None:
+def large_neighbourhood_search(
+    form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator
+) -> None:
     """Improve the best design known in each objective in turn, until nothing better comes.
 
     It proves nothing.
@@ -41,9 +43,9 @@ def dive(form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Cl
         combinations = _promising(form, columns, k, float(slack[place]), rng)
         if len(combinations):
             nothing_capped = np.full(len(form.goals), np.inf)
-            purpose = Cover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
+            purpose = EpsilonCover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
             purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
-            cover(form, form.leaves(combinations), purpose, clock, rng, limits.boxes)
+            branch_and_bound(form, form.leaves(combinations), purpose, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
         if failures >= limits.patience * len(columns):
             return

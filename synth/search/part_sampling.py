@@ -25,14 +25,14 @@ from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings
-from synth.search.pruning import Purpose
+from synth.search.pruning import PruningRule
 from synth.tuning import TUNING, Tuning
 
 BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the processor, was another"
 
 
-def search_parts(
-    form: Formulation, left: Boxes, purpose: Purpose, clock: Clock, journal: Path | None, seed: int, trials: int
+def sample_parts(
+    form: Formulation, left: Boxes, purpose: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
     """Look for designs among the combinations of some boxes.
 
@@ -42,7 +42,7 @@ def search_parts(
         Its archive is filled.
     left : Boxes
         What bounds left open.
-    purpose : Purpose
+    purpose : PruningRule
         Takes the designs as well.
     clock : Clock
     journal : Path, optional
@@ -67,9 +67,9 @@ def search_parts(
 
 
 def _searched(
-    form: Formulation, left: Boxes, purpose: Purpose, clock: Clock, journal: Path | None, seed: int, trials: int
+    form: Formulation, left: Boxes, purpose: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
-    """Look for designs as :func:`search_parts` does, with a study that nobody else is at work on."""
+    """Look for designs as :func:`sample_parts` does, with a study that nobody else is at work on."""
     import optuna  # costly to import; few questions need it
     from optuna.storages import JournalStorage
     from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
@@ -142,7 +142,7 @@ def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:
 
 
 def _inner(
-    form: Formulation, purpose: Purpose, combinations: np.ndarray, towards: np.ndarray
+    form: Formulation, purpose: PruningRule, combinations: np.ndarray, towards: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solve the continuous problem of each combination; return phi, and by how much limits are missed."""
     columns, goals, count = purpose.columns, len(form.goals), len(combinations)

@@ -14,7 +14,7 @@ from synth.search.archive import Candidate
 from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.pruning import Purpose
+from synth.search.pruning import PruningRule
 
 
 def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
@@ -25,8 +25,8 @@ def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
         _, first = np.unique(archive.combination[near], return_index=True)
         chosen = [archive[int(near[i])] for i in np.sort(first)[:ties]]
         order = [k, *(j for j in range(traded) if j != k)]
-        exact = settle_discrete(form, settle_variables(form, chosen, 0, order), traded, order)
-        for c in settle_variables(form, exact, 0, order):
+        exact = settle_discrete(form, polish_variables(form, chosen, 0, order), traded, order)
+        for c in polish_variables(form, exact, 0, order):
             archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
 
 
@@ -148,7 +148,7 @@ def _better(own: np.ndarray, found: _Found, traded: int, order: list[int], tie: 
     return left.take(gain[np.arange(len(gain)), decisive] > tie)
 
 
-def settle_variables(
+def polish_variables(
     form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int] | None = None
 ) -> list[Candidate]:
     """Make objectives as small as possible in their order, while the first ``traded`` stay as good as they are.
@@ -188,7 +188,7 @@ def settle_variables(
     return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
 
 
-def settle_ties(
+def break_ties(
     form: Formulation, pool: Boxes, chosen: Sequence[Candidate], traded: int
 ) -> list[tuple[Candidate, tuple[str, ...]]]:
     """Settle what the traded objectives leave open, and name other combinations that are as good.
@@ -199,7 +199,7 @@ def settle_ties(
         Per design the one that stands for it, and in what others that tie with it differ.
     """
     chosen = settle_discrete(form, chosen, traded, range(len(form.goals)))
-    chosen = settle_variables(form, chosen, traded)
+    chosen = polish_variables(form, chosen, traded)
     result = []
     for candidate, ties in zip(chosen, same_designs(form, pool, chosen, traded), strict=True):
         current = min(ties, key=lambda c: tuple(np.round(c.phi[traded:], 9)), default=candidate)
@@ -265,7 +265,7 @@ def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray
 
 
 def solve_everywhere(
-    form: Formulation, combinations: np.ndarray, purpose: Purpose, clock: Clock, rng: np.random.Generator
+    form: Formulation, combinations: np.ndarray, purpose: PruningRule, clock: Clock, rng: np.random.Generator
 ) -> None:
     """Solve the continuous problem of every combination from several starts and in several directions."""
     columns, goals, limits = purpose.columns, len(form.goals), form.tuning.heuristics.settle

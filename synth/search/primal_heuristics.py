@@ -14,14 +14,14 @@ from synth.search.archive import Candidate, rows_of
 from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.polishing import settle_variables
-from synth.search.pruning import Purpose
+from synth.search.polishing import polish_variables
+from synth.search.pruning import PruningRule
 
 
-class Seeker:
+class PrimalHeuristics:
     """Looks for designs in boxes that nothing known covers."""
 
-    def __init__(self, form: Formulation, purpose: Purpose, rng: np.random.Generator, every: bool) -> None:
+    def __init__(self, form: Formulation, purpose: PruningRule, rng: np.random.Generator, every: bool) -> None:
         self.form, self.purpose, self.rng, self.every = form, purpose, rng, every
         self.limits = form.tuning.heuristics.seeker
         self.nlps = self.limits.most_problems // 4
@@ -82,7 +82,7 @@ class Seeker:
 
         The first ``traded`` objectives stay as good as they are; the others follow in ``order``.
         """
-        exact = settle_variables(self.form, self.purpose.leading(self.form.archive), traded, order)
+        exact = polish_variables(self.form, self.purpose.leading(self.form.archive), traded, order)
         if exact:
             combinations, points, _ = rows_of(exact)
             self.offer(points, combinations)

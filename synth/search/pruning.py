@@ -12,7 +12,7 @@ from synth.search.archive import Archive, Candidate
 from synth.search.formulation import Formulation
 
 
-class Purpose(Protocol):
+class PruningRule(Protocol):
     """What a search is for: which designs would still be of use."""
 
     columns: list[int]
@@ -37,14 +37,14 @@ class Purpose(Protocol):
         """Take feasible designs; return how many were of use."""
 
 
-class Tabled(Purpose, Protocol):
+class TabledPruningRule(PruningRule, Protocol):
     """A purpose whose caps compiled code may read from tables."""
 
     def tables(self, form: Formulation) -> CapTables | None:
         """Return what :meth:`caps` and :meth:`room` say as tables; None where they cannot say it."""
 
 
-class Cover:
+class EpsilonCover:
     """Cover everything: for each possible design a known one that is at most the slack worse in every objective.
 
     Parameters
@@ -109,7 +109,7 @@ class Cover:
         return CapTables(columns, form.values_of(plain), known=known)
 
 
-class Staircase:
+class NonImprovement:
     """Prove some designs: nothing is better than one of them by more than the slack in every objective.
 
     Those that are best in one objective are proven in that objective alone. A design that is beaten is replaced.
@@ -260,6 +260,6 @@ def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple
     )
 
 
-def reaches_beyond(purpose: Purpose, bounded: int) -> bool:
+def reaches_beyond(purpose: PruningRule, bounded: int) -> bool:
     """Tell whether a search speaks of more than the first objectives."""
     return max(purpose.columns) >= bounded or bool(np.any(np.isfinite(purpose.plain[bounded:])))

@@ -14,7 +14,7 @@ from synth.question.objectives import _weights, chosen_objectives
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings
 from synth.results import Design, ParetoFront
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.search.front_search import FrontSearch
 from synth.tuning import TUNING, Tuning
 
@@ -108,7 +108,7 @@ def pose(
         For everything that is wrong with the request, in one sentence.
     """
     if problem is None:
-        problem = posed(request.problem, request.robust, request.limits)
+        problem = robust_counterpart(request.problem, request.robust, request.limits)
     instance = Instance(replace(request, problem=problem))
     chosen = chosen_objectives(instance.model, request.objectives)
     weights = dict(zip(chosen, _weights(instance, chosen, request.weights), strict=True))

@@ -8,11 +8,11 @@ import numpy as np
 
 from synth.results import Design
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import Seeker
-from synth.search.pruning import Purpose
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import PruningRule
 
 
-def recall(form: Formulation, purpose: Purpose, designs: Sequence[Design], rng: np.random.Generator) -> bool:
+def warm_start(form: Formulation, purpose: PruningRule, designs: Sequence[Design], rng: np.random.Generator) -> bool:
     """Put designs of a similar question into the archive, as they are or solved again; tell whether any is feasible.
 
     Each goes straight up from the objectives it had: what the new question takes from it or gives to it, it loses or
@@ -26,5 +26,5 @@ def recall(form: Formulation, purpose: Purpose, designs: Sequence[Design], rng: 
     keep &= np.all(np.isfinite(points), axis=1)
     combinations, points = combinations[keep], np.clip(points[keep], form.lower, form.upper)
     if len(combinations):
-        Seeker(form, purpose, rng, False).again(combinations, points)
+        PrimalHeuristics(form, purpose, rng, False).again(combinations, points)
     return bool(len(form.archive))

@@ -32,12 +32,12 @@ from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.search.archive import Archive, Candidate
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import cover
+from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.polishing import settle_discrete, settle_variables
-from synth.search.primal_heuristics import Seeker, roundings
-from synth.search.pruning import Cover
+from synth.search.polishing import polish_variables, settle_discrete
+from synth.search.primal_heuristics import PrimalHeuristics, roundings
+from synth.search.pruning import EpsilonCover
 from synth.study_limits import NEAR, NearLimits
 from synth.units import parse_quantity
 
@@ -327,7 +327,7 @@ class _Enumeration:
     def _enumerate(self) -> bool:
         """Look at everything; tell whether every combination is decided."""
         form, near, batch_size = self.form, self.near, self.limits.batch
-        seeker = Seeker(form, near, self.rng, every=False)
+        seeker = PrimalHeuristics(form, near, self.rng, every=False)
         caps = near.plain[: form.bounded] + near.tie
         stack = [form.lean(form.root())]
         while stack:
@@ -453,13 +453,15 @@ class _Enumeration:
         slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.slack)
         caps = near.plain.copy()
         caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
-        purpose = Cover(range(m), slack, caps, form.new_archive(range(m)))
+        purpose = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
         purpose.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
-        cover(form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, self.limits.settling_boxes)
+        branch_and_bound(
+            form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, self.limits.settling_boxes
+        )
         worst = near.worse(purpose.known.phi)
         best = purpose.known[int(np.lexsort((*purpose.known.phi.T[::-1], np.round(worst, 9)))[0])]
         (better,) = settle_discrete(form, [best], m, range(len(form.goals)), parts=False)
-        (exact,) = settle_variables(form, [better], m)
+        (exact,) = polish_variables(form, [better], m)
         return exact
 
     # -- the report ----------------------------------------------------------------------------

@@ -91,7 +91,7 @@ class Test:
 
 
 @dataclass(frozen=True)
-class Member:
+class ListItem:
     """Item of a cell."""
 
     item: str
@@ -114,7 +114,7 @@ class Junction:
     parts: tuple[Node, ...]
 
 
-Node = Test | Member | Negation | Junction
+Node = Test | ListItem | Negation | Junction
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ class Condition:
             column = table.column(node.column)
         except InputError as error:
             raise self.wrong(node.position, node.column, error.expected) from None
-        if isinstance(node, Member):
+        if isinstance(node, ListItem):
             if column.numeric:
                 right = f"a column of text after 'in'; {column.name} has numbers, compare them with == or <"
                 raise self.wrong(node.position, node.column, right)
@@ -389,7 +389,7 @@ class _Parser:
             raise self.wrong("a column after 'in'")
         self.next += 1
         self.columns.add(column.text)
-        found = Member(item.text, column.text, column.position)
+        found = ListItem(item.text, column.text, column.position)
         return Negation(found) if negated else found
 
     def values(self) -> tuple[Value, ...]:

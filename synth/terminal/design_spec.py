@@ -44,9 +44,9 @@ def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
     from synth.analysis.evaluate import evaluate
     from synth.model.registry import load
     from synth.question.catalogs import catalogs_for
-    from synth.robust.counterpart import posed
+    from synth.robust.counterpart import robust_counterpart
 
-    problem = posed(load(asked.family, **asked.options), asked.robust or None, asked.limits)
+    problem = robust_counterpart(load(asked.family, **asked.options), asked.robust or None, asked.limits)
     catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
     design = evaluate(
         problem, asked.requirements, values=asked.values, parts=_one_each(asked),

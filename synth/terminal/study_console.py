@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from synth.question.uncertainty import RATE
 from synth.robust.rate import taken_off, told_of
-from synth.studies.whatif.study import Break, Composition, Step, best_design
+from synth.studies.whatif.study import Break, Composition, StudyStep, best_design
 from synth.terminal.console import plain_table
 from synth.terminal.robust_console import percent
 from synth.units import format_quantity
@@ -54,7 +54,7 @@ def print_study(study: Study, console: Console) -> None:
     console.print(_proven(study))
 
 
-def _row(study: Study, step: Step, names: list[str], rates: bool) -> list[str]:
+def _row(study: Study, step: StudyStep, names: list[str], rates: bool) -> list[str]:
     cells = [x.shown(v) for x, v in zip(study.varied, step.values, strict=True)]
     if step.front is None or not step.front.designs:
         return [
@@ -79,7 +79,7 @@ def _row(study: Study, step: Step, names: list[str], rates: bool) -> list[str]:
 
 def _print_reasons(study: Study, console: Console) -> None:
     """Print why steps have no design, those with the same reason together."""
-    reasons: dict[str, list[Step]] = {}
+    reasons: dict[str, list[StudyStep]] = {}
     for step in study.steps:
         if step.front is not None and not step.front.designs:
             reasons.setdefault(step.brief_reason, []).append(step)

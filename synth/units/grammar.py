@@ -45,7 +45,7 @@ class Unit:
 
 
 @dataclass(frozen=True, slots=True)
-class _Reading:
+class _UnitText:
     """A parsed unit text before its kind is settled."""
 
     ratio: Fraction
@@ -223,7 +223,7 @@ _GRAMMAR = (
 )
 
 
-class _Refused(Exception):
+class _RefusedUnit(Exception):
     """A sentence on its way to the place that knows the field."""
 
     def __init__(self, expected: str) -> None:
@@ -236,18 +236,18 @@ def _factor(text: str, whole: str) -> tuple[str, int]:
     plain = text.translate(_SUPERSCRIPTS)
     if plain in ("degC", "°C", "%", "-"):
         if plain in ("degC", "°C"):
-            raise _Refused("K inside a compound unit, where a temperature is a difference")
-        raise _Refused(f"{plain!r} to stand alone as a unit")
+            raise _RefusedUnit("K inside a compound unit, where a temperature is a difference")
+        raise _RefusedUnit(f"{plain!r} to stand alone as a unit")
     match = _TOKEN.match(plain)
     if match is None:
         if "^-" in plain or "⁻" in text:
-            raise _Refused("a fraction instead of a negative exponent, for example 1/min")
-        raise _Refused(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
+            raise _RefusedUnit("a fraction instead of a negative exponent, for example 1/min")
+        raise _RefusedUnit(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
     name = _ALIASES.get(match[1], match[1])
     if match[2] and not match[3]:
-        raise _Refused("an exponent 2 to 9 after ^")
+        raise _RefusedUnit("an exponent 2 to 9 after ^")
     if name not in _TOKENS:
-        raise _Refused(_unknown(name))
+        raise _RefusedUnit(_unknown(name))
     return name, int(match[3] or 1)
 
 
@@ -262,35 +262,35 @@ def _unknown(name: str) -> str:
     return f"a known unit instead of {name}: one of {', '.join(known)}, - or %"
 
 
-def _read(text: str) -> _Reading:
+def _read(text: str) -> _UnitText:
     """Read a unit text; the kind is not settled yet."""
     if not text:
-        raise _Refused("a unit; - where there is none")
+        raise _RefusedUnit("a unit; - where there is none")
     if len(text) > _LONGEST:
-        raise _Refused(f"a unit of at most {_LONGEST} characters")
+        raise _RefusedUnit(f"a unit of at most {_LONGEST} characters")
     if text == "-":
-        return _Reading(Fraction(1), _NONE, 0, {"-": 1})
+        return _UnitText(Fraction(1), _NONE, 0, {"-": 1})
     if text == "%":
-        return _Reading(Fraction(1, 100), _NONE, 0, {"%": 1})
+        return _UnitText(Fraction(1, 100), _NONE, 0, {"%": 1})
     if text in ("degC", "°C"):
-        return _Reading(Fraction(1), _KELVIN, 0, {"degC": 1})
+        return _UnitText(Fraction(1), _KELVIN, 0, {"degC": 1})
     if "**" in text:
-        raise _Refused("an exponent as a digit after the token, for example mm2")
+        raise _RefusedUnit("an exponent as a digit after the token, for example mm2")
     if text[0] == "/":
-        raise _Refused(f"1 as an empty numerator: 1{text}")
+        raise _RefusedUnit(f"1 as an empty numerator: 1{text}")
     powers: dict[str, int] = {}
     rest = _tight(text)
     sign, first = 1, True
     while True:
         if rest.startswith("("):
             if sign > 0:
-                raise _Refused("brackets in a denominator only, for example J/(mm2 h)")
+                raise _RefusedUnit("brackets in a denominator only, for example J/(mm2 h)")
             inside, closed, rest = rest[1:].partition(")")
             if not closed:
-                raise _Refused("a closing bracket")
+                raise _RefusedUnit("a closing bracket")
             factors = re.split(r"[ *·]", inside)
             if "/" in inside or "(" in inside:
-                raise _Refused("a product of tokens in the bracket, for example J/(mm2 h)")
+                raise _RefusedUnit("a product of tokens in the bracket, for example J/(mm2 h)")
         else:
             match = re.match(r"[^ *·/()]*", rest)
             one = match[0] if match else ""
@@ -306,7 +306,7 @@ def _read(text: str) -> _Reading:
         if not rest:
             break
         if rest[0] not in " *·/":
-            raise _Refused(_GRAMMAR)
+            raise _RefusedUnit(_GRAMMAR)
         sign = -1 if rest[0] == "/" else 1
         rest = rest[1:]
     return _combine(powers)
@@ -317,7 +317,7 @@ def _tight(text: str) -> str:
     return re.sub(r" *([*·/]) *", lambda m: m[1], re.sub(r"\( *", "(", re.sub(r" *\)", ")", text.translate(_SPACES))))
 
 
-def _combine(powers: dict[str, int]) -> _Reading:
+def _combine(powers: dict[str, int]) -> _UnitText:
     ratio, angle = Fraction(1), 0
     dimension = [0, 0, 0, 0, 0]
     for name, power in powers.items():
@@ -328,8 +328,8 @@ def _combine(powers: dict[str, int]) -> _Reading:
             dimension[i] += exponent * power
     kg, m, s, kelvin, ampere = dimension
     if not _TINY < ratio < 1 / _TINY:
-        raise _Refused("a unit that is neither this large nor this small")
-    return _Reading(ratio, (kg, m, s, kelvin, ampere), angle, powers)
+        raise _RefusedUnit("a unit that is neither this large nor this small")
+    return _UnitText(ratio, (kg, m, s, kelvin, ampere), angle, powers)
 
 
 def _si_text(dimension: _Dimension, angle: int) -> str:
@@ -345,7 +345,7 @@ def _si_text(dimension: _Dimension, angle: int) -> str:
     return text
 
 
-def _kinds(reading: _Reading) -> dict[str, tuple[Fraction, Fraction]]:
+def _kinds(reading: _UnitText) -> dict[str, tuple[Fraction, Fraction]]:
     """Kinds a unit may be read as, the first by default, each with factor and offset."""
     tokens, dimension, ratio = reading.tokens, reading.dimension, reading.ratio
     plain = (ratio, Fraction(0))
@@ -411,7 +411,7 @@ def _resolve(text: str, kind: str | None) -> Unit:
     kinds = _kinds(reading)
     chosen = next(iter(kinds)) if kind is None else kind
     if chosen not in kinds:
-        raise _Refused(_wrong_kind(text, chosen, next(iter(kinds))))
+        raise _RefusedUnit(_wrong_kind(text, chosen, next(iter(kinds))))
     ratio, offset = kinds[chosen]
     return Unit(text, float(ratio), float(offset), chosen, reading.dimension, ratio)
 
@@ -451,13 +451,13 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
         raise InputError(name, text, "a unit as text, for example 'N*m'")
     try:
         return _resolve(text, kind)
-    except _Refused as refusal:
+    except _RefusedUnit as refusal:
         raise InputError(name, text, refusal.expected) from None
 
 
 def _is_unit(text: str) -> bool:
     try:
         _resolve(text, None)
-    except _Refused:
+    except _RefusedUnit:
         return False
     return True

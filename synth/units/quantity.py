@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.units.grammar import _ABSOLUTE_ZERO, _LONGEST, _SPACES, Unit, _is_unit, _Refused, _resolve, parse_unit
+from synth.units.grammar import _ABSOLUTE_ZERO, _LONGEST, _SPACES, Unit, _is_unit, _RefusedUnit, _resolve, parse_unit
 
 FloatArray = NDArray[np.float64]
 
@@ -222,7 +222,7 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
         if rest:
             try:
                 unit = _resolve(rest, unit.kind)
-            except _Refused as refusal:
+            except _RefusedUnit as refusal:
                 raise InputError(field, value, refusal.expected) from None
     elif isinstance(value, Quantity):
         number = ""

@@ -42,7 +42,7 @@ class Variant:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ServedQuestion:
     """A question that variants are to serve: how often it is asked, and its own best value of the objective."""
 
     key: str
@@ -52,22 +52,22 @@ class Asked:
 
 
 @dataclass
-class Structure:
+class SharedModel:
     """Questions of one structure: one model, and an instance of it for each."""
 
     problem: DesignProblem
     catalogs: Catalogs
-    asked: list[Asked] = field(default_factory=list)
+    asked: list[ServedQuestion] = field(default_factory=list)
 
 
 def objective_of_pairs(
-    structure: Structure, variants: Sequence[Variant], objective: str, used: frozenset[str]
+    structure: SharedModel, variants: Sequence[Variant], objective: str, used: frozenset[str]
 ) -> tuple[FloatArray, list[str]]:
     """Evaluate every variant for every question of a structure.
 
     Parameters
     ----------
-    structure : Structure
+    structure : SharedModel
     variants : sequence of Variant
         Of the same family.
     objective : str
@@ -102,7 +102,7 @@ def objective_of_pairs(
     return result, reasons
 
 
-def _instance(structure: Structure, question: Mapping[str, Any]) -> Instance:
+def _instance(structure: SharedModel, question: Mapping[str, Any]) -> Instance:
     asked = {name: question[name] for name in ("requirements", "parts", "limits", "fix")}
     return Instance(Request(problem=structure.problem, catalogs=structure.catalogs, **asked))
 
@@ -110,7 +110,7 @@ def _instance(structure: Structure, question: Mapping[str, Any]) -> Instance:
 class _VariantColumns:
     """What the variants have for each input of a model; variants that lack something are not complete."""
 
-    def __init__(self, model: Model, structure: Structure, variants: Sequence[Variant]) -> None:
+    def __init__(self, model: Model, structure: SharedModel, variants: Sequence[Variant]) -> None:
         d = model.declaration
         count = len(variants)
         self.count = count

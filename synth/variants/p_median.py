@@ -32,7 +32,7 @@ ROUNDING = 1e-9  # a gap below it is the arithmetic's
 
 
 @dataclass(frozen=True)
-class Choice:
+class Medians:
     """Some columns, what they cost, and what no choice of as many can be below."""
 
     columns: tuple[int, ...]
@@ -112,7 +112,7 @@ class Chooser:
 
     # -- the best choice of a number -----------------------------------------------------------
 
-    def best(self, number: int, deadline: float, start: Iterable[int] = (), exact: bool = True) -> Choice:
+    def best(self, number: int, deadline: float, start: Iterable[int] = (), exact: bool = True) -> Medians:
         """Return the cheapest choice of a number of columns.
 
         Parameters
@@ -146,7 +146,7 @@ class Chooser:
                 binary[found] = 1.0
                 if not self._cut(binary, np.full(self.rows, -np.inf)):
                     break
-        return Choice(tuple(sorted(int(self.kept[k]) for k in chosen)), cost, min(bound, cost))
+        return Medians(tuple(sorted(int(self.kept[k]) for k in chosen)), cost, min(bound, cost))
 
     def _proven(self, cost: float, bound: float) -> bool:
         return cost - bound <= self.gap * cost + BROKEN * self.scale

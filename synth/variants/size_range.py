@@ -25,8 +25,8 @@ from synth.output_folder import SIZE_RANGE, save_result
 from synth.question.catalogs import as_catalogs
 from synth.results import shown_value
 from synth.units import header
-from synth.variants.coverage import Asked, Structure, Variant, objective_of_pairs, pinned_by_all
-from synth.variants.p_median import Choice, Chooser
+from synth.variants.coverage import ServedQuestion, SharedModel, Variant, objective_of_pairs, pinned_by_all
+from synth.variants.p_median import Chooser, Medians
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -246,7 +246,7 @@ class _Batch:
         self.sign = 1.0 if self.sense == "min" else -1.0
         self.designs = 0
         self.reasons: dict[str, str] = {}
-        self.asked: list[Asked] = []
+        self.asked: list[ServedQuestion] = []
         self.own: dict[str, list[dict[str, Any]]] = {}
         weight: dict[str, int] = {}
         for row in self.rows:
@@ -255,7 +255,7 @@ class _Batch:
                 self.own[row["key"]] = row["designs"]
         for key in sorted(weight):
             best = min(self.sign * d["objectives"][self.objective] for d in self.own[key])
-            self.asked.append(Asked(key, questions[key], weight[key], best))
+            self.asked.append(ServedQuestion(key, questions[key], weight[key], best))
 
     def _objective(self, asked: str | None) -> tuple[str, str]:
         """Return the objective that counts, and its sense; every row must have it."""
@@ -274,7 +274,7 @@ class _Batch:
     def prepare(self, per_row: Sequence[str] | None) -> None:
         """Sort the questions by structure, and make variants of the designs."""
         problems: dict[str, Any] = {}
-        self.structures: dict[str, Structure] = {}
+        self.structures: dict[str, SharedModel] = {}
         self.place: dict[str, list[int]] = {}  # structure -> its questions among all
         self.models: dict[str, Model] = {}
         for k, asked in enumerate(self.asked):
@@ -285,7 +285,7 @@ class _Batch:
                 problems[label] = load(self.problem if own else question["family"], **question["options"])
             name = json.dumps([label, sorted(question["requirements"])])
             if name not in self.structures:
-                self.structures[name] = Structure(problems[label], self.catalogs)
+                self.structures[name] = SharedModel(problems[label], self.catalogs)
                 self.place[name] = []
                 given = frozenset(question["requirements"])
                 self.models[name] = problems[label].model(given, self.catalogs)
@@ -349,7 +349,7 @@ class _Batch:
             family = structure.problem.name
             columns = [j for j, c in enumerate(chosen) if self.candidates[c].family == family]
             places = [k for k in self.place[name] if only is None or k in only]
-            part = Structure(structure.problem, structure.catalogs, [self.asked[k] for k in places])
+            part = SharedModel(structure.problem, structure.catalogs, [self.asked[k] for k in places])
             found, why = objective_of_pairs(
                 part, [self.candidates[chosen[j]] for j in columns], self.objective, self.used[family]
             )
@@ -367,11 +367,11 @@ class _Batch:
 
     def result(
         self,
-        choice: Choice,
+        choice: Medians,
         chosen_from: list[int],
         costs: NDArray[Any],
         values: NDArray[Any],
-        points: list[Choice],
+        points: list[Medians],
         fewest: tuple[list[int], int],
         statistics: Mapping[str, Any],
     ) -> SizeRange:
@@ -417,7 +417,7 @@ class _Batch:
             taken_from_row={family: sorted(names) for family, names in self.used.items() if names},
         )  # fmt: skip
 
-    def _serving(self, choice: Choice, costs: NDArray[Any]) -> dict[int, int]:
+    def _serving(self, choice: Medians, costs: NDArray[Any]) -> dict[int, int]:
         """Return question -> column of the cheapest chosen variant; of equal ones the first."""
         columns = list(choice.columns)
         part = costs[:, columns]
@@ -439,7 +439,7 @@ class _Batch:
         return {**sizes, **variant.choices, **variant.parts}
 
 
-def _curve(chooser: Chooser, choice: Choice, number: int, fewest: list[int], deadline: float) -> list[Choice]:
+def _curve(chooser: Chooser, choice: Medians, number: int, fewest: list[int], deadline: float) -> list[Medians]:
     """Return the best choice for every number of variants, from the fewest until no row has an excess.
 
     Where the time does not reach for every number, numbers further and further apart are taken.

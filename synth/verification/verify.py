@@ -33,7 +33,7 @@ from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.files import read_bytes
 from synth.model.problem import DesignProblem
-from synth.proof.questions import Outcome, Point
+from synth.proof.questions import Point, ProofOutcome
 from synth.proof.tree import NO_SCALE, ProofTree, void_without
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.inputs import inputs_of_design
@@ -95,9 +95,11 @@ def verify(
     )
 
 
-def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float, limits: ProofLimits = PROOF) -> Check:
+def checked(
+    front: ParetoFront, problem: Any, catalogs: Any, deadline: float, limits: ProofLimits = PROOF
+) -> VerificationRun:
     """Return the check of a front, done; see ``verify``."""
-    check = Check(front, deadline, limits)
+    check = VerificationRun(front, deadline, limits)
     if not check.read():
         return check
     if front.question is not None and problem is None and catalogs is None:
@@ -115,7 +117,7 @@ def checked(front: ParetoFront, problem: Any, catalogs: Any, deadline: float, li
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _LimitReading:
     """How a limit stands at a design."""
 
     name: str
@@ -137,7 +139,7 @@ class _Reading:
         return bool(holds(self.residual, self.guard))
 
 
-class Check:
+class VerificationRun:
     """One verification in progress."""
 
     def __init__(self, front: ParetoFront, deadline: float, limits: ProofLimits = PROOF) -> None:
@@ -333,13 +335,13 @@ class Check:
 
     def _readings(
         self, point: Point, values: Mapping[str, float], limits: Mapping[str, tuple[float, float]]
-    ) -> Iterator[_Reading]:
+    ) -> Iterator[_LimitReading]:
         """Yield how every limit stands at a design; behind a guard that fails the guard alone says that it is none."""
         for x in self.model.limits:
             void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
-            yield _Reading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
+            yield _LimitReading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
         for own in self.instance.own:
-            yield _Reading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
+            yield _LimitReading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
 
     def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
         """Yield the refusals over several slots, and whether each forbids a design."""
@@ -480,7 +482,7 @@ class Check:
                 self.find(f"the certificate does not tell by how much {name} must be better to count")
         return not unclear.any()
 
-    def _prove(self, ends: np.ndarray) -> Outcome:
+    def _prove(self, ends: np.ndarray) -> ProofOutcome:
         """Prove that no feasible design lies below any of the ends (rows) in all objectives."""
         outcome = self.tree.prove(ends, lambda point: self._lies_below(point, ends), self.deadline)
         self.nodes += outcome.nodes
@@ -515,7 +517,7 @@ class Check:
         best = int(np.argmax(share))
         return float(share[best]), best
 
-    def _smallest_gap(self, gap: float, outcome: Outcome) -> tuple[float | None, Outcome]:
+    def _smallest_gap(self, gap: float, outcome: ProofOutcome) -> tuple[float | None, ProofOutcome]:
         """Return a gap that can be proven, near the smallest one, and the first outcome that refutes the one claimed.
 
         A design that improves one by more than a larger gap refutes the smaller gap as well.
@@ -540,7 +542,7 @@ class Check:
                 decisive, refuted = (outcome if decisive.witness is None else decisive), between
         return gap, decisive
 
-    def _judge(self, outcome: Outcome, claim: str, what: str) -> bool:
+    def _judge(self, outcome: ProofOutcome, claim: str, what: str) -> bool:
         """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open."""
         point = outcome.witness
         if point is not None:

@@ -24,7 +24,7 @@ from synth.question.spec import read_spec
 from synth.results import ParetoFront
 from synth.results.loading import COMPARISON, unchecked_front
 from synth.results.verification import Verification
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.verification.verify import checked
 
 SAME = 1e-9
@@ -147,7 +147,7 @@ def _values(path: Path, told: _Told, findings: list[str]) -> dict[str, np.ndarra
         label = f"design {listed.rank}"
         try:
             spec = read_spec(path / f"design_{listed.rank:0{width}d}.yaml")
-            problem = posed(load(spec.family, **spec.options), spec.robust or None, spec.limits)
+            problem = robust_counterpart(load(spec.family, **spec.options), spec.robust or None, spec.limits)
             given = {"values": spec.values, "parts": spec.parts}
             design = evaluate(
                 problem, spec.requirements, given, catalogs=spec.catalogs, limits=spec.limits, objectives=told.senses

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from synth.errors import InputError
-from synth.jobs.row_questions import Asked, Questioner, canonical_position, read_mapping
+from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
 from synth.jobs.vocabulary import edit_distance
 from synth.model.registry import families
@@ -26,7 +26,7 @@ def questioner(table: Any, problem: Any = Rod, mapping: dict[str, str] | None = 
     return Questioner(read_table(table), problem, mapping or {}, SETTINGS, common, None)
 
 
-def asked(row: dict[str, Any], problem: Any = Rod, **more: Any) -> Asked:
+def asked(row: dict[str, Any], problem: Any = Rod, **more: Any) -> ReadRow:
     (found,) = questioner([row], problem, **more).rows()
     return found
 

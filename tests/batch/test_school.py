@@ -12,7 +12,7 @@ import synth
 from synth.jobs import warm_starts as school
 from synth.jobs.solve import LIKE
 from synth.jobs.store import Store, digest
-from synth.jobs.warm_starts import School, place
+from synth.jobs.warm_starts import WarmStarts, place
 from tests.batch.rod import Rod
 
 Question = tuple[str, tuple[float, ...], dict[str, int]]
@@ -26,7 +26,7 @@ def taught(
     asked: list[Question], structure: Callable[[int], str] = lambda k: "rods"
 ) -> dict[int, tuple[str, int | None]]:
     """Return, per question, its key and whose experience it has."""
-    own = School()
+    own = WarmStarts()
     for key, where, question in asked:
         own.show(structure(question["force"]), key, where, question)
     result = {}

@@ -19,7 +19,7 @@ from alembic.migration import MigrationContext
 
 from synth.errors import InputError
 from synth.jobs import store as module
-from synth.jobs.models import VERSION_TABLE, Base, Unit
+from synth.jobs.models import VERSION_TABLE, Base, WorkUnit
 from synth.jobs.store import CANCELLED, OPEN, Outcome, Store, digest, file_url, has_died, new_owner
 
 
@@ -150,7 +150,7 @@ def test_an_answer_that_is_written_twice_stays_the_first(store: Store) -> None:
     (key,) = claim.questions
     store.finish("j", claim, first, {key: outcome("first")}, {}, 3)
     with store.engine.begin() as connection:  # as if the end of the unit had been lost
-        connection.execute(sa.update(Unit).values(state=OPEN))
+        connection.execute(sa.update(WorkUnit).values(state=OPEN))
     (again,) = store.claim("j", second, 1)
     assert store.finish("j", again, second, {key: outcome("second")}, {}, 3)
     (row,) = store.rows("j", canonical=True)

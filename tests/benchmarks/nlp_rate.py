@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import synth
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import Rows
@@ -44,7 +44,7 @@ class Workload:
         self.model = model = instance.model
         self.n = len(model.variables)
         self.rows = Rows(
-            cuts=tuple(Cut.of(x) for x in model.constraints),
+            cuts=tuple(NodeConstraint.of(x) for x in model.constraints),
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
             log_cuts=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),

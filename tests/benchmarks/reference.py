@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import synth
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.model import Evaluation
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import Rows
@@ -55,7 +55,7 @@ class Enumeration:
         self.instance, self.objectives = instance, list(objectives)
         self.model = model = instance.model
         self.n = len(model.variables)
-        cuts = tuple(Cut.of(x) for x in model.constraints)
+        cuts = tuple(NodeConstraint.of(x) for x in model.constraints)
         goals = tuple(Goal(model.quantity_node[name]) for name in objectives)
         rows = Rows(cuts, goals, self._positive(), (True,) * len(goals), tuple(bool(x > 0) for x in instance.lower))
         self.solver = BatchNlp(model.program, self.n, rows)

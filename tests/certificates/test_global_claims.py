@@ -16,10 +16,10 @@ import pytest
 
 import synth
 from synth.effort import SearchEffort
-from synth.parametric.joint_fronts import FrontsSearch
+from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_question import alike
 from synth.search import front_search as search
-from synth.search.epsilon_constraint import cover_by_steps
+from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.tables.catalogs import Catalogs
 from tests.asking import pose
 from tests.certificates.__main__ import tried
@@ -134,11 +134,11 @@ def steps(monkeypatch):
     looked = []
 
     def counted(*arguments):
-        outcome = cover_by_steps(*arguments)
+        outcome = cover_by_epsilon_constraint(*arguments)
         looked.append(outcome.looked)
         return outcome
 
-    monkeypatch.setattr(search, "cover_by_steps", counted)
+    monkeypatch.setattr(search, "cover_by_epsilon_constraint", counted)
     return looked
 
 
@@ -211,7 +211,7 @@ def together(structure: str, seed: int, points: int) -> synth.ParetoFront | None
             moved = {name: factor * value for name, value in case.requirements.items()}
             questions.append(pose(problem, moved, catalogs=catalogs, **more))
     first = alike(questions[0])
-    return FrontsSearch([q for q in questions if alike(q) == first], time_limit=PATIENT).answers()[0]
+    return JointFrontSearch([q for q in questions if alike(q) == first], time_limit=PATIENT).answers()[0]
 
 
 JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(INSTANCES[structure])]

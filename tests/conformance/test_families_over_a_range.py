@@ -6,7 +6,7 @@ import pytest
 import synth
 from synth.question.catalogs import as_catalogs
 from synth.question.uncertainty import read_block
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.robust.uncertainty import CATALOGUE, LEAST, MOST, SLIDING
 from synth.units import format_quantity
 from tests.asking import instance_of, rater_of
@@ -61,7 +61,7 @@ def test_posed_limits_are_those_of_the_family_and_proofs_hold(family):
     instance = instance_of(problem, case.requirements, catalogs)
     asked = read_block(block_of(instance))
     rater = rater_of(problem, case.requirements, catalogs, None, asked)
-    robust = instance_of(posed(problem, asked, None), case.requirements, catalogs, restrict=False)
+    robust = instance_of(robust_counterpart(problem, asked, None), case.requirements, catalogs, restrict=False)
     things = {x.name: j for j, x in enumerate(rater.things)}
     names = [x.name for x in rater.limits]
     copies = [x.name for x in robust.model.limits if x.name not in instance.model.declaration.limits]

@@ -14,7 +14,7 @@ from synth.model.model import DataInput
 from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.results import Design
-from synth.variants.coverage import Structure, Variant, _inputs, _VariantColumns
+from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
 from tests.conformance.cases import CASES, question
 
 STRUCTURES = [(f, s, optional) for f, data in CASES.items() for s in data.option_sets for optional in (False, True)]
@@ -76,6 +76,6 @@ def test_all_readers_agree_on_random_designs(family: str, structure: str, option
         designations = {slot: str(part) for slot, part in design.parts.items()}
         np.testing.assert_array_equal(_data(instance, _chosen_rows(instance, designations), counts, choices), wanted)
         variants.append(Variant(family, design.values, choices, designations))
-    held = _VariantColumns(model, Structure(instance.problem, instance.catalogs), variants)
+    held = _VariantColumns(model, SharedModel(instance.problem, instance.catalogs), variants)
     of_variants = [np.broadcast_to(x, numbers.shape) for x in _inputs(model, [instance], held, frozenset())[1]]
     np.testing.assert_array_equal(of_variants, columns)

@@ -15,7 +15,7 @@ import pytest
 
 import synth
 from synth.compiled import compiler
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp import interior_point_c as native
 from synth.nlp import interior_point_c_interpreted as native_general
@@ -77,7 +77,7 @@ class Small:
         for k, (sense, _, limit) in enumerate(limits):
             value_node, limit_node = next(nodes), next(nodes)
             constant = isinstance(limit, float)
-            cuts.append(Cut(sense, value_node, None if constant else limit_node, 1e-9, guard=k in guards))
+            cuts.append(NodeConstraint(sense, value_node, None if constant else limit_node, 1e-9, guard=k in guards))
             self.bounds.append(limit if constant else 0.0)
         self.rows = Rows(
             cuts=tuple(cuts),
@@ -357,7 +357,7 @@ def test_without_variables_the_rows_are_evaluated(code):
     x, d = ca.SX.sym("none", 0), [ca.SX.sym("a"), ca.SX.sym("b")]
     program = Program([*x.nonzeros(), *d], [d[0] * d[1], d[0] + d[1], d[0]])
     value, goal, other = program.outputs
-    rows = Rows((Cut("at_most", value, None, 1e-9),), (Goal(goal), Goal(other)), (True,), (True, False), ())
+    rows = Rows((NodeConstraint("at_most", value, None, 1e-9),), (Goal(goal), Goal(other)), (True,), (True, False), ())
     solver = BatchNlp(program, 0, rows, code)
     nothing = np.empty((3, 0))
     data = [np.array([2.0, 3.0, 4.0]), np.array([1.0, 2.0, 3.0])]
@@ -432,7 +432,7 @@ class Clutch:
         self.model = model = self.instance.model
         self.n = len(model.variables)
         self.rows = Rows(
-            cuts=tuple(Cut.of(x) for x in model.constraints),
+            cuts=tuple(NodeConstraint.of(x) for x in model.constraints),
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
             log_cuts=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),

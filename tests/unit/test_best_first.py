@@ -13,11 +13,11 @@ from synth.effort import SearchEffort
 from synth.question.catalogs import catalogs_for
 from synth.search.best_first import OpenBoxes, Progress, best_first
 from synth.search.boxes import Boxes
-from synth.search.branch_and_bound import best, cover
+from synth.search.branch_and_bound import best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.proven_gap import Bound, least_gap
-from synth.search.pruning import Cover
+from synth.search.pruning import EpsilonCover
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
@@ -38,12 +38,12 @@ def form():
 
 
 def whole(form, slack):
-    return Cover([0, 1], np.full(2, slack), np.full(2, np.inf), form.archive)
+    return EpsilonCover([0, 1], np.full(2, slack), np.full(2, np.inf), form.archive)
 
 
 def test_it_closes_what_a_cover_leaves_open(form):
     purpose = whole(form, 0.01)
-    begun = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
+    begun = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
     assert len(begun.open)
     ended = best_first(form, begun.open, purpose, Clock(), np.random.default_rng(0), EFFORT)
     assert ended.closed
@@ -52,8 +52,8 @@ def test_it_closes_what_a_cover_leaves_open(form):
 
 def test_boxes_with_most_room_come_first_until_too_many_wait(form):
     purpose = whole(form, 0.01)
-    cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
-    left = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100).open
+    branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
+    left = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100).open
     room = purpose.room(form.phi_of(left.bounds))
     assert room.min() < 0.01 < room.max() / 2
     # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
@@ -102,7 +102,7 @@ def test_what_waits_holds_less_the_more_is_closed(form):
     purpose = whole(form, 0.01)
 
     def left(effort: int) -> Boxes:
-        return cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), effort).open
+        return branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), effort).open
 
     extents = [form.extent(boxes) for boxes in (form.root(), left(50), left(100), left(200))]
     assert extents == sorted(extents, reverse=True)
@@ -121,7 +121,7 @@ def test_the_gap_of_open_boxes_is_what_they_allow(form):
     found, ended = best(form, form.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
     assert ended.closed
     form.archive.__init__([0, 1], form.n, 2)
-    left = cover(form, form.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open
+    left = branch_and_bound(form, form.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open
     assert len(left)
     corners, logs = form.phi_of(left.bounds)[:, :1], np.array([True])
     gap = least_gap([Bound(np.array([1e-3]), corners)], found.phi[None, :1], logs, np.ones(1))

@@ -10,7 +10,7 @@ import synth
 from synth.declaration import Origin
 from synth.feasibility import SMALLEST, holds
 from synth.model.constraint import SIGNS, Constraint
-from synth.model.constraints import Cut
+from synth.model.constraints import NodeConstraint
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
 from synth.proof.questions import Point
@@ -19,11 +19,11 @@ from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.question.instance import Instance
 from synth.question.objectives import chosen_objectives
 from synth.question.uncertainty import read_block
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.search.formulation import Formulation
 from synth.studies.infeasibility.relaxation import AMOUNT, Relaxed
 from synth.units import format_quantity
-from synth.verification.verify import Check
+from synth.verification.verify import VerificationRun
 from tests.asking import instance_of, rater_of
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
 from tests.conformance.cases import CASES
@@ -206,7 +206,7 @@ def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
 def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
     form = Formulation(asked.instance, asked.chosen, len(asked.chosen), compiled=False)
     result, goals, logs = asked.result, len(form.goals), form.rows().log_cuts
-    assert form.cuts == [Cut.of(x) for x in asked.instance.constraints]
+    assert form.cuts == [NodeConstraint.of(x) for x in asked.instance.constraints]
     comparable = guarded(asked, result)
     for x, log in zip(asked.instance.constraints, logs, strict=True):
         if log:  # both sides are positive wherever a design may be feasible, and so not at all points
@@ -228,7 +228,7 @@ def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
 
 
 def test_verification_reads_limits_by_itself_and_alike(asked):
-    check, result = Check(None, math.inf), asked.result
+    check, result = VerificationRun(None, math.inf), asked.result
     check.ask(asked.instance)
     model = asked.instance.model
     assert void_without(model) == {x.name: list(x.void_without) for x in model.constraints}
@@ -267,7 +267,7 @@ def test_limits_posed_at_a_corner_are_what_a_rating_finds_there(asked):
         pytest.skip("nothing that has a tolerance")
     first = asked.instance.model.variables[0].name
     block = read_block({"tolerance": {first: "+-1 %"}})
-    problem = posed(asked.problem, block, asked.limits)
+    problem = robust_counterpart(asked.problem, block, asked.limits)
     corners = instance_of(problem, asked.requirements, asked.catalogs, limits=asked.limits, restrict=False)
     rater = rater_of(asked.problem, asked.requirements, asked.catalogs, asked.limits, block)
     copies = [x for x in corners.constraints if x.origin is Origin.RANGE]
@@ -298,8 +298,8 @@ def test_a_number_and_a_node_are_told_apart():
     on_number = Constraint(name="a", sense="at_most", value=3, bound=2.0, unit="-")
     on_node = Constraint(name="a", sense="at_most", value=3, bound=2, unit="-")
     assert (on_number.nodes, on_node.nodes) == ((3,), (3, 2))
-    assert Cut.of(on_number) == Cut("at_most", 3, None, SMALLEST, 2.0)
-    assert Cut.of(on_node) == Cut("at_most", 3, 2, SMALLEST)
+    assert NodeConstraint.of(on_number) == NodeConstraint("at_most", 3, None, SMALLEST, 2.0)
+    assert NodeConstraint.of(on_node) == NodeConstraint("at_most", 3, 2, SMALLEST)
 
 
 def test_a_limit_without_a_column_is_void_unless_the_user_states_it():

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from synth.bounds.clusters import ClusterTree, Factor
-from synth.bounds.contractor import Contractor, Layout
+from synth.bounds.contractor import Contractor, MovingInputs
 from synth.compiled import compiler
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.search.formulation import Formulation
@@ -125,7 +125,7 @@ class Question:
             # The last column is void in some rows: it serves as a limit only.
             expressions = random_expressions(rng, symbols, data[:-1], int(rng.integers(6, 25)))
         self.program = Program([*symbols, *data], [*expressions, data[-1]], calls)
-        self.layout = Layout(n, tuple(owner))
+        self.layout = MovingInputs(n, tuple(owner))
         columns = [rng.uniform(-1, 2, ROWS) for _ in owner]
         for column in columns:
             column[rng.integers(ROWS)] = column[0]  # equal rows share a leaf
@@ -158,9 +158,9 @@ class Question:
         for node, value in ((a, self.values[0]), (b, self.values[1])):
             sense = ("at_most", "at_least")[self.rng.integers(2)]
             level = float(self.rng.choice(value)) if np.isfinite(value).any() else 0.0
-            cuts.append(Cut(sense, node, None, 1e-9, level))
+            cuts.append(NodeConstraint(sense, node, None, 1e-9, level))
             kept &= (value <= level) if sense == "at_most" else (value >= level)
-        cuts += [Cut("at_most", a, b, 1e-9), Cut("at_least", c, void, 1e-9)]
+        cuts += [NodeConstraint("at_most", a, b, 1e-9), NodeConstraint("at_least", c, void, 1e-9)]
         kept &= self.values[0] <= self.values[1]
         kept &= np.isnan(self.values[4]) | (self.values[2] >= self.values[4])
         goals = [Goal(c, 1), Goal(e, -1)]
@@ -232,8 +232,8 @@ def test_a_box_of_one_point_survives_its_own_values(seed):
     if not question.exists[0]:
         return
     outputs, values = question.program.outputs, question.values
-    cuts = [Cut("equal", outputs[k], None, 1e-9, float(values[k][0])) for k in (0, 1)]
-    cuts += [Cut("equal", outputs[k], outputs[k], 1e-9) for k in (2, 3)]
+    cuts = [NodeConstraint("equal", outputs[k], None, 1e-9, float(values[k][0])) for k in (0, 1)]
+    cuts += [NodeConstraint("equal", outputs[k], outputs[k], 1e-9) for k in (2, 3)]
     result = question.contracted(cuts, [Goal(outputs[2], 1)], [values[2] + TIE], 5)
     assert result.alive[0]
     np.testing.assert_allclose(result.low, question.point, rtol=1e-6, atol=1e-9)
@@ -249,8 +249,10 @@ def contract(expressions, cuts, goals, low, high, caps=None, data=(), passes=2):
     extra = [ca.SX.sym(f"c{k}") for k in range(len(data))]
     program = Program([*symbols, *extra], expressions(*symbols, *extra))
     node = program.outputs
-    made = [Cut(s, node[v], b if b is None else node[b], 1e-9, level) for s, v, b, level in cuts]
-    contractor = Contractor(program, Layout(2, (-1,) * len(data)), made, [Goal(node[k], sign) for k, sign in goals])
+    made = [NodeConstraint(s, node[v], b if b is None else node[b], 1e-9, level) for s, v, b, level in cuts]
+    contractor = Contractor(
+        program, MovingInputs(2, (-1,) * len(data)), made, [Goal(node[k], sign) for k, sign in goals]
+    )
     ends = np.array([low], dtype=float), np.array([high], dtype=float)
     return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, caps, passes)
 

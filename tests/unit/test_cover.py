@@ -12,11 +12,11 @@ import synth
 from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Archive, Candidate, distinct
-from synth.search.branch_and_bound import best, cover
+from synth.search.branch_and_bound import best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import spread_choice
-from synth.search.pruning import Cover, Staircase
+from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.tuning import TUNING
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut, feasible_candidates
@@ -54,7 +54,7 @@ def test_caps_and_room_of_a_cover_against_brute_force(m, seed):
     plain = np.where(rng.random(WIDTH) < 0.3, 0.7, np.inf)
     lower = some_phi(rng, 50)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    purpose = Cover(range(m), slack, plain, archive)
+    purpose = EpsilonCover(range(m), slack, plain, archive)
     caps, room = purpose.caps(lower), purpose.room(lower)
     for own, cap, space in zip(lower, caps, room, strict=True):
         by_hand = [cap_by_hand(archive.phi[:, :m], slack, own[:m], k) for k in range(m)]
@@ -72,7 +72,7 @@ def test_a_box_without_room_is_covered_and_caps_cut_off_only_what_is_covered(m, 
     rng = np.random.default_rng(seed)
     archive = archive_of(rng.uniform(0, 1, (20, WIDTH)), m)
     slack = rng.uniform(0, 0.1, m)
-    purpose = Cover(range(m), slack, np.full(WIDTH, np.inf), archive)
+    purpose = EpsilonCover(range(m), slack, np.full(WIDTH, np.inf), archive)
     lower = rng.uniform(0, 1, (60, WIDTH))
     design = lower + rng.exponential(0.1, lower.shape)  # anything the box may hold
     known = archive.phi[:, :m] - slack
@@ -86,7 +86,7 @@ def test_a_box_without_room_is_covered_and_caps_cut_off_only_what_is_covered(m, 
 
 def test_a_cover_takes_what_no_known_design_covers():
     archive = archive_of(np.array([[0.5, 0.5, 0, 0]]), 2)
-    purpose = Cover([0, 1], np.array([0.1, 0.1]), np.array([np.inf, np.inf, 0.6, np.inf]), archive)
+    purpose = EpsilonCover([0, 1], np.array([0.1, 0.1]), np.array([np.inf, np.inf, 0.6, np.inf]), archive)
     phi = np.array([[0.45, 0.45, 0, 0], [0.3, 0.9, 0, 0], [0.1, 0.1, 0.9, 0]])
     # The first is better by less than the slack: kept, but of no use; the last breaks a cap.
     assert purpose.take(np.arange(3), np.empty((3, 0)), phi) == 1
@@ -101,7 +101,7 @@ def staircase(rng, m):
     designs = [archive[int(k)] for k in chosen]
     slack = np.round(rng.uniform(0.01, 0.2, m), 2)
     proven = {c.phi.tobytes() for c in designs if rng.random() < 0.3}
-    return Staircase(designs, range(m), slack, archive, proven), designs, slack, archive, proven
+    return NonImprovement(designs, range(m), slack, archive, proven), designs, slack, archive, proven
 
 
 def steps_by_hand(designs, slack, proven, m):
@@ -136,7 +136,7 @@ def test_caps_and_room_of_a_staircase_against_brute_force(m, seed):
 
 def test_a_design_that_is_beaten_is_replaced():
     archive = archive_of(np.array([[0.2, 0.8, 0, 0], [0.5, 0.5, 0, 0], [0.8, 0.2, 0, 0]]), 2)
-    purpose = Staircase(list(archive), [0, 1], np.array([0.1, 0.1]), archive)
+    purpose = NonImprovement(list(archive), [0, 1], np.array([0.1, 0.1]), archive)
     beside = np.array([[0.15, 0.9, 0, 0], [0.45, 0.55, 0, 0]])
     assert purpose.take(np.arange(2), np.empty((2, 0)), beside) == 0
     better = np.array([[0.48, 0.45, 0, 0], [0.05, 0.9, 0, 0]])
@@ -200,8 +200,8 @@ def sampled(form, rng, count=20000):
 
 def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
     slack = np.array([0.02, 0.02])
-    purpose = Cover([0, 1], slack, np.full(2, np.inf), form.archive)
-    outcome = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6)
+    purpose = EpsilonCover([0, 1], slack, np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6)
     assert outcome.closed
     assert outcome.looked > 0
     rows, _ = form.feasible_rows(form.archive.variables, form.archive.combination)
@@ -224,17 +224,17 @@ def test_the_best_design_is_proven(form, column):
 
 
 def test_effort_and_time_end_a_cover(form):
-    purpose = Cover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
-    outcome = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1)
+    purpose = EpsilonCover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1)
     assert not outcome.closed
     assert len(outcome.open)
     with pytest.raises(Stopped, match="time limit"):
-        cover(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0))
+        branch_and_bound(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0))
 
 
 def test_enough_designs_end_a_cover(form):
-    purpose = Cover([0, 1], np.array([1e-3, 1e-3]), np.full(2, np.inf), form.archive)
-    outcome = cover(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6, enough=5)
+    purpose = EpsilonCover([0, 1], np.array([1e-3, 1e-3]), np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6, enough=5)
     assert outcome.full
     assert not outcome.closed
     assert len(form.archive) > 5

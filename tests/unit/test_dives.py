@@ -10,7 +10,7 @@ import synth
 from synth.question.catalogs import catalogs_for
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.large_neighbourhood import dive
+from synth.search.large_neighbourhood import large_neighbourhood_search
 from tests.asking import instance_of
 
 WIDTHS = np.round(np.geomspace(1.0, 8.0, 25), 2)
@@ -53,7 +53,7 @@ def test_dives_come_near_the_best_and_keep_only_feasible_designs(seed):
     rows, phi = form.feasible_rows(points, own)
     worst = rows[[int(np.argmax(phi[rows, 0]))]]
     form.archive.add(own[worst], points[worst], phi[worst])
-    dive(form, [0, 1], np.full(2, 1e-3), Clock(), rng)
+    large_neighbourhood_search(form, [0, 1], np.full(2, 1e-3), Clock(), rng)
     archive = form.archive
     assert len(form.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
     mass, length = every_design()

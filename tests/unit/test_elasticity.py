@@ -5,7 +5,7 @@ import math
 import pytest
 
 import synth
-from synth.parametric.joint_search import TogetherSearch
+from synth.parametric.joint_search import JointSearch
 from synth.search.sensitivity import elasticities
 from tests.asking import pose
 from tests.unit.strut import RODS, Strut
@@ -228,7 +228,7 @@ def test_elasticities_of_questions_searched_together_are_those_of_each_alone():
     # The second load follows the first one in every question, at its own slope.
     family = synth.load(Followed)
     ask = [pose(family, {"load": load}, ["mass"], 1, gap=1e-5) for load in (10.0, 20.0, 40.0)]
-    search = TogetherSearch(ask)
+    search = JointSearch(ask)
     fronts = search.answers()
     for front, question in zip(fronts, ask, strict=True):
         (own,), (alone,) = front.designs, question.answer().designs

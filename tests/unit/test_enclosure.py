@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from synth.model.program import Program
-from synth.proof.enclosure import Cut, Enclosed, Encloser
+from synth.proof.enclosure import Enclosed, Encloser, NodeComparison
 from synth.proof.interval_arithmetic import ANYTHING, INF, Arithmetic
 from synth.proof.tape import Ref, Tape, sign_of
 from synth.special import recorded
@@ -239,7 +239,10 @@ def test_slopes_close_in_with_the_square_of_the_box():
 def cut_some(program):
     """Cut three instructions by values; returns what ``Encloser.run`` takes."""
     nodes = program.outputs[-6:-1:2]
-    return {k: [Cut(0.7, 1, 1e-9)] if j % 2 else [Cut(-0.4, -1, 1e-9)] for j, k in enumerate(dict.fromkeys(nodes))}
+    return {
+        k: [NodeComparison(0.7, 1, 1e-9)] if j % 2 else [NodeComparison(-0.4, -1, 1e-9)]
+        for j, k in enumerate(dict.fromkeys(nodes))
+    }
 
 
 @pytest.mark.parametrize("seed", range(40))

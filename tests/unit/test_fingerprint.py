@@ -12,14 +12,14 @@ from synth.question.catalogs import catalogs_for
 from synth.question.instance import Instance
 from synth.results import provenance as fingerprint
 from synth.results.provenance import code_digest, native_code, package_folder, processor
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
 
 def question(needed: Any = NEEDED, rods: Any = RODS, robust: Any = None, **more: Any) -> Instance:
     limits = more.get("limits") or {}
-    problem = posed(Strut(**more.pop("options", {})), robust, limits)
+    problem = robust_counterpart(Strut(**more.pop("options", {})), robust, limits)
     return instance_of(problem, needed, catalogs_for(problem, {"rods": rods}), **more)
 
 

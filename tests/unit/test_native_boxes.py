@@ -12,12 +12,12 @@ import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
 from synth.bounds import compiled_boxes as native_boxes
-from synth.bounds.contractor import Contractor, Layout
+from synth.bounds.contractor import Contractor, MovingInputs
 from synth.bounds.intervals import BACKWARD, FORWARD
 from synth.compiled import compiler
 from synth.compiled.c_text import template
 from synth.margins import above
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, Program
 from synth.nlp import interior_point_c as native
 from synth.question.catalogs import as_catalogs
@@ -70,7 +70,7 @@ class Case:
     def __init__(self, program, n, cuts, goals, range_, rng, boxes):
         self.rng, self.n, self.cuts, self.goals, self.boxes = rng, n, cuts, goals, boxes
         self.bounds = [c.bound for c in cuts]
-        self.contractor = c = Contractor(program, Layout(n, (0, 0, 1, -1), (1,)), cuts, goals)
+        self.contractor = c = Contractor(program, MovingInputs(n, (0, 0, 1, -1), (1,)), cuts, goals)
         least, most = range_
         columns = rng.uniform(least, most, (3, ROWS))
         columns[1] = np.where(rng.random(ROWS) < 0.15, np.nan, columns[1])
@@ -125,7 +125,7 @@ class Case:
 
     def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes()):  # noqa: B008 - it is frozen
         unbounded = np.full(self.n, np.inf)
-        question = native_boxes.Question(
+        question = native_boxes.CompiledQuestion(
             self.tables,
             np.array(self.constants),
             np.array(self.bounds),
@@ -183,7 +183,7 @@ def limits_at(rng, program, nodes, inputs):
         spare = 1e-3 * (1 + abs(value)) if np.isfinite(value) else np.inf
         sense = "at_most" if rng.random() < 0.5 or not np.isfinite(value) else "at_least"
         level = value if np.isfinite(value) else 0.0
-        cuts.append(Cut(sense, node, None, 1e-9, level + spare if sense == "at_most" else level - spare))
+        cuts.append(NodeConstraint(sense, node, None, 1e-9, level + spare if sense == "at_most" else level - spare))
     return cuts
 
 
@@ -302,7 +302,7 @@ def random_case(seed, makers, boxes=60):
     range_ = [(-1.5, 2.0), (0.1, 2.0), (1.0, 4.0)][rng.integers(3)]
     node = program.outputs
     cuts = limits_at(rng, program, node[:2], list(rng.uniform(*range_, n + 4)))
-    cuts.append(Cut(["at_most", "at_least", "equal"][rng.integers(3)], node[2], node[3], 1e-9))
+    cuts.append(NodeConstraint(["at_most", "at_least", "equal"][rng.integers(3)], node[2], node[3], 1e-9))
     return Case(program, n, cuts, [Goal(node[4], 1), Goal(node[5], -1)], range_, rng, boxes)
 
 
@@ -459,7 +459,7 @@ def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
     monkeypatch.delitem(native_boxes.rules.FORWARD, ca.OP_FLOOR)
     x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
     program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
-    cuts = [Cut("at_most", program.outputs[0], None, 1e-9, 1.0)]
+    cuts = [NodeConstraint("at_most", program.outputs[0], None, 1e-9, 1.0)]
     case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
     assert native_boxes.source(code) is None

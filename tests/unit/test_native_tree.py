@@ -8,7 +8,7 @@ import pytest
 from synth.compiled import compiler
 from synth.search.archive import Archive
 from synth.search.boxes import Boxes
-from synth.search.pruning import Cover, Staircase
+from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.tuning import TUNING, CodeSizes
 from tests.tuned import tuned
 from tests.unit.strut import designs_of, strut_form
@@ -52,13 +52,13 @@ def purpose_of(kind, form, rng):
         points, combinations, phi = designs_of(form, rng, 300)
         keep = phi[:, 0] <= plain[0]
         archive.add(combinations[keep], points[keep], phi[keep])
-        return Cover([1], SLACK[1:], plain, archive)
+        return EpsilonCover([1], SLACK[1:], plain, archive)
     archive = known_designs(form, rng, 300)
     if kind == "staircase":
-        return Staircase([archive[k] for k in range(0, len(archive), 3)], [0, 1], SLACK, archive)
+        return NonImprovement([archive[k] for k in range(0, len(archive), 3)], [0, 1], SLACK, archive)
     if kind == "front with a cap":
         nowhere[0] = np.median(archive.phi[:, 0])
-    return Cover([0, 1], SLACK, nowhere, archive)
+    return EpsilonCover([0, 1], SLACK, nowhere, archive)
 
 
 def after(form, purpose, generations):
@@ -171,8 +171,8 @@ def test_three_objectives_and_ties_have_no_tables():
     form = strut_form(tuning=AT_ONCE)
     archive = Archive([0, 1, 2], form.n, 3)
     nowhere = np.full(3, np.inf)
-    assert Cover([0, 1, 2], np.full(3, 0.1), nowhere, archive).tables(form) is None
-    assert Cover([2], np.full(1, 0.1), nowhere, archive).tables(form) is None
+    assert EpsilonCover([0, 1, 2], np.full(3, 0.1), nowhere, archive).tables(form) is None
+    assert EpsilonCover([2], np.full(1, 0.1), nowhere, archive).tables(form) is None
 
 
 def test_without_a_compiler_nothing_is_grown(monkeypatch):

@@ -15,8 +15,8 @@ from synth.search import part_sampling as outer
 from synth.search.archive import Archive
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.part_sampling import BEGUN_ANEW, passed_over, search_parts, study_file
-from synth.search.pruning import Cover
+from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
+from synth.search.pruning import EpsilonCover
 from synth.tuning import PartSampling
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
@@ -172,9 +172,9 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
     root = form.root()
     left = form.split(root)[0].take(slice(0, 1))  # half of everything
     archive = Archive(columns, form.n, 2)
-    purpose = Cover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
+    purpose = EpsilonCover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
     journal = tmp_path / "study.journal" if kept else None
-    assert search_parts(form, left, purpose, Clock(), journal, 0, TRIALS) == TRIALS
+    assert sample_parts(form, left, purpose, Clock(), journal, 0, TRIALS) == TRIALS
     assert journal is None or not journal.exists()
     assert len(archive)
     rows, phi = form.feasible_rows(archive.variables, archive.combination)

@@ -14,7 +14,7 @@ import yaml
 
 import synth
 from synth.feasibility import residual
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
@@ -52,7 +52,7 @@ class Kinked:
         rows = limits(x)
         self.program = Program(x, [ca.SX(s) for s in [*(side for _, a, b in rows for side in (a, b)), goal(x)]])
         nodes = iter(self.program.outputs)
-        cuts = tuple(Cut(sense, next(nodes), next(nodes), 1e-9) for sense, _, _ in rows)
+        cuts = tuple(NodeConstraint(sense, next(nodes), next(nodes), 1e-9) for sense, _, _ in rows)
         log_cuts = tuple(logs and c.sense != "equal" for c in cuts)
         self.rows = Rows(cuts, (Goal(next(nodes)),), log_cuts, (logs,), (logs,) * n)
         self.n, self.logs = n, logs

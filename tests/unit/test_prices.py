@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 import synth
 from synth.question.settings import SearchSettings
 from synth.studies.prices import run as pricing
-from synth.studies.prices.price_list import Store
+from synth.studies.prices.price_list import PriceStore
 from synth.study_limits import PriceLimits
 from tests.unit.strut import RODS, Strut
 from tests.unit.test_elasticity import Followed, Hung
@@ -378,7 +378,7 @@ def test_of_many_combinations_some_are_tried_and_it_is_said():
     front = rod(0.997 * EVEN / 1e3, ("weak", "strong", "heavy"))
     few = PriceLimits(all=1, parents=1)
     found = pricing._Pricing(front.question, front, 0.01, SearchSettings(), None, few).run(
-        front.designs[:1], Store.of(None, "")
+        front.designs[:1], PriceStore.of(None, "")
     )
     price = found.of(1, "mass", "load")
     assert price.compared == "over the 3 combinations tried, of 3"

@@ -9,7 +9,7 @@ import synth.analysis.restate
 import synth.robust.robust_front
 from synth.question.catalogs import as_catalogs
 from synth.question.uncertainty import read_block
-from synth.robust.counterpart import RobustProblem, posed
+from synth.robust.counterpart import RobustProblem, robust_counterpart
 from synth.tuning import TUNING
 from tests.asking import rater_of
 from tests.tuned import synthesize, tuned
@@ -82,7 +82,7 @@ def test_a_robust_front_is_verified_and_read_back(fronts, tmp_path):
     header = again.files()["designs.csv"].splitlines()[0]
     assert header.endswith("robust,proof,yield,yield low,yield high,worst limit,worst utilisation,worst at")
     instance = synth.analysis.restate.question_of(
-        again, posed(ShaftBrake(), again.frame.restated["robust"], None), CATALOGS
+        again, robust_counterpart(ShaftBrake(), again.frame.restated["robust"], None), CATALOGS
     )
     assert [x.name for x in instance.model.limits] == [x for x in robust.frame.limit_units]
 
@@ -161,7 +161,7 @@ def test_mode_rate_leaves_the_front_as_it_is(fronts):
 
 
 def test_limits_are_posed_once_per_corner_that_matters():
-    problem = posed(ShaftBrake(), RANGES, None)
+    problem = robust_counterpart(ShaftBrake(), RANGES, None)
     assert isinstance(problem, RobustProblem)
     given = frozenset(["torque", "speed", "torque_limit"])
     names = list(problem.model(given, as_catalogs(CATALOGS)).declaration.limits)
@@ -169,7 +169,7 @@ def test_limits_are_posed_once_per_corner_that_matters():
     assert grip == ["grip (friction low, torque high, wear high, radius low)"]
     assert [n for n in names if n.startswith("harshness (")] == ["harshness (friction high, radius high)"]
     assert not [n for n in names if n.startswith(("pressure (", "warmth ("))]
-    assert posed(problem, {**RANGES, "mode": "rate"}, None) is problem
+    assert robust_counterpart(problem, {**RANGES, "mode": "rate"}, None) is problem
 
 
 def test_the_shifted_formulas_are_those_of_the_family(fronts):

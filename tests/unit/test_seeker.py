@@ -14,8 +14,8 @@ from synth.nlp.batch import Tasks
 from synth.question.catalogs import catalogs_for
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import Seeker, corners, spread_choice
-from synth.search.pruning import Cover
+from synth.search.primal_heuristics import PrimalHeuristics, corners, spread_choice
+from synth.search.pruning import EpsilonCover
 from tests.asking import instance_of
 
 
@@ -27,8 +27,8 @@ def strut_form(traded=2, grid=False):
 
 def seeker(form, slack=1e-3):
     m = len(form.archive.columns)
-    purpose = Cover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
-    return Seeker(form, purpose, np.random.default_rng(0), False)
+    purpose = EpsilonCover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
+    return PrimalHeuristics(form, purpose, np.random.default_rng(0), False)
 
 
 def first_design(form, combination, rng):

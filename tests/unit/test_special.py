@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
-from synth.bounds.contractor import Contractor, Layout
-from synth.model.constraints import Cut, Goal
+from synth.bounds.contractor import Contractor, MovingInputs
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.special import TABLE, recorded, special
 from tests.unit.test_contractor import contraction
@@ -58,13 +58,13 @@ def test_propagation_keeps_every_design_that_exists(formula, sense):
     assert 0.2 < (low[:, 0] < high[:, 1]).mean() < 0.95
     values = program.compile()(list(points.T))[0]
     goals = [Goal(program.outputs[0], 1 if sense == "at_most" else -1)]
-    guard = Cut("at_least", program.outputs[1], program.outputs[2], 1e-9, guard=True)
+    guard = NodeConstraint("at_least", program.outputs[1], program.outputs[2], 1e-9, guard=True)
     for k in range(0, n, 50):
         rows = slice(k, k + 50)
         level = values[k]
         holds = values[rows] <= level if sense == "at_most" else values[rows] >= level
-        limit = Cut(sense, program.outputs[0], None, 1e-9, level)
-        contractor = Contractor(program, Layout(3, ()), [limit, guard], goals)
+        limit = NodeConstraint(sense, program.outputs[0], None, 1e-9, level)
+        contractor = Contractor(program, MovingInputs(3, ()), [limit, guard], goals)
         nothing = np.zeros((50, 0), dtype=int)
         result = contraction(contractor, [], [], nothing, low[rows], high[rows], None, 3)
         assert result.alive[holds].all()
@@ -79,7 +79,7 @@ def test_a_special_function_is_bounded_at_its_corner_where_it_exists_in_the_whol
     with recorded() as calls:
         value = reactive_slip_time(torque, 600.0, 30.0, 26.6, ramp) + 1e-6 * torque
     program = Program(symbols, [value], calls)
-    contractor = Contractor(program, Layout(2, ()), [], [Goal(program.outputs[0], 1)])
+    contractor = Contractor(program, MovingInputs(2, ()), [], [Goal(program.outputs[0], 1)])
     low, high = np.array([[900.0, 2.0], [500.0, 2.0]]), np.array([[1200.0, 2.0], [1200.0, 2.0]])
     least = float(reactive_slip_time(1200.0, 600.0, 30.0, 26.6, 2.0))
     bounds = contraction(contractor, [], [], np.zeros((2, 0), dtype=int), low, high, None, 1).bounds[:, 0]

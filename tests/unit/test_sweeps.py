@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.model.constraints import Cut, Goal
+from synth.model.constraints import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp.row_functions import RowFunctions
 from synth.nlp.rows import Rows
@@ -44,7 +44,7 @@ def derivatives(expression, log, sense, logs):
     value = ca.SX(expression(*x, d))
     program = Program([*x, d], [value, 1 + x[0] ** 2])
     first, second = program.outputs
-    rows = Rows((Cut(sense, first, None, 1e-9),), (Goal(second, -1),), (log,), (True,), (logs,) * N)
+    rows = Rows((NodeConstraint(sense, first, None, 1e-9),), (Goal(second, -1),), (log,), (True,), (logs,) * N)
     functions = RowFunctions(program, N, rows)
     rng = np.random.default_rng(7)
     points = rng.uniform(0.3, 2.5, (N, COUNT))
@@ -118,7 +118,7 @@ def test_a_lower_limit_shows_the_way_back_from_below_zero():
 def test_monomials_cost_nothing_to_differentiate():
     x = [ca.SX.sym(f"x{k}") for k in range(N)]
     program = Program(x, [x[0] ** 2 * x[1] / ca.sqrt(x[2])])
-    rows = Rows((Cut("at_most", program.outputs[0], None, 1e-9),), (), (True,), (), (True,) * N)
+    rows = Rows((NodeConstraint("at_most", program.outputs[0], None, 1e-9),), (), (True,), (), (True,) * N)
     functions = RowFunctions(program, N, rows)
     assert functions.hessian == []
     constants = [functions.nodes[k].constant for k in functions.outputs[1:]]

@@ -20,8 +20,8 @@ from synth.deadline import Stopped
 from synth.feasibility import Status
 from synth.model.problem import DesignProblem
 from synth.parametric import joint_search as together_search
-from synth.parametric.joint_question import BestOfEach, Each, Together, different, groups_of
-from synth.parametric.joint_search import TogetherSearch, Wider
+from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different, groups_of
+from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.results import Design, ParetoFront
 from synth.search.formulation import Formulation
 from synth.search.question import Question
@@ -100,7 +100,7 @@ def check_each(
     """Check that questions asked together are answered as alone, and as plain formulas say; return the answers."""
     assert groups_of(questions) == [list(range(len(questions)))]
     name, sense = next(iter(questions[0].chosen.items()))
-    answers = TogetherSearch(questions).answers()
+    answers = JointSearch(questions).answers()
     for k, (question, front) in enumerate(zip(questions, answers, strict=True)):
         own, true = question.answer(explained=False), expected(k)
         if true is None:
@@ -190,9 +190,9 @@ def test_what_is_infeasible_is_left_to_be_asked_alone(problem: DesignProblem) ->
 def test_questions_that_are_all_infeasible_have_no_answer() -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     questions = asked(FREE, loads(100, 200, 300), catalogs=weak)
-    assert TogetherSearch(questions).answers() == [None] * 3
+    assert JointSearch(questions).answers() == [None] * 3
     # What no rope bears is known before anything is searched.
-    assert TogetherSearch(asked(GIVEN, loads(100, 200, 300), catalogs=weak)).answers() == [None] * 3
+    assert JointSearch(asked(GIVEN, loads(100, 200, 300), catalogs=weak)).answers() == [None] * 3
 
 
 @pytest.mark.parametrize(
@@ -239,7 +239,7 @@ def test_refusals_of_combinations_depend_on_the_question() -> None:
     # More strands bear more, but not for every load: beyond 30 kN the first rope must be single, which bears 25.
     tied = ropes((10, 1), (30, 0.9), most=[25, 300], bundle=[30, 1000])
     check_ropes(GIVEN, loads(10, 24.9, 29.9, 30.1), tied)
-    found = [f.designs[0] for f in TogetherSearch(asked(FREE, loads(29, 31), catalogs=tied)).answers() if f]
+    found = [f.designs[0] for f in JointSearch(asked(FREE, loads(29, 31), catalogs=tied)).answers() if f]
     assert [made_of(d)[:2] for d in found] == [("rope a", 2.0), ("rope b", 1.0)]
 
 
@@ -277,7 +277,7 @@ def test_refused_parts_make_groups_of_their_own() -> None:
 
 
 def test_of_questions_that_are_the_same_one_is_answered() -> None:
-    search = TogetherSearch(asked(FREE, [{"load": "5 kN", "idle": i} for i in (1, 2, 3)]))
+    search = JointSearch(asked(FREE, [{"load": "5 kN", "idle": i} for i in (1, 2, 3)]))
     first, *others = search.answers()
     assert others == [None, None]
     assert first is not None
@@ -289,7 +289,7 @@ def test_ties_are_named() -> None:
     twins = ropes((10, 2), (20, 1), (20, 1), (10, 2))
     for problem in (MAKEABLE, GIVEN):
         questions = asked(problem, loads(4, 30), catalogs=twins)
-        fronts = [f for f in TogetherSearch(questions).answers() if f is not None]
+        fronts = [f for f in JointSearch(questions).answers() if f is not None]
         assert [len(f.designs[0].alternatives) for f in fronts] == [1, 1]
         assert {made_of(fronts[0].designs[0])[0], fronts[0].designs[0].alternatives[0].split()[-1]} in (
             {"rope a", "d"},
@@ -299,8 +299,8 @@ def test_ties_are_named() -> None:
 
 def test_the_best_of_some_questions_is_as_answered() -> None:
     questions = asked(FREE, loads(5, 12, 25, 40))
-    answers = TogetherSearch(questions).answers()
-    for (design, proven), k in zip(TogetherSearch(questions).best([1, 3]), (1, 3), strict=True):
+    answers = JointSearch(questions).answers()
+    for (design, proven), k in zip(JointSearch(questions).best([1, 3]), (1, 3), strict=True):
         front = answers[k]
         assert front is not None
         assert design is not None
@@ -314,7 +314,7 @@ def test_the_best_of_some_questions_is_as_answered() -> None:
 def test_that_there_is_no_design_is_proven(problem: DesignProblem, at: tuple[int, ...]) -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     questions = asked(problem, loads(*at), catalogs=weak)
-    for (design, proven), question in zip(TogetherSearch(questions).best(range(len(at))), questions, strict=True):
+    for (design, proven), question in zip(JointSearch(questions).best(range(len(at))), questions, strict=True):
         true = best_ropes(problem, question.instance.requirements, weak)
         assert proven
         assert (design is None) == (true is None)
@@ -328,7 +328,7 @@ def test_ideas_prove_nothing() -> None:
     ideas = [d for q in bad for d in q.answer().designs]
     assert len(ideas) == 3
     best = [best_ropes(FREE, q.instance.requirements, FOUR) for q in questions]
-    for front, own in zip(TogetherSearch(questions, ideas=ideas).answers(), best, strict=True):
+    for front, own in zip(JointSearch(questions, ideas=ideas).answers(), best, strict=True):
         assert front is not None
         assert own is not None
         assert own.cost - 1e-6 <= front.designs[0].values["cost"] <= own.cost * (1 + GAP)
@@ -336,12 +336,12 @@ def test_ideas_prove_nothing() -> None:
 
 def test_time_and_interruptions_end_a_search() -> None:
     with pytest.raises(Stopped, match="time limit"):
-        TogetherSearch(asked(FREE, loads(5, 12)), time_limit=0).answers()
+        JointSearch(asked(FREE, loads(5, 12)), time_limit=0).answers()
 
     def stop(state: Mapping[str, Any]) -> None:
         raise KeyboardInterrupt
 
-    search = TogetherSearch(asked(FREE, loads(5, 12)), progress=stop)
+    search = JointSearch(asked(FREE, loads(5, 12)), progress=stop)
     with pytest.raises((KeyboardInterrupt, Stopped)):
         search._working(1)
 
@@ -443,7 +443,7 @@ def test_prices_do_not_depend_on_the_company() -> None:
     tables = Catalogs({"wells": WELLS})
     questions = asked(Wells(), [{"load": v} for v in (-6, -1.3, 0.1, 3)], catalogs=tables)
     told = 0
-    for front, question in zip(TogetherSearch(questions).answers(), questions, strict=True):
+    for front, question in zip(JointSearch(questions).answers(), questions, strict=True):
         assert front is not None
         own = question.answer(explained=False)
         assert front.designs[0].elasticity.keys() == own.designs[0].elasticity.keys()
@@ -475,7 +475,7 @@ def test_the_best_with_given_parts() -> None:
         (6, a_design(50, "rope c")),
     ]
     true = [5 + 4 * 5, 35 * 2 * 1.5 + 0.5 * 15, None, 5 * 2 + 4 * 22, 20 * 3 + 22, None, 2 * 10 + 220, None, 35 + 175]
-    search = TogetherSearch(questions)
+    search = JointSearch(questions)
     for again in range(2):
         for (design, proven), (_, idea), value in zip(search.best_with(wanted), wanted, true, strict=True):
             assert proven
@@ -493,10 +493,10 @@ def test_the_best_with_given_parts() -> None:
 
 def test_parts_that_are_not_offered_or_refused_have_no_design() -> None:
     few = asked(FREE, loads(5, 15), parts={"rope": ["rope a", "rope b"]})
-    assert TogetherSearch(few).best_with([(0, a_design(2, "rope d")), (1, a_design(9, "rope b"))])[0] == (None, True)
+    assert JointSearch(few).best_with([(0, a_design(2, "rope d")), (1, a_design(9, "rope b"))])[0] == (None, True)
     tied = ropes((10, 1), (30, 0.9), most=[25, 300], bundle=[30, 1000])
     idea = pose(FREE, loads(20)[0], ["cost"], 1, tied, fix={"strands": 2}).answer().designs[0]
-    allowed, refused = TogetherSearch(asked(FREE, loads(29.5, 30.5), catalogs=tied)).best_with([(0, idea), (1, idea)])
+    allowed, refused = JointSearch(asked(FREE, loads(29.5, 30.5), catalogs=tied)).best_with([(0, idea), (1, idea)])
     assert allowed[0] is not None
     assert refused == (None, True)
 
@@ -509,7 +509,7 @@ def test_nothing_is_called_proven_in_the_wrong_valley() -> None:
     questions = asked(problem, [{"load": 0.5, "idle": i} for i in (1, 2, 3)], catalogs=tables)
     x = np.linspace(0, 4, 100_001)
     least = float(np.min(3.0 + ((x - 1) * (x - 3)) ** 2 + 0.25 * (x - 2)))
-    for design, proven in TogetherSearch(questions).best_with([(k, idea) for k in range(3)]):
+    for design, proven in JointSearch(questions).best_with([(k, idea) for k in range(3)]):
         if proven:
             assert design is not None
             assert design.values["cost"] == pytest.approx(least, rel=GAP)
@@ -558,14 +558,14 @@ def test_requirements_that_only_some_questions_have(first: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def together() -> Together:
+def together() -> JointInstance:
     requirements = [{"load": f"{f} kN", "share": s} for f, s in product((3, 7, 20), (0.5, 2))]
-    return Together([q.instance for q in asked(MAKEABLE, requirements)])
+    return JointInstance([q.instance for q in asked(MAKEABLE, requirements)])
 
 
 @given(st.lists(st.integers(0, 6 * 24 - 1), min_size=1, max_size=9))
 @settings(deadline=None, derandomize=True, max_examples=40)
-def test_combinations_mean_what_they_mean_in_their_question(together: Together, numbers: list[int]) -> None:
+def test_combinations_mean_what_they_mean_in_their_question(together: JointInstance, numbers: list[int]) -> None:
     assert together.combinations.count == 144
     combinations = np.array(numbers, dtype=np.int64)
     data, digits = together.data(combinations), together.combinations.digits(combinations)
@@ -596,12 +596,12 @@ def test_combinations_mean_what_they_mean_in_their_question(together: Together, 
 def test_what_may_move_belongs_to_the_question() -> None:
     instances = [q.instance for q in asked(FREE, loads(5, 6))]
     names = {e.name: k for k, e in enumerate(instances[0].model.data_inputs) if e.kind == "requirement"}
-    plain, moving = Together(instances), Together(instances, ["share"])
+    plain, moving = JointInstance(instances), JointInstance(instances, ["share"])
     assert plain.owners()[names["load"]] == moving.owners()[names["load"]] == 0
     assert (plain.owners()[names["share"]], moving.owners()[names["share"]]) == (-1, 0)
     assert moving.column(names["share"]).tolist() == [1.0, 1.0]
     own = asked(FREE, loads(5, 6))
-    answers = [TogetherSearch(own, wider=w).answers() for w in (None, Wider(own, ("load", "share", "income")))]
+    answers = [JointSearch(own, wider=w).answers() for w in (None, SharedBounds(own, ("load", "share", "income")))]
     for one, other in zip(*answers, strict=True):
         assert one is not None
         assert other is not None
@@ -613,13 +613,13 @@ def test_what_may_move_belongs_to_the_question() -> None:
 def test_what_holds_for_many_questions_is_found_once(
     problem: DesignProblem, conflict: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wider = Wider(asked(problem, loads(2, 7, 60)), MOVING)
+    wider = SharedBounds(asked(problem, loads(2, 7, 60)), MOVING)
     roots = []
     root = contractor.Contractor.root
     monkeypatch.setattr(contractor.Contractor, "root", lambda *a: roots.append(1) or root(*a))
     for own in (loads(2, 60), loads(2.5, 6.9, 7, 33), loads(59)):
         questions = asked(problem, own)
-        together = Together([q.instance for q in questions], MOVING)
+        together = JointInstance([q.instance for q in questions], MOVING)
         form = wider.among(together, conflict)
         assert form is not None
         # Its clusters and tables are those of questions that are prepared alone.
@@ -632,33 +632,33 @@ def test_what_holds_for_many_questions_is_found_once(
     assert len(roots) == 1
     # What the wider questions do not speak of is prepared anew.
     beyond = asked(problem, loads(5, 61))
-    assert wider.among(Together([q.instance for q in beyond], MOVING), conflict) is None
-    answers = [TogetherSearch(beyond, wider=w).answers() for w in (None, wider)]
+    assert wider.among(JointInstance([q.instance for q in beyond], MOVING), conflict) is None
+    answers = [JointSearch(beyond, wider=w).answers() for w in (None, wider)]
     assert [f.designs for f in answers[0] if f] == [f.designs for f in answers[1] if f]
 
 
 @pytest.mark.parametrize("conflict", [False, True])
 def test_questions_that_differ_in_anything_else_are_prepared_anew(conflict: bool) -> None:
-    wider = Wider(asked(FREE, loads(2, 60)), MOVING)
+    wider = SharedBounds(asked(FREE, loads(2, 60)), MOVING)
     instances = [q.instance for q in asked(FREE, loads(7))]
-    assert wider.among(Together(instances, MOVING), conflict) is not None
+    assert wider.among(JointInstance(instances, MOVING), conflict) is not None
     # The jolt is made of the load: of one question it would seem to be fixed.
-    assert wider.among(Together(instances, ("load",)), conflict) is None
+    assert wider.among(JointInstance(instances, ("load",)), conflict) is None
     dearer = [q.instance for q in asked(FREE, loads(7, share=2))]
-    assert wider.among(Together(dearer, MOVING), conflict) is None
+    assert wider.among(JointInstance(dearer, MOVING), conflict) is None
 
 
 # ---- the best of each question --------------------------------------------------------------------------------------
 
 
-def test_a_question_keeps_its_best_design(together: Together) -> None:
+def test_a_question_keeps_its_best_design(together: JointInstance) -> None:
     @given(st.integers(0, 10**6))
     @settings(deadline=None, derandomize=True, max_examples=60)
     def against_a_loop(seed: int) -> None:
         rng = np.random.default_rng(seed)
         plain = np.where(rng.random((6, 3)) < 0.2, 0.6, np.inf)
         column = int(rng.integers(3))
-        known = BestOfEach(together, column, 2, 3, plain)
+        known = IncumbentPerScenario(together, column, 2, 3, plain)
         best: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}
         for _ in range(int(rng.integers(1, 5))):
             count = int(rng.integers(0, 12))
@@ -689,12 +689,12 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     form, rng = search.form, np.random.default_rng(seed)
     tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
     plain = np.where(rng.random((count, goals)) < 0.2, 0.5, np.inf)
-    known = BestOfEach(search.together, 0, form.n, goals, plain)
+    known = IncumbentPerScenario(search.together, 0, form.n, goals, plain)
     chosen = rng.integers(0, search.together.combinations.count, 5)
     known.add(chosen, np.zeros((5, form.n)), np.round(rng.random((5, goals)), 1))
     wanted = rng.random(count) < 0.7
     slack = 0.1
-    purpose = Each(form, known, lambda phi: np.full(len(phi), slack), wanted)
+    purpose = BestPerScenario(form, known, lambda phi: np.full(len(phi), slack), wanted)
     best = known.best()
     needed = [
         -np.inf if not wanted[q] else np.inf if not np.isfinite(best[q]) else best[q] - slack for q in range(count)
@@ -723,8 +723,8 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
 
 
 @cache
-def an_open_search() -> TogetherSearch:
-    return TogetherSearch(asked(MAKEABLE, loads(3, 7, 20, 45, 90)))
+def an_open_search() -> JointSearch:
+    return JointSearch(asked(MAKEABLE, loads(3, 7, 20, 45, 90)))
 
 
 @given(st.integers(0, 10**6))
@@ -733,11 +733,11 @@ def test_open_boxes_leave_their_questions_open(seed: int) -> None:
     search = an_open_search()
     form, rng = search.form, np.random.default_rng(seed)
     tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
-    known = BestOfEach(search.together, 0, form.n, goals)
+    known = IncumbentPerScenario(search.together, 0, form.n, goals)
     phi = np.round(rng.normal(size=(4, goals)), 1)
     known.add(rng.integers(0, search.together.combinations.count, 4), np.zeros((4, form.n)), phi)
     wanted = rng.random(count) < 0.7
-    purpose = Each(form, known, lambda own: np.full(len(own), 0.05), wanted)
+    purpose = BestPerScenario(form, known, lambda own: np.full(len(own), 0.05), wanted)
     needed = purpose.needed()
     boxes = form.leaves(rng.integers(0, search.together.combinations.count, 6))
     clusters = rng.integers(0, len(tree), 6).astype(np.int32)

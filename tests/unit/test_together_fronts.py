@@ -13,8 +13,8 @@ import synth
 from synth.deadline import Stopped
 from synth.feasibility import Status
 from synth.parametric import joint_fronts as together_fronts
-from synth.parametric.joint_fronts import FrontsSearch, joint_answers, joint_groups
-from synth.parametric.joint_search import TogetherSearch
+from synth.parametric.joint_fronts import JointFrontSearch, joint_answers, joint_groups
+from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
 from synth.search.question import Question
 from synth.tables.catalogs import Catalogs
@@ -57,7 +57,7 @@ def clutches(points: int, objectives: Sequence[str], *torques: float) -> list[Qu
 @cache
 def answered(points: int, objectives: tuple[str, str]) -> tuple[list[Question], list[ParetoFront | None]]:
     questions = clutches(points, objectives, 450, 500, 560, 600)
-    return questions, FrontsSearch(questions).answers()
+    return questions, JointFrontSearch(questions).answers()
 
 
 def check_front(question: Question, front: ParetoFront) -> None:
@@ -93,7 +93,7 @@ def check_front(question: Question, front: ParetoFront) -> None:
 @pytest.mark.parametrize("grid", [True, False])
 def test_fronts_of_struts_stand_against_those_asked_alone(points: int, grid: bool) -> None:
     questions = struts(points, 10, 17, 30, 44, grid=grid)
-    answers = FrontsSearch(questions).answers()
+    answers = JointFrontSearch(questions).answers()
     for question, front in zip(questions, answers, strict=True):
         assert front is not None
         check_front(question, front)
@@ -146,10 +146,10 @@ def test_the_ends_have_the_elasticities_that_they_have_alone() -> None:
 def test_a_front_with_fewer_designs_is_left_to_be_asked_alone() -> None:
     four = ropes((10, 2), (20, 1), (35, 0.5), (5, 4), most=[100, 200, 400, 20])
     questions = [pose(Ropes(thick="given"), {"load": f"{v} kN"}, ["cost", "bulk"], 6, four) for v in (4, 19, 34)]
-    assert FrontsSearch(questions).answers() == [None] * 3
+    assert JointFrontSearch(questions).answers() == [None] * 3
     # Of two ends there are as many as are asked for.
     pairs = [pose(Ropes(thick="given"), {"load": f"{v} kN"}, ["cost", "bulk"], 2, four) for v in (4, 19, 34)]
-    pairs_answered = FrontsSearch(pairs).answers()
+    pairs_answered = JointFrontSearch(pairs).answers()
     assert [front is not None for front in pairs_answered] == [len(q.answer().designs) > 1 for q in pairs]
     assert any(pairs_answered)
     for question, front in zip(pairs, pairs_answered, strict=True):
@@ -160,27 +160,27 @@ def test_a_front_with_fewer_designs_is_left_to_be_asked_alone() -> None:
 def test_where_one_design_is_best_in_both_there_is_no_front() -> None:
     two = ropes((10, 2), (20, 1))
     questions = [pose(Ropes(thick="given"), {"load": f"{v} kN"}, ["cost", "bulk"], 2, two) for v in (40, 60)]
-    assert FrontsSearch(questions).answers() == [None, None]
+    assert JointFrontSearch(questions).answers() == [None, None]
     assert [len(q.answer().designs) for q in questions] == [1, 1]
 
 
 def test_objectives_that_may_be_zero_are_left_to_be_asked_alone() -> None:
     two = ropes((10, 2), (20, 1), (35, 0.5))
     questions = [pose(Ropes(), {"load": f"{v} kN"}, ["loss", "bulk"], 2, two) for v in (4, 19)]
-    assert FrontsSearch(questions).answers() == [None, None]
+    assert JointFrontSearch(questions).answers() == [None, None]
 
 
 def test_infeasible_questions_are_left_to_be_asked_alone() -> None:
     weak: dict[str, Any] = {"parts": {"plate": ["core 1"], "material": ["soft"]}}
     questions = struts(2, 10, 89, 15, **weak)
-    answers = FrontsSearch(questions).answers()
+    answers = JointFrontSearch(questions).answers()
     assert [front is not None for front in answers] == [bool(q.answer(explained=False).designs) for q in questions]
     assert [front is not None for front in answers] == [True, False, True]
-    assert FrontsSearch(struts(3, 85, 88, **weak)).answers() == [None] * 2
+    assert JointFrontSearch(struts(3, 85, 88, **weak)).answers() == [None] * 2
 
 
 def test_of_questions_that_are_the_same_one_is_answered() -> None:
-    answers = FrontsSearch(struts(3, 20, 20, 30)).answers()
+    answers = JointFrontSearch(struts(3, 20, 20, 30)).answers()
     assert sum(front is not None for front in answers) == 2
 
 
@@ -217,13 +217,13 @@ def test_there_are_numbers_for_every_level_of_every_question(monkeypatch: pytest
 
 def test_answers_are_those_of_the_kind_of_question() -> None:
     one, two = struts(1, 10, 20, objectives=("mass",)), struts(3, 10, 20)
-    assert _told(joint_answers(one)) == _told(TogetherSearch(one).answers())
-    assert _told(joint_answers(two)) == _told(FrontsSearch(two).answers())
+    assert _told(joint_answers(one)) == _told(JointSearch(one).answers())
+    assert _told(joint_answers(two)) == _told(JointFrontSearch(two).answers())
 
 
 def test_the_same_questions_have_the_same_answers_with_any_number_of_threads() -> None:
     questions, answers = answered(3, ("mass", "actuation_force"))
-    assert _told(FrontsSearch(questions, workers=2).answers()) == _told(answers)
+    assert _told(JointFrontSearch(questions, workers=2).answers()) == _told(answers)
 
 
 def _told(answers: Sequence[ParetoFront | None]) -> list[list[tuple[Mapping[str, float], str]]]:
@@ -232,7 +232,7 @@ def _told(answers: Sequence[ParetoFront | None]) -> list[list[tuple[Mapping[str,
 
 def test_time_that_is_over_stops_the_search() -> None:
     with pytest.raises(Stopped, match="time limit"):
-        FrontsSearch(struts(3, 10, 20), time_limit=0).answers()
+        JointFrontSearch(struts(3, 10, 20), time_limit=0).answers()
 
 
 def test_a_study_asks_for_three_designs_of_each_step_together() -> None:

@@ -19,7 +19,7 @@ from synth.results.loading import load_front, unchecked_front
 from synth.results.verification import Verdict
 from synth.tables.catalogs import Catalogs
 from synth.verification.pareto_regions import uncovered
-from synth.verification.verify import Check
+from synth.verification.verify import VerificationRun
 from tests.asking import instance_of
 from tests.unit.strut import NEEDED, RODS, Strut
 
@@ -201,7 +201,7 @@ class Paired(synth.DesignProblem):
 
 def test_a_design_that_is_refused_refutes_nothing():
     front = synth.synthesize(Paired(), {}, catalogs={"rods": WHOLE})
-    check = Check(front, math.inf)
+    check = VerificationRun(front, math.inf)
     check.ask(front.question)
     assert check.listed()
     rows = dict.fromkeys(("one", "two"), 0)

@@ -29,7 +29,7 @@ from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.spec_patch import patched
 from synth.results import Design
-from synth.robust.counterpart import nominal, posed
+from synth.robust.counterpart import nominal, robust_counterpart
 from synth.search.question import one_best
 from synth.special import expanded
 from synth.studies.infeasibility.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
@@ -325,7 +325,7 @@ def _explain(asking: _Explaining, result: Explanation, physics: bool) -> None:
 
 
 @dataclass(frozen=True)
-class _Answer:
+class _LeastAmount:
     """The design that needs the least amount; ``closed`` where nothing less does, or surely none is."""
 
     design: Design | None
@@ -379,7 +379,7 @@ class _Explaining:
         self.settings = replace(settings, points=1, gap=ways.gap, workers=1)
         self.deadline = math.inf if settings.time_limit is None else time.monotonic() + settings.time_limit
         self.catalogs = request.catalogs
-        whole = posed(request.problem, request.robust, request.limits)
+        whole = robust_counterpart(request.problem, request.robust, request.limits)
         asked = replace(request, problem=whole)
         self.instance = Instance(asked, refuse=False)
         model, d = self.instance.model, self.instance.model.declaration
@@ -445,7 +445,7 @@ class _Explaining:
         pins: Sequence[_Pin] = (),
         free: Collection[str] = (),
         rooms: Mapping[str, float] | None = None,
-    ) -> _Answer:
+    ) -> _LeastAmount:
         """Return the design that needs the least amount, of all that keep the limits.
 
         ``pins`` give way as well; what is ``free`` (slots, choices) may be anything that the family offers.
@@ -469,11 +469,11 @@ class _Explaining:
                 replace(self.request, problem=relaxed, requirements=self.given, parts=parts, limits=bounds, fix=fix)
             )
         except RefusedError:
-            return _Answer(None, True)
+            return _LeastAmount(None, True)
         front = one_best(instance, AMOUNT, self.settings.within(None if left == math.inf else left), self.ways.boxes)
         if front.interrupted:
             raise Stopped(front.interrupted)
-        return _Answer(front.designs[0] if front.designs else None, front.certificate.kind == "global")
+        return _LeastAmount(front.designs[0] if front.designs else None, front.certificate.kind == "global")
 
     # -- what may give way -----------------------------------------------------------------------
 
@@ -584,7 +584,7 @@ class _Explaining:
 
     # -- ways out ------------------------------------------------------------------------------------
 
-    def widened(self, found: _Answer) -> Relaxation:
+    def widened(self, found: _LeastAmount) -> Relaxation:
         """Return the relaxation of all limits by the same fraction."""
         assert found.design is not None
         design, amount = self._as_asked(found.design), math.expm1(found.amount)
@@ -627,7 +627,7 @@ class _Explaining:
             return MOST
         return min(MOST, abs(math.log(end / value))) * (1 - 1e-12)
 
-    def _way(self, kind: str, name: str, sign: float, factor: float, found: _Answer) -> Relaxation:
+    def _way(self, kind: str, name: str, sign: float, factor: float, found: _LeastAmount) -> Relaxation:
         assert found.design is not None
         amount, up = abs(factor - 1.0), sign > 0
         change = f"{_percent(amount)} {'more' if up else 'less'}"
@@ -673,7 +673,7 @@ class _Explaining:
             named, name, sense, given, given * factor, unit, amount, design, found.closed, words, patch
         )  # fmt: skip
 
-    def _repinned(self, pin: _Pin, found: _Answer) -> Relaxation | None:
+    def _repinned(self, pin: _Pin, found: _LeastAmount) -> Relaxation | None:
         """Return the way out by another value of what is pinned."""
         assert found.design is not None
         value = found.design.values[pin.name]
@@ -773,7 +773,7 @@ class _Explaining:
         return model.function("shapes", lambda: classify(model, *declared_ranges(model, self.catalogs)))
 
     def _changes(
-        self, found: _Answer, signs: Mapping[str, float], rooms: Mapping[str, float], own: Sequence[str]
+        self, found: _LeastAmount, signs: Mapping[str, float], rooms: Mapping[str, float], own: Sequence[str]
     ) -> list[_Change]:
         """Return everything that gives way, with its value there."""
         assert found.design is not None
@@ -876,7 +876,7 @@ class _Explaining:
         """Tell whether a design is one of the question with a patch."""
         asked = self._with(patch)
         try:
-            problem = posed(nominal(asked.problem), asked.robust, asked.limits)
+            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
             instance = Instance(replace(asked, problem=problem))
             design = self._as_asked(found, patch)
             instance.combinations.number(design)
@@ -905,7 +905,7 @@ class _Explaining:
         own = replace(found, frame=replace(found.frame, kinds=kinds))
         asked, problem = self._with(patch or {}), self.instance.problem
         if patch is not None:
-            problem = posed(nominal(asked.problem), asked.robust, asked.limits)
+            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
         return evaluate(problem, asked.requirements, own, catalogs=asked.catalogs, limits=asked.limits)
 
 

@@ -94,7 +94,7 @@ class Prices:
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""
         table = csv_text(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
-        store = Store(None, self.fingerprint)
+        store = PriceStore(None, self.fingerprint)
         self._enter(store)
         return {"prices.csv": table, RECORD: store.text()}
 
@@ -105,7 +105,7 @@ class Prices:
         designs that are finished are kept, and goes to the folder when it is finished.
         """
         target = Path(folder)
-        store = Store.of(target, self.fingerprint)
+        store = PriceStore.of(target, self.fingerprint)
         self._enter(store)
         files = {**self.files(), RECORD: store.text()}
         if self.interrupted and store.folder != target:
@@ -116,12 +116,12 @@ class Prices:
             shutil.rmtree(store.folder, ignore_errors=True)  # all of it stands in the result now
         return place
 
-    def _enter(self, store: Store) -> None:
+    def _enter(self, store: PriceStore) -> None:
         for rank in self.finished:
             store.known[rank] = [asdict(row) for row in self.rows if row.design == rank]
 
 
-class Store:
+class PriceStore:
     """Prices of finished designs, kept in a folder; without one nothing is kept."""
 
     def __init__(self, folder: Path | None, fingerprint: str) -> None:
@@ -131,7 +131,7 @@ class Store:
         self.begun = earlier is not None
 
     @classmethod
-    def of(cls, folder: Path | None, fingerprint: str) -> Store:
+    def of(cls, folder: Path | None, fingerprint: str) -> PriceStore:
         """Return the store of a question: its folder, or one beside the prices of another question."""
         if folder is None:
             return cls(None, fingerprint)

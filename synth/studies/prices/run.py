@@ -38,7 +38,7 @@ from synth.studies.prices.price_list import (
     WITHHELD,
     Price,
     Prices,
-    Store,
+    PriceStore,
     percent,
     told,
 )
@@ -99,7 +99,7 @@ def prices(
     own = hash_of([FORMAT, digest, share, instance.fingerprint().whole])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
-        store = Store.of(place, own)
+        store = PriceStore.of(place, own)
         return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
@@ -145,7 +145,7 @@ class _Pricing:
 
     # -- the run -------------------------------------------------------------------------------
 
-    def run(self, designs: Sequence[Design], store: Store) -> Prices:
+    def run(self, designs: Sequence[Design], store: PriceStore) -> Prices:
         """Price the designs one after the other; what is finished when time is over is kept."""
         rows: list[Price] = []
         interrupted, kept = "", 0

@@ -18,12 +18,12 @@ import numpy as np
 from synth.deadline import Stopped
 from synth.errors import InputError
 from synth.parametric.joint_question import alike, different, groups_of
-from synth.parametric.joint_search import TogetherSearch, Wider
+from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search.question import Question
 from synth.studies.whatif.steps import Steps
-from synth.studies.whatif.study import Break, Composition, Step, best_design
+from synth.studies.whatif.study import Break, Composition, StudyStep, best_design
 from synth.studies.whatif.vary import Value
 from synth.study_limits import BREAKS, BreakLimits
 
@@ -48,7 +48,7 @@ class Kept(Protocol):
 def find_breaks(
     steps: Steps,
     along: int,
-    answered: Sequence[Step],
+    answered: Sequence[StudyStep],
     found: list[Break],
     kept: Kept,
     left: Left,
@@ -63,7 +63,7 @@ def find_breaks(
     steps : Steps
     along : int
         The position of the number that is varied.
-    answered : list of Step
+    answered : list of StudyStep
         All steps, answered.
     found : list of Break
         Filled as breaks are found, some intervals at a time, so that they stay where time is over.
@@ -92,9 +92,9 @@ def find_breaks(
             found += breaks
 
 
-def _pairs(along: int, answered: Sequence[Step]) -> list[tuple[Step, Step]]:
+def _pairs(along: int, answered: Sequence[StudyStep]) -> list[tuple[StudyStep, StudyStep]]:
     """Return the steps that are neighbours along a number, the other value being the same."""
-    groups: dict[tuple[Value, ...], list[Step]] = {}
+    groups: dict[tuple[Value, ...], list[StudyStep]] = {}
     for step in answered:
         groups.setdefault(_others(step, along), []).append(step)
     result = []
@@ -104,7 +104,7 @@ def _pairs(along: int, answered: Sequence[Step]) -> list[tuple[Step, Step]]:
     return result
 
 
-def _others(step: Step, along: int) -> tuple[Value, ...]:
+def _others(step: StudyStep, along: int) -> tuple[Value, ...]:
     return tuple(v for k, v in enumerate(step.values) if k != along)
 
 
@@ -148,9 +148,9 @@ class _Oracle:
         self.places: Iterable[tuple[Value, ...]] = ()  # the values at the steps
         self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
         self.moving = different([q.instance for q in steps.questions])
-        self.wider: dict[Any, Wider] = {}  # by what questions have in common
+        self.wider: dict[Any, SharedBounds] = {}  # by what questions have in common
 
-    def breaks(self, pairs: Sequence[tuple[Step, Step]]) -> list[list[Break]]:
+    def breaks(self, pairs: Sequence[tuple[StudyStep, StudyStep]]) -> list[list[Break]]:
         """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
         found: list[list[Break]] = [[] for _ in pairs]
         self.places = dict.fromkeys(step.values for pair in pairs for step in pair)
@@ -187,7 +187,7 @@ class _Oracle:
             own = [w for w in new if (w.objective, w.values) in position]
             ideas = list(self.ideas.get(own[0].objective, {}).values())
             questions = [posed[places[k]] for k in group]
-            search = TogetherSearch(questions, self.workers, None, self.left(), ideas, self._wider(questions[0]))
+            search = JointSearch(questions, self.workers, None, self.left(), ideas, self._wider(questions[0]))
             self._together(search, own, [position[w.objective, w.values] for w in own])
         for w in new:
             if w not in self.known:
@@ -195,12 +195,12 @@ class _Oracle:
                 proven = front is None or front.certificate.kind == "global"
                 self._take(w, _Best(best_design(front, w.objective), proven))
 
-    def _wider(self, question: Question) -> Wider:
+    def _wider(self, question: Question) -> SharedBounds:
         """Return what holds for all values between the steps, for questions like one."""
         common = alike(question)
         if common not in self.wider:
             ends = [q for q in self._at_steps(next(iter(question.chosen))) if alike(q) == common]
-            self.wider[common] = Wider([question, *ends], self.moving)
+            self.wider[common] = SharedBounds([question, *ends], self.moving)
         return self.wider[common]
 
     def _at_steps(self, objective: str) -> Iterator[Question]:
@@ -210,7 +210,7 @@ class _Oracle:
             with suppress(InputError):
                 yield self._question(_Wanted(objective, values))
 
-    def _together(self, search: TogetherSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
+    def _together(self, search: JointSearch, wanted: Sequence[_Wanted], positions: Sequence[int]) -> None:
         """Take what can be answered together."""
         best = [(w, k) for w, k in zip(wanted, positions, strict=True) if not w.alone]
         if best:
@@ -260,7 +260,7 @@ Asking = Generator[list[_Wanted], None, Any]  # a search that yields what it wan
 class _Between:
     """The breaks of one objective between two steps."""
 
-    def __init__(self, oracle: _Oracle, objective: str, one: Step, two: Step) -> None:
+    def __init__(self, oracle: _Oracle, objective: str, one: StudyStep, two: StudyStep) -> None:
         self.oracle, self.objective, self.one, self.two = oracle, objective, one, two
         self.sign = 1.0 if oracle.senses[objective] == "min" else -1.0
         self.low, self.high = (float(s.values[oracle.along]) for s in (one, two))  # type: ignore[arg-type]
@@ -377,7 +377,7 @@ def _words(design: Design) -> str:
 # ---- weights --------------------------------------------------------------------------------------------------------
 
 
-def weight_breaks(steps: Steps, along: int, answered: Sequence[Step], limits: BreakLimits = BREAKS) -> list[Break]:
+def weight_breaks(steps: Steps, along: int, answered: Sequence[StudyStep], limits: BreakLimits = BREAKS) -> list[Break]:
     """Return the weights at which another design comes first; the designs of a front do not depend on weights."""
     result: list[Break] = []
     for one, two in _pairs(along, answered):
@@ -396,7 +396,7 @@ def _leaders(
     name: str,
     low: float,
     high: float,
-    step: Step,
+    step: StudyStep,
     along: int,
     result: list[Break],
     limits: BreakLimits,

@@ -29,7 +29,7 @@ from synth.search.question import Question
 from synth.studies.study_store import FORMAT, RECORD, StudyStore
 from synth.studies.whatif.break_points import find_breaks, weight_breaks
 from synth.studies.whatif.steps import Steps
-from synth.studies.whatif.study import Break, Step, Study
+from synth.studies.whatif.study import Break, Study, StudyStep
 from synth.tuning import TUNING, Tuning
 
 INTERRUPTED = "interrupted"
@@ -144,7 +144,7 @@ class _Run:
         self.alone = [_fingerprint(question, rater) for question, rater in asked]
         weighted = any(x.kind == "weight" for x in steps.varied)
         self.unweighted = [_fingerprint(q, r, weights=False) for q, r in asked] if weighted else self.alone
-        self.answered: list[Step] = []
+        self.answered: list[StudyStep] = []
         self.same_but_weights: dict[str, ParetoFront] = {}
         self.fingerprints: list[str] = []
         self.stored: list[ParetoFront | None] = []  # answers of an earlier run, by position
@@ -168,7 +168,7 @@ class _Run:
         except KeyboardInterrupt:
             stopped = INTERRUPTED
         rest = [
-            Step(k + 1, values, None, stopped=stopped)
+            StudyStep(k + 1, values, None, stopped=stopped)
             for k, values in enumerate(self.steps.values)
             if k >= len(self.answered)
         ]
@@ -201,7 +201,7 @@ class _Run:
                 found = dict(zip(group, answers, strict=True))
                 self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
 
-    def _answer(self, position: int) -> Step:
+    def _answer(self, position: int) -> StudyStep:
         number, values, question = position + 1, self.steps.values[position], self.questions[position]
         own, unweighted = self.fingerprints[position], self.unweighted[position]
         front = self.stored[position]
@@ -216,7 +216,7 @@ class _Run:
             front = front_of_record(json.loads(json.dumps(record, allow_nan=False)), Path(RECORD))
         front = replace(front, question=self._asked(position, front).instance, record=None, folder=None)
         self.same_but_weights.setdefault(unweighted, front)
-        return Step(number, values, front, own)
+        return StudyStep(number, values, front, own)
 
     def _search(self, position: int, front: ParetoFront | None) -> ParetoFront:
         """Return the front of a step; ``front`` is that found together with others, not rated yet."""

@@ -18,7 +18,7 @@ from synth.question.settings import SearchSettings
 from synth.question.uncertainty import RATE, Uncertainty, name_in_block, read_remaining
 from synth.question.user_limits import SENSES
 from synth.results import Design
-from synth.robust.counterpart import posed
+from synth.robust.counterpart import robust_counterpart
 from synth.robust.rating import Rater
 from synth.robust.uncertainty import check_rows
 from synth.search.question import Question, pose
@@ -194,7 +194,7 @@ class Steps:
         """Return a question; limits that are posed alike at several steps are traced once."""
         key = asked.problem, repr((asked.robust, asked.limits))
         if key not in self._with_limits:
-            self._with_limits[key] = posed(asked.problem, asked.robust, asked.limits)
+            self._with_limits[key] = robust_counterpart(asked.problem, asked.robust, asked.limits)
         return pose(asked, settings.within(None), self._with_limits[key], self.tuning)
 
     def stated(self, values: Sequence[Value]) -> str:

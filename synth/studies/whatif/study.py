@@ -33,7 +33,7 @@ NOT_REACHED = "not reached"
 
 
 @dataclass(frozen=True)
-class Step:
+class StudyStep:
     """The question at some values, and its answer; ``front`` is None where the study was stopped before."""
 
     number: int
@@ -156,7 +156,7 @@ class Study:
     """
 
     varied: tuple[Varied, ...]
-    steps: tuple[Step, ...]
+    steps: tuple[StudyStep, ...]
     breaks: tuple[Break, ...]
     along: int | None
     interrupted: str = ""
@@ -389,7 +389,7 @@ class Study:
         more = f" and {len(empty) - MOST_MISSED} more" if len(empty) > MOST_MISSED else ""
         return [f"{NO_DESIGN}: {shown}{more}"]
 
-    def _with_designs(self) -> list[Step]:
+    def _with_designs(self) -> list[StudyStep]:
         return [s for s in self.steps if s.front is not None and s.front.designs]
 
     def _words(self, k: int, group: Sequence[Value]) -> str:
@@ -455,7 +455,7 @@ def best_design(front: ParetoFront | None, objective: str) -> Design | None:
     return min(front.designs, key=lambda d: sign * d.values[objective])
 
 
-def _lines(single: bool, steps: Sequence[Step | None], name: str) -> dict[str, list[float]]:
+def _lines(single: bool, steps: Sequence[StudyStep | None], name: str) -> dict[str, list[float]]:
     """Return the lines of one objective: best and, where there is room, leading and worst design of each front."""
     fronts = [None if s is None or s.front is None or not s.front.designs else s.front for s in steps]
     best = [math.nan if f is None else _value(best_design(f, name), name) for f in fronts]
