@@ -39,67 +39,67 @@ class JointHeuristics:
         # Where to look first: variables, by the combination that they are of in any question.
         self.starts: dict[int, np.ndarray] = {}
 
-    def first(self, purpose: BestPerScenario, pool: Boxes) -> None:
+    def first(self, rule: BestPerScenario, pool: Boxes) -> None:
         """Look for good designs of every question: beside the best of each, and with what is good in any other.
 
         ``pool``: boxes that hold everything.
         """
-        self.recalled(purpose)
-        if not len(purpose.known):
-            self._anywhere(purpose)
+        self.recalled(rule)
+        if not len(rule.known):
+            self._anywhere(rule)
         for effort in self.limits.first_boxes:
-            if not len(purpose.known):
-                branch_and_bound(purpose.form, pool, purpose, self.clock, self.rng, effort)
-        self.improve(purpose)
-        if self.thorough and self._further_away(purpose):
-            self.improve(purpose)
+            if not len(rule.known):
+                branch_and_bound(rule.form, pool, rule, self.clock, self.rng, effort)
+        self.improve(rule)
+        if self.thorough and self._further_away(rule):
+            self.improve(rule)
 
-    def recalled(self, purpose: BestPerScenario) -> None:
+    def recalled(self, rule: BestPerScenario) -> None:
         """Try the designs to begin with in every question."""
         combinations, points = np.array(list(self.starts), dtype=np.int64), np.array(list(self.starts.values()))
-        questions = np.repeat(np.flatnonzero(purpose.asked), len(combinations))
+        questions = np.repeat(np.flatnonzero(rule.asked), len(combinations))
         own = np.tile(np.arange(len(combinations)), len(questions) // max(len(combinations), 1))
         if len(combinations):
-            self.tried(purpose, self.codec.joined(questions, combinations[own]), points[own])
+            self.tried(rule, self.codec.joined(questions, combinations[own]), points[own])
 
-    def _anywhere(self, purpose: BestPerScenario) -> None:
+    def _anywhere(self, rule: BestPerScenario) -> None:
         """Try combinations at random, some of each question: where designs are many, one is found soon."""
-        questions, count = np.flatnonzero(purpose.asked), self.limits.anywhere
+        questions, count = np.flatnonzero(rule.asked), self.limits.anywhere
         every = questions[np.arange(count) % len(questions)]
         every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=count)))
-        self.tried(purpose, every, purpose.form.inside(purpose.form.leaves(every), 0.5))
+        self.tried(rule, every, rule.form.inside(rule.form.leaves(every), 0.5))
 
-    def improve(self, purpose: BestPerScenario) -> None:
+    def improve(self, rule: BestPerScenario) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
         elsewhere, made, expanded = set[tuple[int, bytes]](), set[tuple[int, bytes]](), set[tuple[int, int]]()
-        for _ in range(self.limits.rounds if len(purpose.known) else 0):
-            found = self._everywhere(purpose, elsewhere)
-            found += self._everywhere(purpose, made, True) if self.thorough and purpose.form.gridded.any() else 0
-            found += self._beside(purpose, expanded) if purpose.form.n else 0
+        for _ in range(self.limits.rounds if len(rule.known) else 0):
+            found = self._everywhere(rule, elsewhere)
+            found += self._everywhere(rule, made, True) if self.thorough and rule.form.gridded.any() else 0
+            found += self._beside(rule, expanded) if rule.form.n else 0
             if not found:
                 return
 
-    def _everywhere(self, purpose: BestPerScenario, tried: set[tuple[int, bytes]], as_made: bool = False) -> int:
+    def _everywhere(self, rule: BestPerScenario, tried: set[tuple[int, bytes]], as_made: bool = False) -> int:
         """Try known combinations in every question; return how many designs are of use.
 
         ``tried`` are those of earlier rounds. ``as_made``: with the makeable values that they have.
         """
-        questions, known = np.flatnonzero(purpose.asked), purpose.known
+        questions, known = np.flatnonzero(rule.asked), rule.known
         own = self.codec.own(known.combination)
-        made = np.where(purpose.form.gridded & as_made, known.variables, 0.0)
+        made = np.where(rule.form.gridded & as_made, known.variables, 0.0)
         marks = [(int(c), x.tobytes()) for c, x in zip(own, made, strict=True)]
         first = {mark: k for k, mark in reversed(list(enumerate(marks))) if mark not in tried}
         place = np.array(sorted(first.values())[: self.limits.known], dtype=np.int64)
         tried.update(marks[k] for k in place)
         rows = np.tile(place, len(questions))
         every = self.codec.joined(np.repeat(questions, len(place)), own[rows])
-        return self.tried(purpose, every, known.variables[rows], as_made)
+        return self.tried(rule, every, known.variables[rows], as_made)
 
-    def _beside(self, purpose: BestPerScenario, expanded: set[tuple[int, int]]) -> int:
+    def _beside(self, rule: BestPerScenario, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
         # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
-        questions = purpose.known.questions() * self.limits.places // len(self.together.each)
-        own = {(int(q), self.codec.own(c.combination)): c for q, c in zip(questions, purpose.known, strict=True)}
+        questions = rule.known.questions() * self.limits.places // len(self.together.each)
+        own = {(int(q), self.codec.own(c.combination)): c for q, c in zip(questions, rule.known, strict=True)}
         parents = [c for place, c in own.items() if place not in expanded]
         expanded.update(own)
         if not parents:
@@ -110,11 +110,11 @@ class JointHeuristics:
         if len(every) > self.limits.solved:
             chosen = np.sort(self.rng.choice(len(every), self.limits.solved, replace=False))
             every, start = every[chosen], start[chosen]
-        return self.tried(purpose, every, start)
+        return self.tried(rule, every, start)
 
-    def _further_away(self, purpose: BestPerScenario) -> int:
+    def _further_away(self, rule: BestPerScenario) -> int:
         """Exchange two parts at a time of the best design of a few questions; return how many designs are of use."""
-        known, every, start = purpose.known, [np.empty(0, dtype=np.int64)], [np.empty((0, purpose.form.n))]
+        known, every, start = rule.known, [np.empty(0, dtype=np.int64)], [np.empty((0, rule.form.n))]
         limits = self.limits
         for k in np.unique(np.linspace(0, len(known) - 1, limits.far_places).round().astype(int)) if len(known) else ():
             beside = self.codec.neighbours(known.combination[k])
@@ -122,17 +122,15 @@ class JointHeuristics:
             away = np.unique(self.codec.neighbours(some))
             every.append(self.rng.choice(away, min(len(away), limits.solved // limits.far_places), replace=False))
             start.append(np.tile(known.variables[k], (len(every[-1]), 1)))
-        return self.tried(purpose, np.concatenate(every), np.concatenate(start))
+        return self.tried(rule, np.concatenate(every), np.concatenate(start))
 
-    def tried(
-        self, purpose: BestPerScenario, combinations: np.ndarray, start: np.ndarray, as_made: bool = False
-    ) -> int:
+    def tried(self, rule: BestPerScenario, combinations: np.ndarray, start: np.ndarray, as_made: bool = False) -> int:
         """Solve continuous problems and round off the best of each question; return how many designs are of use.
 
         ``as_made``: makeable values stay what they are to begin with.
         """
-        form, k, known = purpose.form, purpose.columns[0], purpose.known
-        seeker = PrimalHeuristics(form, purpose, self.rng, False)
+        form, k, known = rule.form, rule.columns[0], rule.known
+        seeker = PrimalHeuristics(form, rule, self.rng, False)
         keep = form.not_refused(combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
@@ -147,7 +145,7 @@ class JointHeuristics:
         tasks = Tasks(weights, np.zeros_like(weights), caps, form.goal_scales, 0.0)
         found = form.solve_many(tasks, combinations, start, low, high)
         form.learn(tasks, found, np.ones(len(combinations)))
-        better = found.phi[:, k] < purpose.needed()[questions]
+        better = found.phi[:, k] < rule.needed()[questions]
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & better)
         order = good[np.lexsort((found.phi[good, k], questions[good]))]
         question = questions[order]
@@ -161,12 +159,12 @@ class JointHeuristics:
         seeker.settle_best(k, range(k + 1))
         if self.thorough and not as_made:
             # What a combination leaves of the grid may lie far from where it is best without one.
-            left = best[found.phi[best, k] < purpose.needed()[questions[best]]]
+            left = best[found.phi[best, k] < rule.needed()[questions[best]]]
             if len(left):
                 branch_and_bound(
                     form,
                     form.leaves(combinations[left]),
-                    purpose,
+                    rule,
                     self.clock,
                     self.rng,
                     self.limits.settling_boxes * len(left),

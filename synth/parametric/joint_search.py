@@ -74,10 +74,10 @@ class _Attempt:
             rows = asked[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.contracted, form.nlp_solves
-        purpose = BestPerScenario(form, self.known, search._slack(search.sought), asked)
+        rule = BestPerScenario(form, self.known, search._slack(search.sought), asked)
         for _ in range(2):
             self.left = branch_and_bound(
-                form, self.left, purpose, search.clock, search.rng, min(effort, joint.most_boxes)
+                form, self.left, rule, search.clock, search.rng, min(effort, joint.most_boxes)
             ).open
             if not 0 < len(self.left) < joint.nearly_closed * effort:
                 break
@@ -85,7 +85,7 @@ class _Attempt:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
             search.form.contracted += form.contracted - before[0]
             search.form.nlp_solves += form.nlp_solves - before[1]
-        return purpose.open_questions(self.left)
+        return rule.open_questions(self.left)
 
 
 class JointSearch:
@@ -160,9 +160,9 @@ class JointSearch:
         """Return good designs of the questions, of which nothing is proven."""
         self.pool, self.look.thorough = self.form.root(), False
         if len(self.pool):
-            purpose = BestPerScenario(self.form, self.known, self._slack(self.sought), self.told_apart())
-            self.look.recalled(purpose)
-            self.look.improve(purpose)
+            rule = BestPerScenario(self.form, self.known, self._slack(self.sought), self.told_apart())
+            self.look.recalled(rule)
+            self.look.improve(rule)
         return list(self.known)
 
     def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
@@ -234,13 +234,13 @@ class JointSearch:
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
         asked &= self.told_apart()
-        purpose = BestPerScenario(form, known, self._slack(self.sought), asked)
+        rule = BestPerScenario(form, known, self._slack(self.sought), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
-        self.look.tried(purpose, combinations, self._points([design for _, _, design in rows]))
+        self.look.tried(rule, combinations, self._points([design for _, _, design in rows]))
         outcome = branch_and_bound(
-            form, form.leaves(combinations), purpose, self.clock, self.rng, self.joint.given_parts * len(rows)
+            form, form.leaves(combinations), rule, self.clock, self.rng, self.joint.given_parts * len(rows)
         )
-        left = purpose.open_questions(outcome.open)
+        left = rule.open_questions(outcome.open)
         designs = self._designs([(c, ()) for c in known], 0)
         for q, _, _ in rows:
             result[q] = designs.get(q, [None])[0], bool(asked[q] and not left[q])
@@ -407,8 +407,8 @@ class JointSearch:
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
         known.add(*rows_of(chosen))
-        purpose = BestPerScenario(form, known, self._slack(following), asked)
-        self.look.improve(purpose)
-        branch_and_bound(form, self.pool, purpose, self.clock, self.rng, self.joint.tie * len(chosen))
+        rule = BestPerScenario(form, known, self._slack(following), asked)
+        self.look.improve(rule)
+        branch_and_bound(form, self.pool, rule, self.clock, self.rng, self.joint.tie * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]

@@ -61,13 +61,13 @@ class OpenBoxes:
     Parameters
     ----------
     form : Formulation
-    purpose : PruningRule
+    rule : PruningRule
     most : int
         When more boxes wait, those of the lowest level are taken first.
     """
 
-    def __init__(self, form: Formulation, purpose: PruningRule, most: int) -> None:
-        self.form, self.purpose, self.most, self.tree = form, purpose, most, form.tuning.tree
+    def __init__(self, form: Formulation, rule: PruningRule, most: int) -> None:
+        self.form, self.rule, self.most, self.tree = form, rule, most, form.tuning.tree
         self.levels: list[list[Boxes]] = [[] for _ in range(self.tree.levels)]
         self.counts = np.zeros(self.tree.levels, dtype=np.int64)
 
@@ -76,11 +76,11 @@ class OpenBoxes:
 
     def add(self, boxes: Boxes) -> None:
         """Take boxes; those of no use are dropped."""
-        room = self.purpose.room(self.form.phi_of(boxes.bounds), boxes.cell)
+        room = self.rule.room(self.form.phi_of(boxes.bounds), boxes.cell)
         useful = room > 0
         boxes, room = boxes.take(useful), room[useful]
         with np.errstate(all="ignore"):
-            doublings = np.log2(room / float(self.purpose.slack.min()))
+            doublings = np.log2(room / float(self.rule.slack.min()))
         highest = self.tree.levels - 1
         level = np.clip(
             np.nan_to_num(self.tree.levels_per_doubling * doublings, nan=highest, posinf=highest), 0, highest
@@ -129,7 +129,7 @@ class OpenBoxes:
 def best_first(
     form: Formulation,
     boxes: Boxes,
-    purpose: TabledPruningRule,
+    rule: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
     effort: SearchEffort,
@@ -139,7 +139,7 @@ def best_first(
 
     Parameters
     ----------
-    form, boxes, purpose, clock, rng
+    form, boxes, rule, clock, rng
         As for :func:`synth.search.branch_and_bound.cover`.
     effort : SearchEffort
     over : callable, optional
@@ -152,11 +152,11 @@ def best_first(
     """
     end = time.monotonic() + effort.seconds
     over = (lambda: time.monotonic() > end) if over is None else over
-    every = reaches_beyond(purpose, form.bounded)
+    every = reaches_beyond(rule, form.bounded)
     form.focus()
-    seeker, looked, spent = PrimalHeuristics(form, purpose, rng, every), 0, False
+    seeker, looked, spent = PrimalHeuristics(form, rule, rng, every), 0, False
     boxes = boxes if every else form.lean(boxes)
-    waiting, stuck = OpenBoxes(form, purpose, effort.most_waiting), boxes.take(slice(0, 0))
+    waiting, stuck = OpenBoxes(form, rule, effort.most_waiting), boxes.take(slice(0, 0))
     waiting.add(boxes)
     least, idle, mark = waiting.progress(), 0, effort.spell
     while len(waiting):
@@ -170,9 +170,9 @@ def best_first(
             idle, least = (idle + 1, least) if closed is None else (0, closed)
             if idle >= effort.patience or len(stuck) > effort.most_stuck:
                 break
-        children, small, seen = further(form, waiting.next(), purpose, seeker, every, np.inf)
+        children, small, seen = further(form, waiting.next(), rule, seeker, every, np.inf)
         looked += seen
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck
     left = Boxes.joined([stuck, *waiting.batches])
-    return TreeOutcome(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)
+    return TreeOutcome(left.take(rule.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)

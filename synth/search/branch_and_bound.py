@@ -41,7 +41,7 @@ class TreeOutcome:
 def branch_and_bound(
     form: Formulation,
     boxes: Boxes,
-    purpose: TabledPruningRule,
+    rule: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
     effort: float = np.inf,
@@ -54,7 +54,7 @@ def branch_and_bound(
     form : Formulation
     boxes : Boxes
         Where to search.
-    purpose : TabledPruningRule
+    rule : TabledPruningRule
         Feasible designs go there, and into the archive of the formulation.
     clock : Clock
     rng : Generator
@@ -67,44 +67,44 @@ def branch_and_bound(
     -------
     Covered
     """
-    tree, every = form.tuning.tree, reaches_beyond(purpose, form.bounded)
+    tree, every = form.tuning.tree, reaches_beyond(rule, form.bounded)
     form.focus()
-    seeker, looked = PrimalHeuristics(form, purpose, rng, every), 0
+    seeker, looked = PrimalHeuristics(form, rule, rng, every), 0
     boxes = boxes if every else form.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck = nothing, [boxes], nothing
     while (len(queue) or fresh) and looked <= effort:
         if not len(queue):
-            queue = _most_open(form, _latest(fresh, tree.generation), purpose)
+            queue = _most_open(form, _latest(fresh, tree.generation), rule)
             if not len(queue):
                 continue
         clock.check([queue, *fresh, stuck])
         if enough is not None and len(form.archive) > enough:
             return TreeOutcome(Boxes.joined([queue, *fresh, stuck]), looked, True)
         batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
-        children, small, seen = further(form, batch, purpose, seeker, every, effort - looked)
+        children, small, seen = further(form, batch, rule, seeker, every, effort - looked)
         looked += seen
         if len(small):
             stuck = Boxes.joined([stuck, small])
         if len(children):
             fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
-    return TreeOutcome(left.take(purpose.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+    return TreeOutcome(left.take(rule.room(form.phi_of(left.bounds), left.cell) > 0), looked)
 
 
 def further(
-    form: Formulation, batch: Boxes, purpose: TabledPruningRule, seeker: PrimalHeuristics, every: bool, effort: float
+    form: Formulation, batch: Boxes, rule: TabledPruningRule, seeker: PrimalHeuristics, every: bool, effort: float
 ) -> tuple[Boxes, Boxes, int]:
     """Tighten boxes, look for designs in them and split them.
 
     Parameters
     ----------
-    form, purpose
+    form, rule
         As for :func:`branch_and_bound`.
     batch : Boxes
     seeker : PrimalHeuristics
     every : bool
-        Whether the purpose speaks of more than the first objectives.
+        Whether the rule speaks of more than the first objectives.
     effort : float
         Boxes that may be looked into.
 
@@ -114,8 +114,8 @@ def further(
         What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
     """
     looked, none = len(batch), batch.take(slice(0, 0))
-    batch = form.contract(batch, purpose.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
-    batch = batch.take(purpose.room(form.phi_of(batch.bounds), batch.cell) > 0)
+    batch = form.contract(batch, rule.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
+    batch = batch.take(rule.room(form.phi_of(batch.bounds), batch.cell) > 0)
     if not len(batch):
         return none, none, looked
     seeker.look(batch)
@@ -125,7 +125,7 @@ def further(
         batch, small = form.split(batch)
         if len(small):
             stuck.append(seeker.settle(small))
-    grown = _grown(form, batch, purpose, seeker, effort - looked) if not every else None
+    grown = _grown(form, batch, rule, seeker, effort - looked) if not every else None
     if grown is not None:
         looked += grown.looked
         batch = grown.halves
@@ -135,13 +135,13 @@ def further(
 
 
 def _grown(
-    form: Formulation, boxes: Boxes, purpose: TabledPruningRule, seeker: PrimalHeuristics, effort: float
+    form: Formulation, boxes: Boxes, rule: TabledPruningRule, seeker: PrimalHeuristics, effort: float
 ) -> Subtrees | None:
     """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
     levels = form.tuning.tree.generations
     if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
         return None
-    tables = purpose.tables(form)
+    tables = rule.tables(form)
     return None if tables is None else form.grow(boxes, tables, levels)
 
 
@@ -160,13 +160,13 @@ def best(
 
     Designs of the archive of the formulation, and ``start``, are known already.
     """
-    purpose = EpsilonCover([column], np.array([slack]), plain, form.new_archive([column]))
+    rule = EpsilonCover([column], np.array([slack]), plain, form.new_archive([column]))
     if len(form.archive):
-        purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
+        rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
-        purpose.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
-    found = branch_and_bound(form, boxes, purpose, clock, rng, effort)
-    return (purpose.known[0] if len(purpose.known) else None), found
+        rule.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
+    found = branch_and_bound(form, boxes, rule, clock, rng, effort)
+    return (rule.known[0] if len(rule.known) else None), found
 
 
 def _latest(fresh: list[Boxes], generation: int) -> Boxes:
@@ -182,13 +182,13 @@ def _latest(fresh: list[Boxes], generation: int) -> Boxes:
     return Boxes.joined(taken[::-1])
 
 
-def _most_open(form: Formulation, waiting: Boxes, purpose: PruningRule) -> Boxes:
+def _most_open(form: Formulation, waiting: Boxes, rule: PruningRule) -> Boxes:
     """Return boxes with most room first; covered ones are dropped."""
     lower = form.phi_of(waiting.bounds)
-    space = purpose.room(lower, waiting.cell)
+    space = rule.room(lower, waiting.cell)
     keep = np.flatnonzero(space > 0)
     # While no design is known, all room is infinite; then low bounds promise most.
-    low = lower[:, purpose.columns].mean(axis=1)
+    low = lower[:, rule.columns].mean(axis=1)
     key = np.where(np.isfinite(space), -space, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
     order = keep[np.argsort(key, kind="stable")] if len(keep) > form.tuning.tree.batch else keep
     return waiting.take(order)

@@ -106,7 +106,7 @@ class FrontSearch:
         self.scalar_problems = 0
         self.solves_to_find: int | None = None  # of the designs listed; settling ties and prices come after
         self.open_combinations = float(instance.combinations.count)
-        self.purpose = self._purpose(None)
+        self.rule = self._rule(None)
         self.covering: EpsilonCover | None = None  # the finest cover that is finished
         self.under_way: np.ndarray | None = None  # the slack of the tree that is under way, if it speaks of all designs
         self.stairs: NonImprovement | None = None  # the proof of designs that is under way
@@ -128,7 +128,7 @@ class FrontSearch:
         form.workers = self.workers
         return form
 
-    def _purpose(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> EpsilonCover:
+    def _rule(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> EpsilonCover:
         """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
         form = self.form
         slack = np.maximum(form.slack(self.gap, ranges)[: self.m], least)
@@ -250,7 +250,7 @@ class FrontSearch:
         self.bounds += self.bounded_meanwhile
         if self.reporting and self.closed:
             # The designs stand; only what the objectives do not see is left as it is.
-            self.bounds.append(Bound(self.purpose.slack, np.empty((0, self.m))))
+            self.bounds.append(Bound(self.rule.slack, np.empty((0, self.m))))
             self.closed = self.exhausted = self.complete = False
             return
         self._note_open()
@@ -289,7 +289,7 @@ class FrontSearch:
         least = gap * self._sizes()
         if self.m > 1:
             # The range of a few designs may be less than that of the front they were chosen from.
-            least = np.maximum(least, self.purpose.slack + ROOM)
+            least = np.maximum(least, self.rule.slack + ROOM)
         amounts = least * form.goal_scales[: self.m]
         return {
             name: rounded_up(float(amounts[k]), self.instance.model.units[name])
@@ -353,23 +353,23 @@ class FrontSearch:
             self._begin_again(conflict=True)
             found, outcome, slack = self._best_within(k, plain, found, self.effort)
         if not outcome.closed and effort is None:
-            purpose = self._for_best(k, plain, slack, found)
-            left = self._close(outcome.open, purpose)
-            while not len(left) and (finer := self._finer(k, slack, purpose.known)) is not None:
+            rule = self._for_best(k, plain, slack, found)
+            left = self._close(outcome.open, rule)
+            while not len(left) and (finer := self._finer(k, slack, rule.known)) is not None:
                 slack = finer
-                purpose = self._for_best(k, plain, slack, purpose.known[0])
-                left = self._close(self.pool, purpose)
-            found = purpose.known[0] if len(purpose.known) else None
+                rule = self._for_best(k, plain, slack, rule.known[0])
+                left = self._close(self.pool, rule)
+            found = rule.known[0] if len(rule.known) else None
         elif before == 0 and found is None:
             self.open_combinations = 0.0
         return found
 
     def _for_best(self, k: int, plain: np.ndarray, slack: float, known: Candidate | None) -> EpsilonCover:
         """Return the search for the design that is best in one objective."""
-        purpose = EpsilonCover([k], np.array([slack]), plain, self.form.new_archive([k]))
+        rule = EpsilonCover([k], np.array([slack]), plain, self.form.new_archive([k]))
         if known is not None:
-            purpose.take(*rows_of([known]))
-        return purpose
+            rule.take(*rows_of([known]))
+        return rule
 
     def _best_within(
         self, k: int, plain: np.ndarray, start: Candidate | None, effort: float
@@ -407,7 +407,7 @@ class FrontSearch:
         self.under_way = slack
         self.clock.open, self.clock.beyond = [], ()
 
-    def _close(self, left: Boxes, purpose: TabledPruningRule) -> Boxes:
+    def _close(self, left: Boxes, rule: TabledPruningRule) -> Boxes:
         """Go on with boxes that a first effort has left open; return what stays open, and note what is proven then.
 
         Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
@@ -415,37 +415,37 @@ class FrontSearch:
         """
         solved = False
         if self.thorough and len(left):
-            solved = self._solve_few(left, purpose)
-            left = self._go_on(left, purpose)
+            solved = self._solve_few(left, rule)
+            left = self._go_on(left, rule)
         if not len(left):
             return left
         self.closed = False
         self.unresolved += len(left)
-        if self.thorough and not solved and not self._solve_few(left, purpose):
+        if self.thorough and not solved and not self._solve_few(left, rule):
             seed, trials = self.settings.seed, self.tuning.heuristics.parts.trials
             journal = study_file(self.instance, self.chosen, seed, self.tuning)
             self._say("parts", 0.0, BEGUN_ANEW if passed_over(journal) else "")
-            self.outer_trials += sample_parts(self.form, left, purpose, self.clock, journal, seed, trials)
+            self.outer_trials += sample_parts(self.form, left, rule, self.clock, journal, seed, trials)
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
-        if len(purpose.columns) == self.m:
-            self.bounds.append(Bound(purpose.slack, self.form.phi_of(left.bounds)[:, : self.m]))
+        if len(rule.columns) == self.m:
+            self.bounds.append(Bound(rule.slack, self.form.phi_of(left.bounds)[:, : self.m]))
         return left
 
-    def _solve_few(self, boxes: Boxes, purpose: PruningRule) -> bool:
+    def _solve_few(self, boxes: Boxes, rule: PruningRule) -> bool:
         """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
         combinations = self.form.cells.all_members(boxes.cell, self.limits.few_combinations + 1)
         few = len(combinations) <= self.limits.few_combinations
         if few:
-            solve_everywhere(self.form, combinations, purpose, self.clock, self.rng)
+            solve_everywhere(self.form, combinations, rule, self.clock, self.rng)
         return few
 
-    def _go_on(self, left: Boxes, purpose: TabledPruningRule) -> Boxes:
+    def _go_on(self, left: Boxes, rule: TabledPruningRule) -> Boxes:
         """Go on with boxes while they keep closing and there is time; return what stays open."""
-        self._begin_tree(purpose.slack if len(purpose.columns) == self.m else None)
+        self._begin_tree(rule.slack if len(rule.columns) == self.m else None)
         begun = time.monotonic()
         effort = replace(self.limits.further, seconds=self.budget)
-        outcome = best_first(self.form, left, purpose, self.clock, self.rng, effort)
+        outcome = best_first(self.form, left, rule, self.clock, self.rng, effort)
         self.budget -= time.monotonic() - begun
         self.budget_spent |= outcome.spent
         self.looked += outcome.looked
@@ -460,13 +460,13 @@ class FrontSearch:
             self.front, self.complete = known, self.closed
         elif known:
             phi = np.array([c.phi for c in known])
-            self.purpose = self._purpose(ranges(phi))
+            self.rule = self._rule(ranges(phi))
 
     # -- the front -----------------------------------------------------------------------------
 
     def _coarse(self) -> None:
         """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
-        if self.recalled and warm_start(self.form, self.purpose, self.recalled, self.rng):
+        if self.recalled and warm_start(self.form, self.rule, self.recalled, self.rng):
             # For one objective little is left to look for, where what is worth splitting is known as well.
             if self.m > 1 or not self.taught:
                 self._seek(self._fine())
@@ -486,12 +486,12 @@ class FrontSearch:
         if conflict:
             self.form.propagation.taught_by(known.propagation.lessons())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
-        self.purpose = self._purpose(None)
+        self.rule = self._rule(None)
         self._set_pool()
 
     def _look_round(self) -> bool:
         """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
-        coarse = self._with_slack(self.purpose.slack * max(self.limits.coarse / self.gap, 1.0))
+        coarse = self._with_slack(self.rule.slack * max(self.limits.coarse / self.gap, 1.0))
         outcome = self._covered(coarse, self.limits.first_boxes if self.m == 1 else self.limits.coarse_boxes)
         if not len(self.form.archive) and not outcome.closed and self.m == 1:
             outcome = self._covered(coarse, self.limits.coarse_boxes)
@@ -523,12 +523,12 @@ class FrontSearch:
     def _dive(self) -> bool:
         """Look for more where few designs are known; tell whether they are still few, but not none."""
         if not len(self.form.archive):
-            self._covered(self._with_slack(self.purpose.slack), min(self.effort, self.limits.whole_front), enough=0)
+            self._covered(self._with_slack(self.rule.slack), min(self.effort, self.limits.whole_front), enough=0)
         if not 0 < len(self.form.archive) < self.tuning.heuristics.seeker.scarce:
             return False
         if self.in_conflict:
             self._begin_again(conflict=False)
-        large_neighbourhood_search(self.form, self.purpose.columns, self.purpose.slack, self.clock, self.rng)
+        large_neighbourhood_search(self.form, self.rule.columns, self.rule.slack, self.clock, self.rng)
         self._seek(self._fine())
         return len(self.form.archive) < self.tuning.heuristics.seeker.scarce
 
@@ -536,40 +536,40 @@ class FrontSearch:
         """Return the cover that is as fine as the points asked for need, at most as the gap."""
         phi = self.form.archive.phi[:, : self.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.m)
-        return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.purpose.slack))
+        return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.rule.slack))
 
-    def _seek(self, purpose: EpsilonCover) -> None:
+    def _seek(self, rule: EpsilonCover) -> None:
         """Look for designs beside those that are known."""
-        PrimalHeuristics(self.form, purpose, self.rng, False).beside(self.clock)
+        PrimalHeuristics(self.form, rule, self.rng, False).beside(self.clock)
 
     def _with_slack(self, slack: np.ndarray) -> EpsilonCover:
-        return EpsilonCover(self.purpose.columns, slack, self.purpose.plain, self.form.archive)
+        return EpsilonCover(self.rule.columns, slack, self.rule.plain, self.form.archive)
 
-    def _covered(self, purpose: EpsilonCover, effort: float, enough: int | None = None) -> TreeOutcome:
+    def _covered(self, rule: EpsilonCover, effort: float, enough: int | None = None) -> TreeOutcome:
         """Cover everything with one slack; if the time runs out, the boxes that are open tell what is proven."""
-        self._begin_tree(purpose.slack)
-        outcome = branch_and_bound(self.form, self.pool, purpose, self.clock, self.rng, effort, enough)
-        return self._noted(purpose, outcome)
+        self._begin_tree(rule.slack)
+        outcome = branch_and_bound(self.form, self.pool, rule, self.clock, self.rng, effort, enough)
+        return self._noted(rule, outcome)
 
-    def _in_steps(self, purpose: EpsilonCover) -> TreeOutcome:
+    def _in_steps(self, rule: EpsilonCover) -> TreeOutcome:
         """Cover everything with one slack, one objective capped step by step."""
-        self._begin_tree(purpose.slack)
+        self._begin_tree(rule.slack)
         return self._noted(
-            purpose, cover_by_epsilon_constraint(self.form, self.pool, purpose, self.clock, self.rng, self.effort)
+            rule, cover_by_epsilon_constraint(self.form, self.pool, rule, self.clock, self.rng, self.effort)
         )
 
-    def _noted(self, purpose: EpsilonCover, outcome: TreeOutcome) -> TreeOutcome:
+    def _noted(self, rule: EpsilonCover, outcome: TreeOutcome) -> TreeOutcome:
         """Count the boxes; what is covered with one slack stays known if the time runs out later."""
         self.under_way = None
         self.looked += outcome.looked
         if outcome.closed:
-            self.covering = purpose
-            self.bounds.append(Bound(purpose.slack, np.empty((0, self.m))))
+            self.covering = rule
+            self.bounds.append(Bound(rule.slack, np.empty((0, self.m))))
         return outcome
 
-    def _multiple(self, purpose: EpsilonCover) -> float:
+    def _multiple(self, rule: EpsilonCover) -> float:
         """Return the slack of a cover in units of the slack that the gap stands for."""
-        return float(np.max(purpose.slack / self.purpose.slack))
+        return float(np.max(rule.slack / self.rule.slack))
 
     def _choose(self) -> None:
         """Choose the designs to return and prove them; where too few are known, look for more until nothing is left."""
@@ -581,7 +581,7 @@ class FrontSearch:
             if not self.closed or self.complete or self._proven_at_gap() or self._prove():
                 break
         if self.closed and not self.complete and len(self.front) < self.points:
-            covered = self._proven_at_gap() if self.by_steps else self._covered(self.purpose, self.limits.boxes).closed
+            covered = self._proven_at_gap() if self.by_steps else self._covered(self.rule, self.limits.boxes).closed
             if covered:
                 # Now each design stands that no known one beats, also those that were found meanwhile.
                 self.front = self._polished(self._more_than_asked)
@@ -622,17 +622,17 @@ class FrontSearch:
         """Tell whether the designs of the front cover all that are known."""
         listed = np.array([c.phi[: self.m] for c in self.front])
         known = self.form.archive.phi[:, : self.m]
-        covered = np.all(listed[None, :, :] - self.purpose.slack <= known[:, None, :], axis=2).any(axis=1)
+        covered = np.all(listed[None, :, :] - self.rule.slack <= known[:, None, :], axis=2).any(axis=1)
         return bool(covered.all())
 
     def _rescale(self) -> None:
         """Measure the gap of objectives that can be zero against their range on this front."""
         phi = np.array([c.phi for c in self.front])
         needed = self.form.slack(self.gap, ranges(phi))[: self.m]
-        too_wide = needed < self.purpose.slack
+        too_wide = needed < self.rule.slack
         if np.any(too_wide):
             # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
-            self.purpose.slack = np.where(too_wide, self.limits.margin * needed, self.purpose.slack)
+            self.rule.slack = np.where(too_wide, self.limits.margin * needed, self.rule.slack)
             self.proven_designs.clear()
 
     def _proven_at_gap(self) -> bool:
@@ -641,7 +641,7 @@ class FrontSearch:
     def _polished(self, most: int) -> list[Candidate]:
         """Return designs that spread over the front, at most so many, each made as good as its parts allow."""
         form, archive, done = self.form, self.form.archive, set[bytes]()
-        polish_extremes(form, self.m, float(self.purpose.slack.max()))
+        polish_extremes(form, self.m, float(self.rule.slack.max()))
         for _ in range(self.limits.polishings):
             rough = [c for c in self._spread(list(archive), most) if c.phi[: self.m].tobytes() not in done]
             if not rough:
@@ -656,7 +656,7 @@ class FrontSearch:
         known, effort = self.form.archive.phi, self.limits.fill + self.looked
         if self.by_steps:
             # Not everything that is not dominated, but everything that the gap tells apart.
-            self.may_find_more = self._in_steps(self._with_slack(self.purpose.slack)).closed
+            self.may_find_more = self._in_steps(self._with_slack(self.rule.slack)).closed
             return not np.array_equal(self.form.archive.phi, known)
         outcome = self._covered(self._with_slack(np.full(self.m, self.tuning.tolerances.tie)), effort, self.points)
         self.complete = outcome.closed and len(self.form.archive) <= self.points
@@ -665,7 +665,7 @@ class FrontSearch:
     def _prove(self) -> bool:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
         form, proven = self.form, self.proven_designs
-        stairs = NonImprovement(self.front, self.purpose.columns, self.purpose.slack, form.archive, proven)
+        stairs = NonImprovement(self.front, self.rule.columns, self.rule.slack, form.archive, proven)
         self.stairs = stairs
         if self.by_steps:
             self._begin_tree(None)  # the boxes of one step are not all that is open

@@ -43,9 +43,9 @@ def large_neighbourhood_search(
         combinations = _promising(form, columns, k, float(slack[place]), rng)
         if len(combinations):
             nothing_capped = np.full(len(form.goals), np.inf)
-            purpose = EpsilonCover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
-            purpose.take(form.archive.combination, form.archive.variables, form.archive.phi)
-            branch_and_bound(form, form.leaves(combinations), purpose, clock, rng, limits.boxes)
+            rule = EpsilonCover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
+            rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
+            branch_and_bound(form, form.leaves(combinations), rule, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
         if failures >= limits.patience * len(columns):
             return

@@ -32,7 +32,7 @@ BEGUN_ANEW = "the trials of an interrupted run are not used: its code, or the pr
 
 
 def sample_parts(
-    form: Formulation, left: Boxes, purpose: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
+    form: Formulation, left: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
     """Look for designs among the combinations of some boxes.
 
@@ -42,7 +42,7 @@ def sample_parts(
         Its archive is filled.
     left : Boxes
         What bounds left open.
-    purpose : PruningRule
+    rule : PruningRule
         Takes the designs as well.
     clock : Clock
     journal : Path, optional
@@ -58,16 +58,16 @@ def sample_parts(
         Trials of this run.
     """
     if journal is None:
-        return _searched(form, left, purpose, clock, None, seed, trials)
+        return _searched(form, left, rule, clock, None, seed, trials)
     with alone(journal.with_suffix(".lock")) as own:
-        done = _searched(form, left, purpose, clock, journal if own else None, seed, trials)
+        done = _searched(form, left, rule, clock, journal if own else None, seed, trials)
         if own:
             journal.unlink(missing_ok=True)
     return done
 
 
 def _searched(
-    form: Formulation, left: Boxes, purpose: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
+    form: Formulation, left: Boxes, rule: PruningRule, clock: Clock, journal: Path | None, seed: int, trials: int
 ) -> int:
     """Look for designs as :func:`sample_parts` does, with a study that nobody else is at work on."""
     import optuna  # costly to import; few questions need it
@@ -76,7 +76,7 @@ def _searched(
 
     optuna.logging.set_verbosity(logging.ERROR)
     rows, limits = _offered(form, left), form.tuning.heuristics.parts
-    columns = purpose.columns
+    columns = rule.columns
     storage = None
     if journal is not None:
         storage = JournalStorage(JournalFileBackend(str(journal), lock_obj=JournalFileOpenLock(str(journal))))
@@ -99,7 +99,7 @@ def _searched(
             towards = [t.suggest_int("direction", 0, limits.directions - 1) if len(columns) > 1 else 0 for t in asked]
             digits = [rows[f][np.array([p[f] for p in places])] for f in range(len(rows))]
             combinations = form.instance.combinations.composed(digits, len(asked))
-            values, missed = _inner(form, purpose, combinations, np.array(towards))
+            values, missed = _inner(form, rule, combinations, np.array(towards))
             for trial, phi, violation in zip(asked, values, missed, strict=True):
                 trial.set_constraint("limits", float(violation))
                 study.tell(trial, [float(x) for x in phi])
@@ -142,17 +142,17 @@ def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:
 
 
 def _inner(
-    form: Formulation, purpose: PruningRule, combinations: np.ndarray, towards: np.ndarray
+    form: Formulation, rule: PruningRule, combinations: np.ndarray, towards: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solve the continuous problem of each combination; return phi, and by how much limits are missed."""
-    columns, goals, count = purpose.columns, len(form.goals), len(combinations)
+    columns, goals, count = rule.columns, len(form.goals), len(combinations)
     limits = form.tuning.heuristics.parts
     share = towards / max(limits.directions - 1, 1)
     weights = np.zeros((count, goals))
     for position, k in enumerate(columns):
         even = (share + position / len(columns)) % 1.0
         weights[:, k] = 1.0 if len(columns) == 1 else 0.02 + even
-    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(purpose.plain, (count, 1)), form.goal_scales, 0.0)
+    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(rule.plain, (count, 1)), form.goal_scales, 0.0)
     start = np.tile(form.inside(form.leaves(combinations[:1]), 0.5), (count, 1))
     answer = form.solve_many(tasks, combinations, start)
     points, owner = _makeable(form, combinations, answer.variables)
@@ -163,7 +163,7 @@ def _inner(
         own = phi[k, columns]
         if np.dot(own, weights[owner[k], columns]) < np.dot(values[owner[k]], weights[owner[k], columns]):
             values[owner[k]], missed[owner[k]] = own, 0.0
-    purpose.take(combinations[owner][rows], points[rows], phi[rows])
+    rule.take(combinations[owner][rows], points[rows], phi[rows])
     form.archive.add(combinations[owner][rows], points[rows], phi[rows])
     return values, missed
 

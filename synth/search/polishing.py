@@ -265,10 +265,10 @@ def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray
 
 
 def solve_everywhere(
-    form: Formulation, combinations: np.ndarray, purpose: PruningRule, clock: Clock, rng: np.random.Generator
+    form: Formulation, combinations: np.ndarray, rule: PruningRule, clock: Clock, rng: np.random.Generator
 ) -> None:
     """Solve the continuous problem of every combination from several starts and in several directions."""
-    columns, goals, limits = purpose.columns, len(form.goals), form.tuning.heuristics.settle
+    columns, goals, limits = rule.columns, len(form.goals), form.tuning.heuristics.settle
     directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
     for number in range(0, len(combinations), limits.batch):
         own = combinations[number : number + limits.batch]
@@ -280,9 +280,9 @@ def solve_everywhere(
                 weights = np.zeros((len(own), goals))
                 weights[:, columns] = np.maximum(direction, 1e-3)
                 tasks = Tasks(
-                    weights, np.zeros((len(own), goals)), np.tile(purpose.plain, (len(own), 1)), form.goal_scales, 0.0
+                    weights, np.zeros((len(own), goals)), np.tile(rule.plain, (len(own), 1)), form.goal_scales, 0.0
                 )
                 points = form.makeable(form.solve_many(tasks, own, start).variables if form.n else start)
                 rows, phi = form.feasible_rows(points, own)
                 form.archive.add(own[rows], points[rows], phi[rows])
-                purpose.take(own[rows], points[rows], phi[rows])
+                rule.take(own[rows], points[rows], phi[rows])

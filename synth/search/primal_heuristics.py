@@ -21,8 +21,8 @@ from synth.search.pruning import PruningRule
 class PrimalHeuristics:
     """Looks for designs in boxes that nothing known covers."""
 
-    def __init__(self, form: Formulation, purpose: PruningRule, rng: np.random.Generator, every: bool) -> None:
-        self.form, self.purpose, self.rng, self.every = form, purpose, rng, every
+    def __init__(self, form: Formulation, rule: PruningRule, rng: np.random.Generator, every: bool) -> None:
+        self.form, self.rule, self.rng, self.every = form, rule, rng, every
         self.limits = form.tuning.heuristics.seeker
         self.nlps = self.limits.most_problems // 4
         self.rounds = self.failures = 0
@@ -36,18 +36,18 @@ class PrimalHeuristics:
         if form.n and not len(form.archive):
             self._conflicts(batch)
         phi = form.phi_of(batch.bounds)
-        space, along = self.purpose.room(phi, batch.cell), phi[:, self.purpose.columns[0]]
+        space, along = self.rule.room(phi, batch.cell), phi[:, self.rule.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
         if form.n and self._worth_solving():
-            most = limits.most_problems if len(self.purpose.columns) > 1 else limits.least_problems
+            most = limits.most_problems if len(self.rule.columns) > 1 else limits.least_problems
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
-            chosen = chosen.take(self.purpose.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
+            chosen = chosen.take(self.rule.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
             more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
             self.nlps = more if 4 * good > len(chosen) else fewer
             found += good
-        if found and len(self.purpose.columns) == 1:
-            self.settle_best(0, self.purpose.columns)
+        if found and len(self.rule.columns) == 1:
+            self.settle_best(0, self.rule.columns)
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
@@ -57,15 +57,15 @@ class PrimalHeuristics:
         looked for; then points are enough where values are makeable, unless a proof goes on for long: boxes do not
         close around a design that is not known.
         """
-        form, purpose = self.form, self.purpose
+        form, rule = self.form, self.rule
         found = len(form.archive) > 0 and form.propagation.taught >= self.limits.lessons
         pointed_at = self._known_before and self.rounds <= self.limits.long_proof
-        return form.conflict or not found or (len(purpose.columns) > 1 and not pointed_at)
+        return form.conflict or not found or (len(rule.columns) > 1 and not pointed_at)
 
     @property
     def _known_before(self) -> bool:
         """Tell whether makeable designs were chosen before: what is better than they are points show."""
-        return self.purpose.proves and bool(self.form.gridded.any())
+        return self.rule.proves and bool(self.form.gridded.any())
 
     @property
     def content(self) -> bool:
@@ -82,7 +82,7 @@ class PrimalHeuristics:
 
         The first ``traded`` objectives stay as good as they are; the others follow in ``order``.
         """
-        exact = polish_variables(self.form, self.purpose.leading(self.form.archive), traded, order)
+        exact = polish_variables(self.form, self.rule.leading(self.form.archive), traded, order)
         if exact:
             combinations, points, _ = rows_of(exact)
             self.offer(points, combinations)
@@ -93,7 +93,7 @@ class PrimalHeuristics:
         boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
         combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
-        caps = np.tile(self.purpose.plain, (len(boxes), 1))
+        caps = np.tile(self.rule.plain, (len(boxes), 1))
         tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
         found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
@@ -105,16 +105,16 @@ class PrimalHeuristics:
         """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
         if self.form.conflict:
-            room = self.purpose.room(found.phi, self.form.cell_of(combinations))
+            room = self.rule.room(found.phi, self.form.cell_of(combinations))
             excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
-            importance = np.maximum(excess, float(self.purpose.slack.min())) ** -2.0
+            importance = np.maximum(excess, float(self.rule.slack.min())) ** -2.0
         self.form.learn(tasks, found, importance)
 
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
         self.offer(form.inside(small, 0.5), form.combination(small))
-        rest = small.take(self.purpose.room(form.phi_of(small.bounds), small.cell) > 0)
+        rest = small.take(self.rule.room(form.phi_of(small.bounds), small.cell) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
         _, stood_for = self.on_edge(form.inside(rest, 0.5), form.combination(rest), len(rest))
         low, high = form.ends(rest)
@@ -124,12 +124,12 @@ class PrimalHeuristics:
         # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
         left[stood_for] = True
         worth = np.zeros(phi.shape[1])
-        worth[self.purpose.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.purpose.slack, 0.0)
+        worth[self.rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.rule.slack, 0.0)
         phi[stood_for] += worth
-        return rest.take(left & (self.purpose.room(phi, rest.cell) > 0))
+        return rest.take(left & (self.rule.room(phi, rest.cell) > 0))
 
     def _tightened(self, boxes: Boxes) -> Boxes:
-        caps = self.purpose.caps(self.form.phi_of(boxes.bounds), boxes.cell)
+        caps = self.rule.caps(self.form.phi_of(boxes.bounds), boxes.cell)
         return self.form.contract(boxes, caps, every_goal=self.every)
 
     def _probe(self, boxes: Boxes) -> int:
@@ -184,7 +184,7 @@ class PrimalHeuristics:
         """Take feasible designs; return how many no known one covered."""
         if not len(points):
             return 0
-        used = self.purpose.take(combinations, points, phi)
+        used = self.rule.take(combinations, points, phi)
         self.form.archive.add(combinations, points, phi)
         return used
 
@@ -206,11 +206,11 @@ class PrimalHeuristics:
         tuple
             How many designs no known one covered, and the positions of the points that something stands for.
         """
-        form, columns = self.form, self.purpose.columns
+        form, columns = self.form, self.rule.columns
         rows, phi = form.edge_rows(points, combinations)
         if not len(rows):
             return 0, rows
-        space = self.purpose.room(phi[rows], form.cell_of(combinations[rows]))
+        space = self.rule.room(phi[rows], form.cell_of(combinations[rows]))
         rows, space = rows[space > 0], space[space > 0]
         rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
         marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
@@ -237,7 +237,7 @@ class PrimalHeuristics:
         self.offer(near, combinations)
         if form.n:
             _, phi = form.feasible_rows(points, combinations)
-            self._reach(combinations, points, phi[:, self.purpose.columns])
+            self._reach(combinations, points, phi[:, self.rule.columns])
 
     def beside(self, clock: Clock) -> None:
         """Exchange one part at a time of the designs known, and try known parts elsewhere on the front.
@@ -254,13 +254,13 @@ class PrimalHeuristics:
             clock.check(clock.open)
             # Every part of a design that nobody asked about yet, one at a time ...
             fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
-            some = spread_subset(archive.phi[fresh][:, self.purpose.columns], self.limits.parents)
+            some = spread_subset(archive.phi[fresh][:, self.rule.columns], self.limits.parents)
             fresh = [fresh[int(k)] for k in some]
             parents = [archive[k] for k in fresh]
             expanded.update(c.combination for c in parents)
             found = self._reach(*self._exchanged(parents)) if parents else 0
             # ... and all parts known to be good at all places of the front.
-            if len(self.purpose.columns) > 1:
+            if len(self.rule.columns) > 1:
                 found += self._reach(*self._elsewhere(placed)) + self._ends(placed)
             if not found:
                 return
@@ -279,12 +279,12 @@ class PrimalHeuristics:
             first = self.rng.choice(first, self._most_solved(), replace=False)
         rows = rows[first]
         variables, phi = np.array([c.variables for c in parents]), np.array([c.phi for c in parents])
-        base: np.ndarray = phi[rows][:, self.purpose.columns]
+        base: np.ndarray = phi[rows][:, self.rule.columns]
         return combinations[first], variables[rows], base
 
     def _elsewhere(self, placed: set[tuple[int, bytes]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return known combinations with places of the front to try them at."""
-        archive, columns = self.form.archive, self.purpose.columns
+        archive, columns = self.form.archive, self.rule.columns
         phi = archive.phi[:, columns]
         places = corners(phi, self.limits.targets)
         chosen = spread_subset(phi, self.limits.families)
@@ -302,7 +302,7 @@ class PrimalHeuristics:
     def _ends(self, placed: set[tuple[int, bytes]]) -> int:
         """Try what is one part away from the design that is best in an objective, for that objective alone."""
         archive, found = self.form.archive, 0
-        for k in self.purpose.columns:
+        for k in self.rule.columns:
             parent = archive[int(np.argmin(archive.phi[:, k]))]
             key = (parent.combination, bytes([k]))
             if key not in placed:
@@ -310,9 +310,9 @@ class PrimalHeuristics:
                 combinations, start, _ = self._exchanged([parent])
                 own = np.append(combinations, parent.combination)
                 weights = np.zeros((len(own), len(self.form.goals)))
-                weights[:, self.purpose.columns] = self.limits.tie_weight
+                weights[:, self.rule.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
-                caps = np.tile(self.purpose.plain, (len(own), 1))
+                caps = np.tile(self.rule.plain, (len(own), 1))
                 tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
@@ -325,7 +325,7 @@ class PrimalHeuristics:
 
     def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
         """Solve many problems over the whole range of the variables; return how many designs are new."""
-        form, columns = self.form, self.purpose.columns
+        form, columns = self.form, self.rule.columns
         found = form.solve_many(tasks, combinations, start)
         self._learn(tasks, combinations, found)
         if not form.gridded.any():
@@ -333,7 +333,7 @@ class PrimalHeuristics:
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
         cell = form.cell_of(combinations[good])
-        space, along = self.purpose.room(phi[good], cell), phi[good][:, columns[0]]
+        space, along = self.rule.room(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
@@ -341,14 +341,14 @@ class PrimalHeuristics:
 
     def _upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
-        form, columns = self.form, self.purpose.columns
+        form, columns = self.form, self.rule.columns
         count, goals = len(base), len(form.goals)
         slopes, weights = np.zeros((count, goals)), np.zeros((count, goals))
-        caps = np.tile(self.purpose.plain, (count, 1))
+        caps = np.tile(self.rule.plain, (count, 1))
         if len(columns) == 1:
             weights[:, columns] = 1.0
         else:
-            slope = self.purpose.slack / self.purpose.slack.max()
+            slope = self.rule.slack / self.rule.slack.max()
             known = np.isfinite(base)
             caps[:, columns] = np.where(known, base, np.inf)
             slopes[:, columns] = np.where(known, slope, 0.0)
@@ -357,7 +357,7 @@ class PrimalHeuristics:
 
     def _solve(self, boxes: Boxes) -> int:
         """Solve the continuous problems of a random combination of each box: straight up from its lower bounds."""
-        form, columns = self.form, self.purpose.columns
+        form, columns = self.form, self.rule.columns
         if not len(boxes):
             return 0
         if not form.cells.single(boxes.cell).all():
@@ -394,7 +394,7 @@ class PrimalHeuristics:
         missed = np.ones(len(variables), dtype=bool)
         missed[around.tag[hit]] = False
         narrow = around.take(missed[around.tag])
-        narrow = narrow.take(self.purpose.room(form.phi_of(narrow.bounds), narrow.cell) > 0)
+        narrow = narrow.take(self.rule.room(form.phi_of(narrow.bounds), narrow.cell) > 0)
         if not len(narrow):
             return found
         low, high = form.ends(narrow)

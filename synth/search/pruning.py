@@ -38,7 +38,7 @@ class PruningRule(Protocol):
 
 
 class TabledPruningRule(PruningRule, Protocol):
-    """A purpose whose caps compiled code may read from tables."""
+    """A rule whose caps compiled code may read from tables."""
 
     def tables(self, form: Formulation) -> CapTables | None:
         """Return what :meth:`caps` and :meth:`room` say as tables; None where they cannot say it."""
@@ -260,6 +260,6 @@ def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple
     )
 
 
-def reaches_beyond(purpose: PruningRule, bounded: int) -> bool:
+def reaches_beyond(rule: PruningRule, bounded: int) -> bool:
     """Tell whether a search speaks of more than the first objectives."""
-    return max(purpose.columns) >= bounded or bool(np.any(np.isfinite(purpose.plain[bounded:])))
+    return max(rule.columns) >= bounded or bool(np.any(np.isfinite(rule.plain[bounded:])))

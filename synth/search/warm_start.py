@@ -12,7 +12,7 @@ from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule
 
 
-def warm_start(form: Formulation, purpose: PruningRule, designs: Sequence[Design], rng: np.random.Generator) -> bool:
+def warm_start(form: Formulation, rule: PruningRule, designs: Sequence[Design], rng: np.random.Generator) -> bool:
     """Put designs of a similar question into the archive, as they are or solved again; tell whether any is feasible.
 
     Each goes straight up from the objectives it had: what the new question takes from it or gives to it, it loses or
@@ -26,5 +26,5 @@ def warm_start(form: Formulation, purpose: PruningRule, designs: Sequence[Design
     keep &= np.all(np.isfinite(points), axis=1)
     combinations, points = combinations[keep], np.clip(points[keep], form.lower, form.upper)
     if len(combinations):
-        PrimalHeuristics(form, purpose, rng, False).again(combinations, points)
+        PrimalHeuristics(form, rule, rng, False).again(combinations, points)
     return bool(len(form.archive))

@@ -198,7 +198,7 @@ def _share(within: Any) -> float:
 
 
 class _Near:
-    """The purpose of the tree: every combination that holds a design within the caps.
+    """The rule of the tree: every combination that holds a design within the caps.
 
     ``found`` holds, per combination, the design that is least worse than the chosen one, and by how much.
     """
@@ -270,12 +270,12 @@ class _Enumeration:
         self.progress, self.stage = progress, "enumerate"
         limit = settings.time_limit
         self.clock = Clock(math.inf if limit is None else self.started + limit, self._working)
-        self.near = self._purpose(front)
+        self.near = self._rule(front)
         self.tried: set[int] = set()
         self.undecided: set[int] = set()
         self.looked = 0
 
-    def _purpose(self, front: ParetoFront) -> _Near:
+    def _rule(self, front: ParetoFront) -> _Near:
         form, m = self.form, self.m
         signs = np.array([g.sign for g in form.goals[:m]], dtype=float)
         values = np.array([[d.values[n] for n in self.chosen] for d in [self.reference, *front.designs]]) * signs
@@ -453,13 +453,13 @@ class _Enumeration:
         slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.slack)
         caps = near.plain.copy()
         caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
-        purpose = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
-        purpose.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
+        rule = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
+        rule.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         branch_and_bound(
-            form, form.leaves(np.array([combination])), purpose, self.clock, self.rng, self.limits.settling_boxes
+            form, form.leaves(np.array([combination])), rule, self.clock, self.rng, self.limits.settling_boxes
         )
-        worst = near.worse(purpose.known.phi)
-        best = purpose.known[int(np.lexsort((*purpose.known.phi.T[::-1], np.round(worst, 9)))[0])]
+        worst = near.worse(rule.known.phi)
+        best = rule.known[int(np.lexsort((*rule.known.phi.T[::-1], np.round(worst, 9)))[0])]
         (better,) = settle_discrete(form, [best], m, range(len(form.goals)), parts=False)
         (exact,) = polish_variables(form, [better], m)
         return exact

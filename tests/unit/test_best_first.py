@@ -42,27 +42,27 @@ def whole(form, slack):
 
 
 def test_it_closes_what_a_cover_leaves_open(form):
-    purpose = whole(form, 0.01)
-    begun = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
+    rule = whole(form, 0.01)
+    begun = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100)
     assert len(begun.open)
-    ended = best_first(form, begun.open, purpose, Clock(), np.random.default_rng(0), EFFORT)
+    ended = best_first(form, begun.open, rule, Clock(), np.random.default_rng(0), EFFORT)
     assert ended.closed
     assert not ended.spent
 
 
 def test_boxes_with_most_room_come_first_until_too_many_wait(form):
-    purpose = whole(form, 0.01)
-    branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100)
-    left = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 100).open
-    room = purpose.room(form.phi_of(left.bounds))
+    rule = whole(form, 0.01)
+    branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100)
+    left = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100).open
+    room = rule.room(form.phi_of(left.bounds))
     assert room.min() < 0.01 < room.max() / 2
     # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
     for most, low, high in ((10**6, room.max() / 2, room.max()), (0, 0.0, 0.01)):
-        waiting = OpenBoxes(form, purpose, most)
+        waiting = OpenBoxes(form, rule, most)
         waiting.add(left)
         assert len(waiting) == len(left) == sum(len(b) for b in waiting.batches)
         batch = waiting.next()
-        first = purpose.room(form.phi_of(batch.bounds))[0]
+        first = rule.room(form.phi_of(batch.bounds))[0]
         assert low <= first <= high
         assert len(waiting) + len(batch) == len(left)
 
@@ -71,17 +71,17 @@ def test_what_does_not_close_ends_by_the_count_of_boxes(form):
     effort = SearchEffort(seconds=np.inf, spell=200, patience=2, most_waiting=500, most_stuck=5)
     ends = []
     for own in (prepared(), prepared()):
-        purpose = whole(own, 1e-9)  # less than numbers can tell
-        found = best_first(own, own.root(), purpose, Clock(), np.random.default_rng(0), effort)
+        rule = whole(own, 1e-9)  # less than numbers can tell
+        found = best_first(own, own.root(), rule, Clock(), np.random.default_rng(0), effort)
         ends.append((found.looked, len(found.open)))
     assert ends[0] == ends[1]
     assert ends[0][1] > 0
-    purpose = whole(form, 1e-9)
-    spent = best_first(form, form.root(), purpose, Clock(), np.random.default_rng(0), SearchEffort(seconds=0.0))
+    rule = whole(form, 1e-9)
+    spent = best_first(form, form.root(), rule, Clock(), np.random.default_rng(0), SearchEffort(seconds=0.0))
     assert spent.spent
     assert not spent.closed
     with pytest.raises(Stopped, match="time limit"):
-        best_first(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
+        best_first(form, form.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
 
 
 def test_boxes_close_where_fewer_wait_or_promise_less_or_hold_less():
@@ -99,10 +99,10 @@ def test_boxes_close_where_fewer_wait_or_promise_less_or_hold_less():
 
 
 def test_what_waits_holds_less_the_more_is_closed(form):
-    purpose = whole(form, 0.01)
+    rule = whole(form, 0.01)
 
     def left(effort: int) -> Boxes:
-        return branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), effort).open
+        return branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), effort).open
 
     extents = [form.extent(boxes) for boxes in (form.root(), left(50), left(100), left(200))]
     assert extents == sorted(extents, reverse=True)

@@ -54,8 +54,8 @@ def test_caps_and_room_of_a_cover_against_brute_force(m, seed):
     plain = np.where(rng.random(WIDTH) < 0.3, 0.7, np.inf)
     lower = some_phi(rng, 50)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    purpose = EpsilonCover(range(m), slack, plain, archive)
-    caps, room = purpose.caps(lower), purpose.room(lower)
+    rule = EpsilonCover(range(m), slack, plain, archive)
+    caps, room = rule.caps(lower), rule.room(lower)
     for own, cap, space in zip(lower, caps, room, strict=True):
         by_hand = [cap_by_hand(archive.phi[:, :m], slack, own[:m], k) for k in range(m)]
         expected = plain + TIE
@@ -72,26 +72,24 @@ def test_a_box_without_room_is_covered_and_caps_cut_off_only_what_is_covered(m, 
     rng = np.random.default_rng(seed)
     archive = archive_of(rng.uniform(0, 1, (20, WIDTH)), m)
     slack = rng.uniform(0, 0.1, m)
-    purpose = EpsilonCover(range(m), slack, np.full(WIDTH, np.inf), archive)
+    rule = EpsilonCover(range(m), slack, np.full(WIDTH, np.inf), archive)
     lower = rng.uniform(0, 1, (60, WIDTH))
     design = lower + rng.exponential(0.1, lower.shape)  # anything the box may hold
     known = archive.phi[:, :m] - slack
     covered = np.all(known[None] <= design[:, None, :m], axis=2).any(axis=1)
-    assert covered[purpose.room(lower) <= 0].all()
-    assert np.any(purpose.room(lower) > 0) == (
-        not np.all(np.all(known[None] <= lower[:, None, :m], axis=2).any(axis=1))
-    )
-    assert covered[np.any(design > purpose.caps(lower), axis=1)].all()
+    assert covered[rule.room(lower) <= 0].all()
+    assert np.any(rule.room(lower) > 0) == (not np.all(np.all(known[None] <= lower[:, None, :m], axis=2).any(axis=1)))
+    assert covered[np.any(design > rule.caps(lower), axis=1)].all()
 
 
 def test_a_cover_takes_what_no_known_design_covers():
     archive = archive_of(np.array([[0.5, 0.5, 0, 0]]), 2)
-    purpose = EpsilonCover([0, 1], np.array([0.1, 0.1]), np.array([np.inf, np.inf, 0.6, np.inf]), archive)
+    rule = EpsilonCover([0, 1], np.array([0.1, 0.1]), np.array([np.inf, np.inf, 0.6, np.inf]), archive)
     phi = np.array([[0.45, 0.45, 0, 0], [0.3, 0.9, 0, 0], [0.1, 0.1, 0.9, 0]])
     # The first is better by less than the slack: kept, but of no use; the last breaks a cap.
-    assert purpose.take(np.arange(3), np.empty((3, 0)), phi) == 1
+    assert rule.take(np.arange(3), np.empty((3, 0)), phi) == 1
     assert sorted(archive.phi[:, 0]) == [0.3, 0.45]
-    assert purpose.take(np.arange(0), np.empty((0, 0)), phi[:0]) == 0
+    assert rule.take(np.arange(0), np.empty((0, 0)), phi[:0]) == 0
 
 
 def staircase(rng, m):
@@ -117,11 +115,11 @@ def steps_by_hand(designs, slack, proven, m):
 @settings(deadline=None, derandomize=True, max_examples=60)
 def test_caps_and_room_of_a_staircase_against_brute_force(m, seed):
     rng = np.random.default_rng(seed)
-    purpose, designs, slack, archive, proven = staircase(rng, m)
+    rule, designs, slack, archive, proven = staircase(rng, m)
     steps = steps_by_hand(designs, slack, proven, m)
     lower = some_phi(rng, 50) - 0.1
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    for own, cap, space in zip(lower[:, :m], purpose.caps(lower), purpose.room(lower), strict=True):
+    for own, cap, space in zip(lower[:, :m], rule.caps(lower), rule.room(lower), strict=True):
         known = [cap_by_hand(archive.phi[:, :m], slack, own, k) for k in range(m)]
         below = [s for s in steps if np.all(own < s)]
         expected = [min(max((s[k] for s in below), default=-np.inf), known[k]) for k in range(m)]
@@ -136,13 +134,13 @@ def test_caps_and_room_of_a_staircase_against_brute_force(m, seed):
 
 def test_a_design_that_is_beaten_is_replaced():
     archive = archive_of(np.array([[0.2, 0.8, 0, 0], [0.5, 0.5, 0, 0], [0.8, 0.2, 0, 0]]), 2)
-    purpose = NonImprovement(list(archive), [0, 1], np.array([0.1, 0.1]), archive)
+    rule = NonImprovement(list(archive), [0, 1], np.array([0.1, 0.1]), archive)
     beside = np.array([[0.15, 0.9, 0, 0], [0.45, 0.55, 0, 0]])
-    assert purpose.take(np.arange(2), np.empty((2, 0)), beside) == 0
+    assert rule.take(np.arange(2), np.empty((2, 0)), beside) == 0
     better = np.array([[0.48, 0.45, 0, 0], [0.05, 0.9, 0, 0]])
-    assert purpose.take(np.array([7, 8]), np.empty((2, 0)), better) == 2
-    assert sorted(c.combination for c in purpose.designs) == [2, 7, 8]
-    assert purpose.room(np.array([[0.36, 0.34, 0, 0]]))[0] == pytest.approx(0.01)
+    assert rule.take(np.array([7, 8]), np.empty((2, 0)), better) == 2
+    assert sorted(c.combination for c in rule.designs) == [2, 7, 8]
+    assert rule.room(np.array([[0.36, 0.34, 0, 0]]))[0] == pytest.approx(0.01)
 
 
 # -- what is chosen ----------------------------------------------------------------------------------
@@ -200,8 +198,8 @@ def sampled(form, rng, count=20000):
 
 def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
     slack = np.array([0.02, 0.02])
-    purpose = EpsilonCover([0, 1], slack, np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6)
+    rule = EpsilonCover([0, 1], slack, np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1e6)
     assert outcome.closed
     assert outcome.looked > 0
     rows, _ = form.feasible_rows(form.archive.variables, form.archive.combination)
@@ -224,17 +222,17 @@ def test_the_best_design_is_proven(form, column):
 
 
 def test_effort_and_time_end_a_cover(form):
-    purpose = EpsilonCover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1)
+    rule = EpsilonCover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1)
     assert not outcome.closed
     assert len(outcome.open)
     with pytest.raises(Stopped, match="time limit"):
-        branch_and_bound(form, form.root(), purpose, Clock(deadline=-np.inf), np.random.default_rng(0))
+        branch_and_bound(form, form.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0))
 
 
 def test_enough_designs_end_a_cover(form):
-    purpose = EpsilonCover([0, 1], np.array([1e-3, 1e-3]), np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), purpose, Clock(), np.random.default_rng(0), 1e6, enough=5)
+    rule = EpsilonCover([0, 1], np.array([1e-3, 1e-3]), np.full(2, np.inf), form.archive)
+    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1e6, enough=5)
     assert outcome.full
     assert not outcome.closed
     assert len(form.archive) > 5

@@ -61,9 +61,9 @@ def purpose_of(kind, form, rng):
     return EpsilonCover([0, 1], SLACK, nowhere, archive)
 
 
-def after(form, purpose, generations):
+def after(form, rule, generations):
     """Return boxes after some generations from the root, step by step."""
-    return by_single_steps(form, purpose, form.lean(form.root()), generations)[0]
+    return by_single_steps(form, rule, form.lean(form.root()), generations)[0]
 
 
 def in_order(boxes):
@@ -72,12 +72,12 @@ def in_order(boxes):
     return rows[np.lexsort(np.round(rows, 9).T)]
 
 
-def by_single_steps(form, purpose, boxes, levels):
+def by_single_steps(form, rule, boxes, levels):
     """Return halves, and boxes too small to be split, after some generations, step by step."""
     small = [boxes.take(slice(0, 0))]
     for _ in range(levels):
-        boxes = form.contract(boxes, purpose.caps(form.phi_of(boxes.bounds), boxes.cell))
-        boxes = boxes.take(purpose.room(form.phi_of(boxes.bounds), boxes.cell) > 0)
+        boxes = form.contract(boxes, rule.caps(form.phi_of(boxes.bounds), boxes.cell))
+        boxes = boxes.take(rule.room(form.phi_of(boxes.bounds), boxes.cell) > 0)
         boxes, rest = form.split(boxes)
         small.append(rest)
     return boxes, Boxes.joined(small)
@@ -87,11 +87,11 @@ def by_single_steps(form, purpose, boxes, levels):
 @pytest.mark.parametrize("kind", KINDS)
 def test_one_generation_is_a_single_step(kind, grid):
     form = strut_form(grid, AT_ONCE)
-    purpose = purpose_of(kind, form, np.random.default_rng(7))
-    boxes = after(form, purpose, 9)
+    rule = purpose_of(kind, form, np.random.default_rng(7))
+    boxes = after(form, rule, 9)
     assert len(boxes) > 20
-    grown = form.grow(boxes, purpose.tables(form), 1)
-    halves, small = by_single_steps(form, purpose, boxes, 1)
+    grown = form.grow(boxes, rule.tables(form), 1)
+    halves, small = by_single_steps(form, rule, boxes, 1)
     np.testing.assert_allclose(in_order(grown.halves), in_order(halves), rtol=1e-9)
     np.testing.assert_allclose(in_order(grown.small), in_order(small), rtol=1e-9)
     assert grown.looked == len(boxes)
@@ -101,10 +101,10 @@ def test_one_generation_is_a_single_step(kind, grid):
 @pytest.mark.parametrize("kind", KINDS)
 def test_generations_are_about_those_of_single_steps(kind, grid):
     form = strut_form(grid, AT_ONCE)
-    purpose = purpose_of(kind, form, np.random.default_rng(7))
-    boxes = after(form, purpose, 9)
-    grown = form.grow(boxes, purpose.tables(form), 4)
-    halves, small = by_single_steps(form, purpose, boxes, 4)
+    rule = purpose_of(kind, form, np.random.default_rng(7))
+    boxes = after(form, rule, 9)
+    grown = form.grow(boxes, rule.tables(form), 4)
+    halves, small = by_single_steps(form, rule, boxes, 4)
     # Caps differ in their last digit, and with them what is split of two that blur a box as much.
     assert len(grown.halves) == pytest.approx(len(halves), rel=0.02)
     assert len(grown.small) == pytest.approx(len(small), rel=0.02)
@@ -128,12 +128,12 @@ def lost(boxes, points, combinations, form):
 def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room):
     sizes = CodeSizes(tree_beside=room, tree_room=4 if room > 40 else 1)
     form, rng = strut_form(tuning=at_once(sizes)), np.random.default_rng(3)
-    purpose = purpose_of(kind, form, rng)
-    boxes = after(form, purpose, 4)
-    grown = form.grow(boxes, purpose.tables(form), 6)
+    rule = purpose_of(kind, form, rng)
+    boxes = after(form, rule, 4)
+    grown = form.grow(boxes, rule.tables(form), 6)
     points, combinations, phi = designs_of(form, rng, 60_000)
     # Of use: better than what is known, by the slack and a little.
-    useful = purpose.room(phi) > 10 * TIE
+    useful = rule.room(phi) > 10 * TIE
     points, combinations = points[useful], combinations[useful]
     assert len(points) > 20
     assert not lost(boxes, points, combinations, form).any()
@@ -143,10 +143,10 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
 
 def test_threads_change_nothing():
     form = strut_form(tuning=at_once(CodeSizes(tree_part=16)))
-    purpose = purpose_of("front", form, np.random.default_rng(5))
-    boxes = after(form, purpose, 9)
+    rule = purpose_of("front", form, np.random.default_rng(5))
+    boxes = after(form, rule, 9)
     assert len(boxes) > 64
-    grow = partial(form.grow, boxes, purpose.tables(form), 3)
+    grow = partial(form.grow, boxes, rule.tables(form), 3)
     one = grow()
     form.workers = 3
     three = grow()
@@ -157,10 +157,10 @@ def test_threads_change_nothing():
 
 def test_boxes_carry_the_question_they_belong_to():
     form = strut_form(tuning=AT_ONCE)
-    purpose = purpose_of("front", form, np.random.default_rng(5))
-    boxes = after(form, purpose, 6)
+    rule = purpose_of("front", form, np.random.default_rng(5))
+    boxes = after(form, rule, 6)
     boxes.tag[:] = np.arange(len(boxes))
-    grown = form.grow(boxes, purpose.tables(form), 2)
+    grown = form.grow(boxes, rule.tables(form), 2)
     own = boxes.take(grown.halves.tag)
     assert len(set(grown.halves.tag.tolist())) > 1
     assert np.all(grown.halves.low >= own.low - 1e-9)
@@ -178,5 +178,5 @@ def test_three_objectives_and_ties_have_no_tables():
 def test_without_a_compiler_nothing_is_grown(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     form = strut_form(tuning=AT_ONCE)
-    purpose = purpose_of("front", form, np.random.default_rng(5))
-    assert form.grow(after(form, purpose, 3), purpose.tables(form), 2) is None
+    rule = purpose_of("front", form, np.random.default_rng(5))
+    assert form.grow(after(form, rule, 3), rule.tables(form), 2) is None

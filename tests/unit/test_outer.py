@@ -172,9 +172,9 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
     root = form.root()
     left = form.split(root)[0].take(slice(0, 1))  # half of everything
     archive = Archive(columns, form.n, 2)
-    purpose = EpsilonCover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
+    rule = EpsilonCover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
     journal = tmp_path / "study.journal" if kept else None
-    assert sample_parts(form, left, purpose, Clock(), journal, 0, TRIALS) == TRIALS
+    assert sample_parts(form, left, rule, Clock(), journal, 0, TRIALS) == TRIALS
     assert journal is None or not journal.exists()
     assert len(archive)
     rows, phi = form.feasible_rows(archive.variables, archive.combination)

@@ -27,8 +27,8 @@ def strut_form(traded=2, grid=False):
 
 def seeker(form, slack=1e-3):
     m = len(form.archive.columns)
-    purpose = EpsilonCover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
-    return PrimalHeuristics(form, purpose, np.random.default_rng(0), False)
+    rule = EpsilonCover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
+    return PrimalHeuristics(form, rule, np.random.default_rng(0), False)
 
 
 def first_design(form, combination, rng):

@@ -694,17 +694,17 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     known.add(chosen, np.zeros((5, form.n)), np.round(rng.random((5, goals)), 1))
     wanted = rng.random(count) < 0.7
     slack = 0.1
-    purpose = BestPerScenario(form, known, lambda phi: np.full(len(phi), slack), wanted)
+    rule = BestPerScenario(form, known, lambda phi: np.full(len(phi), slack), wanted)
     best = known.best()
     needed = [
         -np.inf if not wanted[q] else np.inf if not np.isfinite(best[q]) else best[q] - slack for q in range(count)
     ]
-    assert purpose.needed().tolist() == needed
+    assert rule.needed().tolist() == needed
     boxes = 60
     cell = np.stack([rng.integers(0, len(t), boxes) for t in form.cells.trees], axis=1).astype(np.int32)
     lower = np.round(rng.random((boxes, goals)), 1)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    caps, room = purpose.caps(lower, cell), purpose.room(lower, cell)
+    caps, room = rule.caps(lower, cell), rule.room(lower, cell)
     for b in range(boxes):
         rows = [int(q) for q in tree.rows(int(cell[b, 0]))]
         cap = max(needed[q] for q in rows)
@@ -714,7 +714,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
             assert room[b] == 0
         else:
             assert room[b] == cap - lower[b, 0]
-    tables = purpose.tables(form)
+    tables = rule.tables(form)
     if tables is None:
         assert np.isfinite(plain[:, form.bounded :]).any()
     else:
@@ -737,8 +737,8 @@ def test_open_boxes_leave_their_questions_open(seed: int) -> None:
     phi = np.round(rng.normal(size=(4, goals)), 1)
     known.add(rng.integers(0, search.together.combinations.count, 4), np.zeros((4, form.n)), phi)
     wanted = rng.random(count) < 0.7
-    purpose = BestPerScenario(form, known, lambda own: np.full(len(own), 0.05), wanted)
-    needed = purpose.needed()
+    rule = BestPerScenario(form, known, lambda own: np.full(len(own), 0.05), wanted)
+    needed = rule.needed()
     boxes = form.leaves(rng.integers(0, search.together.combinations.count, 6))
     clusters = rng.integers(0, len(tree), 6).astype(np.int32)
     boxes.cell[:, 0] = clusters
@@ -751,5 +751,5 @@ def test_open_boxes_leave_their_questions_open(seed: int) -> None:
         any(q in tree.rows(int(c)) and form.phi_of(boxes.bounds[[b]])[0, 0] < needed[q] for b, c in enumerate(clusters))
         for q in range(count)
     ]
-    assert purpose.open_questions(boxes).tolist() == true
-    assert not purpose.open_questions(form.nothing()).any()
+    assert rule.open_questions(boxes).tolist() == true
+    assert not rule.open_questions(form.nothing()).any()
