@@ -188,8 +188,8 @@ class BestPerScenario:
     ) -> None:
         self.form, self.known, self._slack, self.asked = form, known, slack, asked
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie
-        self.slack = slack(np.zeros(1))
-        self.plain = np.full(len(form.goals), np.inf)
+        self.tolerance = slack(np.zeros(1))
+        self.fixed_cutoffs = np.full(len(form.goals), np.inf)
         self._tree = form.cells.trees[0]
         self._plain = self._tree.hull(known.plain)[1]
         self._ends: tuple[np.ndarray, np.ndarray] | None = None
@@ -208,7 +208,7 @@ class BestPerScenario:
         cap: np.ndarray = self._ends[1][cell[:, 0]]
         return cap
 
-    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
         assert cell is not None
         caps: np.ndarray = self._plain[cell[:, 0], : lower.shape[1]] + self.tie
@@ -216,7 +216,7 @@ class BestPerScenario:
         caps[:, k] = np.minimum(caps[:, k], self._cap(cell))
         return caps
 
-    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than needed a box could be."""
         assert cell is not None
         cap = self._cap(cell)
@@ -228,7 +228,7 @@ class BestPerScenario:
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many were of use."""
-        new = int((self.room(phi, self.form.cell_of(combinations)) > 0).sum())
+        new = int((self.possible_gain(phi, self.form.cell_of(combinations)) > 0).sum())
         self.known.add(combinations, variables, phi)
         return new
 

@@ -68,7 +68,7 @@ class Archive:
         keep = non_dominated(phi[:, self.columns])
         self.combination, self.variables, self.phi = combination[keep], variables[keep], phi[keep]
 
-    def caps(self, lower: np.ndarray, slack: np.ndarray) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, slack: np.ndarray) -> np.ndarray:
         """Return, per box with lower bounds ``lower`` (boxes, columns), what a design must keep to be of use.
 
         A known design covers what is not better by more than ``slack`` in any objective. Cap k is the least

@@ -76,11 +76,11 @@ class OpenBoxes:
 
     def add(self, boxes: Boxes) -> None:
         """Take boxes; those of no use are dropped."""
-        room = self.rule.room(self.form.phi_of(boxes.bounds), boxes.cell)
+        room = self.rule.possible_gain(self.form.phi_of(boxes.bounds), boxes.cell)
         useful = room > 0
         boxes, room = boxes.take(useful), room[useful]
         with np.errstate(all="ignore"):
-            doublings = np.log2(room / float(self.rule.slack.min()))
+            doublings = np.log2(room / float(self.rule.tolerance.min()))
         highest = self.tree.levels - 1
         level = np.clip(
             np.nan_to_num(self.tree.levels_per_doubling * doublings, nan=highest, posinf=highest), 0, highest
@@ -175,4 +175,4 @@ def best_first(
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck
     left = Boxes.joined([stuck, *waiting.batches])
-    return TreeOutcome(left.take(rule.room(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)
+    return TreeOutcome(left.take(rule.possible_gain(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)

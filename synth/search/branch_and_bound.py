@@ -89,7 +89,7 @@ def branch_and_bound(
         if len(children):
             fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
-    return TreeOutcome(left.take(rule.room(form.phi_of(left.bounds), left.cell) > 0), looked)
+    return TreeOutcome(left.take(rule.possible_gain(form.phi_of(left.bounds), left.cell) > 0), looked)
 
 
 def further(
@@ -114,8 +114,8 @@ def further(
         What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
     """
     looked, none = len(batch), batch.take(slice(0, 0))
-    batch = form.contract(batch, rule.caps(form.phi_of(batch.bounds), batch.cell), every_goal=every)
-    batch = batch.take(rule.room(form.phi_of(batch.bounds), batch.cell) > 0)
+    batch = form.contract(batch, rule.cutoffs(form.phi_of(batch.bounds), batch.cell), every_goal=every)
+    batch = batch.take(rule.possible_gain(form.phi_of(batch.bounds), batch.cell) > 0)
     if not len(batch):
         return none, none, looked
     seeker.look(batch)
@@ -185,7 +185,7 @@ def _latest(fresh: list[Boxes], generation: int) -> Boxes:
 def _most_open(form: Formulation, waiting: Boxes, rule: PruningRule) -> Boxes:
     """Return boxes with most room first; covered ones are dropped."""
     lower = form.phi_of(waiting.bounds)
-    space = rule.room(lower, waiting.cell)
+    space = rule.possible_gain(lower, waiting.cell)
     keep = np.flatnonzero(space > 0)
     # While no design is known, all room is infinite; then low bounds promise most.
     low = lower[:, rule.columns].mean(axis=1)

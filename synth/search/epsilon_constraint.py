@@ -48,17 +48,17 @@ def cover_by_epsilon_constraint(
         What steps left open, without what was covered meanwhile.
     """
     tree, tie = form.tuning.tree, form.tuning.tolerances.tie
-    proof = tree.step_proof * rule.slack[SOUGHT]
-    choice = rule.slack[SOUGHT] - proof
+    proof = tree.step_proof * rule.tolerance[SOUGHT]
+    choice = rule.tolerance[SOUGHT] - proof
     plain = np.full(len(form.goals), np.inf)
     corner = [form.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
     clock.beyond = [np.array(corner)]
     # The other end first: good designs there are often not far from good in both.
-    first, end = best(form, pool, CAPPED, plain, rule.slack[CAPPED], clock, rng, effort=effort)
+    first, end = best(form, pool, CAPPED, plain, rule.tolerance[CAPPED], clock, rng, effort=effort)
     looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
     PrimalHeuristics(form, rule, rng, False).beside(clock)
     if end.closed and first is not None:
-        corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - rule.slack[CAPPED])
+        corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - rule.tolerance[CAPPED])
     while True:
         # What is better in the capped objective than all steps so far is open, and as bad in the other as the last one.
         clock.beyond = [np.array(corner), *(form.phi_of(b.bounds)[:, : len(corner)] for b in left)]
@@ -72,18 +72,18 @@ def cover_by_epsilon_constraint(
         _stretch(form, found, choice)
         phi = form.archive.phi
         good = (phi[:, SOUGHT] <= found.phi[SOUGHT] + choice) & (phi[:, CAPPED] <= plain[CAPPED] + tie)
-        plain[CAPPED] = phi[good, CAPPED].min() - rule.slack[CAPPED]
-        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= tree.narrow * rule.slack[CAPPED]:
+        plain[CAPPED] = phi[good, CAPPED].min() - rule.tolerance[CAPPED]
+        if first is not None and narrow and plain[CAPPED] - first.phi[CAPPED] <= tree.narrow * rule.tolerance[CAPPED]:
             # Nothing is better in the first objective than its end, so nothing useful is worse than that in the second.
-            between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - rule.slack[SOUGHT], plain)
-            rest = EpsilonCover(rule.columns, rule.slack, between, form.archive)
+            between = np.where(np.arange(len(plain)) == SOUGHT, first.phi[SOUGHT] - rule.tolerance[SOUGHT], plain)
+            rest = EpsilonCover(rule.columns, rule.tolerance, between, form.archive)
             outcome = branch_and_bound(form, pool, rest, clock, rng, min(effort, 2 * outcome.looked))
             looked += outcome.looked
             if outcome.closed:
                 break
             narrow = False
     still = Boxes.joined(left)
-    return TreeOutcome(still.take(rule.room(form.phi_of(still.bounds)) > 0), looked)
+    return TreeOutcome(still.take(rule.possible_gain(form.phi_of(still.bounds)) > 0), looked)
 
 
 def prove_by_epsilon_constraint(
@@ -109,7 +109,7 @@ def prove_by_epsilon_constraint(
 
     def least(k: int, plain: np.ndarray, phi: float) -> float:
         nonlocal looked
-        found, outcome = best(form, pool, k, plain, stairs.slack[k], clock, rng, _bar(form, k, phi), effort)
+        found, outcome = best(form, pool, k, plain, stairs.tolerance[k], clock, rng, _bar(form, k, phi), effort)
         looked += outcome.looked
         left.append(form.lean(outcome.open))
         if found is None or found.combination < 0:
@@ -123,7 +123,7 @@ def prove_by_epsilon_constraint(
         if replaced or design.phi[CAPPED] <= ends[CAPPED] or design.phi[SOUGHT] <= ends[SOUGHT]:
             continue
         plain = nowhere.copy()
-        plain[CAPPED] = design.phi[CAPPED] - stairs.slack[CAPPED]
+        plain[CAPPED] = design.phi[CAPPED] - stairs.tolerance[CAPPED]
         least(SOUGHT, plain, design.phi[SOUGHT])
     return TreeOutcome(Boxes.joined(left), looked)
 

@@ -250,7 +250,7 @@ class FrontSearch:
         self.bounds += self.bounded_meanwhile
         if self.reporting and self.closed:
             # The designs stand; only what the objectives do not see is left as it is.
-            self.bounds.append(Bound(self.rule.slack, np.empty((0, self.m))))
+            self.bounds.append(Bound(self.rule.tolerance, np.empty((0, self.m))))
             self.closed = self.exhausted = self.complete = False
             return
         self._note_open()
@@ -289,7 +289,7 @@ class FrontSearch:
         least = gap * self._sizes()
         if self.m > 1:
             # The range of a few designs may be less than that of the front they were chosen from.
-            least = np.maximum(least, self.rule.slack + ROOM)
+            least = np.maximum(least, self.rule.tolerance + ROOM)
         amounts = least * form.goal_scales[: self.m]
         return {
             name: rounded_up(float(amounts[k]), self.instance.model.units[name])
@@ -429,7 +429,7 @@ class FrontSearch:
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
         if len(rule.columns) == self.m:
-            self.bounds.append(Bound(rule.slack, self.form.phi_of(left.bounds)[:, : self.m]))
+            self.bounds.append(Bound(rule.tolerance, self.form.phi_of(left.bounds)[:, : self.m]))
         return left
 
     def _solve_few(self, boxes: Boxes, rule: PruningRule) -> bool:
@@ -442,7 +442,7 @@ class FrontSearch:
 
     def _go_on(self, left: Boxes, rule: TabledPruningRule) -> Boxes:
         """Go on with boxes while they keep closing and there is time; return what stays open."""
-        self._begin_tree(rule.slack if len(rule.columns) == self.m else None)
+        self._begin_tree(rule.tolerance if len(rule.columns) == self.m else None)
         begun = time.monotonic()
         effort = replace(self.limits.further, seconds=self.budget)
         outcome = best_first(self.form, left, rule, self.clock, self.rng, effort)
@@ -491,7 +491,7 @@ class FrontSearch:
 
     def _look_round(self) -> bool:
         """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
-        coarse = self._with_slack(self.rule.slack * max(self.limits.coarse / self.gap, 1.0))
+        coarse = self._with_slack(self.rule.tolerance * max(self.limits.coarse / self.gap, 1.0))
         outcome = self._covered(coarse, self.limits.first_boxes if self.m == 1 else self.limits.coarse_boxes)
         if not len(self.form.archive) and not outcome.closed and self.m == 1:
             outcome = self._covered(coarse, self.limits.coarse_boxes)
@@ -516,19 +516,19 @@ class FrontSearch:
         left = self._close(outcome.open, fine)
         if len(outcome.open) and not len(left):
             self.covering = fine
-            self.bounds.append(Bound(fine.slack, np.empty((0, self.m))))
+            self.bounds.append(Bound(fine.tolerance, np.empty((0, self.m))))
         form = self.form
         self.open_combinations = float(form.cells.size(left.cell).sum())
 
     def _dive(self) -> bool:
         """Look for more where few designs are known; tell whether they are still few, but not none."""
         if not len(self.form.archive):
-            self._covered(self._with_slack(self.rule.slack), min(self.effort, self.limits.whole_front), enough=0)
+            self._covered(self._with_slack(self.rule.tolerance), min(self.effort, self.limits.whole_front), enough=0)
         if not 0 < len(self.form.archive) < self.tuning.heuristics.seeker.scarce:
             return False
         if self.in_conflict:
             self._begin_again(conflict=False)
-        large_neighbourhood_search(self.form, self.rule.columns, self.rule.slack, self.clock, self.rng)
+        large_neighbourhood_search(self.form, self.rule.columns, self.rule.tolerance, self.clock, self.rng)
         self._seek(self._fine())
         return len(self.form.archive) < self.tuning.heuristics.seeker.scarce
 
@@ -536,24 +536,24 @@ class FrontSearch:
         """Return the cover that is as fine as the points asked for need, at most as the gap."""
         phi = self.form.archive.phi[:, : self.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.m)
-        return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.rule.slack))
+        return self._with_slack(np.maximum(self.limits.fine * span / self.points, self.rule.tolerance))
 
     def _seek(self, rule: EpsilonCover) -> None:
         """Look for designs beside those that are known."""
         PrimalHeuristics(self.form, rule, self.rng, False).beside(self.clock)
 
     def _with_slack(self, slack: np.ndarray) -> EpsilonCover:
-        return EpsilonCover(self.rule.columns, slack, self.rule.plain, self.form.archive)
+        return EpsilonCover(self.rule.columns, slack, self.rule.fixed_cutoffs, self.form.archive)
 
     def _covered(self, rule: EpsilonCover, effort: float, enough: int | None = None) -> TreeOutcome:
         """Cover everything with one slack; if the time runs out, the boxes that are open tell what is proven."""
-        self._begin_tree(rule.slack)
+        self._begin_tree(rule.tolerance)
         outcome = branch_and_bound(self.form, self.pool, rule, self.clock, self.rng, effort, enough)
         return self._noted(rule, outcome)
 
     def _in_steps(self, rule: EpsilonCover) -> TreeOutcome:
         """Cover everything with one slack, one objective capped step by step."""
-        self._begin_tree(rule.slack)
+        self._begin_tree(rule.tolerance)
         return self._noted(
             rule, cover_by_epsilon_constraint(self.form, self.pool, rule, self.clock, self.rng, self.effort)
         )
@@ -564,12 +564,12 @@ class FrontSearch:
         self.looked += outcome.looked
         if outcome.closed:
             self.covering = rule
-            self.bounds.append(Bound(rule.slack, np.empty((0, self.m))))
+            self.bounds.append(Bound(rule.tolerance, np.empty((0, self.m))))
         return outcome
 
     def _multiple(self, rule: EpsilonCover) -> float:
         """Return the slack of a cover in units of the slack that the gap stands for."""
-        return float(np.max(rule.slack / self.rule.slack))
+        return float(np.max(rule.tolerance / self.rule.tolerance))
 
     def _choose(self) -> None:
         """Choose the designs to return and prove them; where too few are known, look for more until nothing is left."""
@@ -622,17 +622,17 @@ class FrontSearch:
         """Tell whether the designs of the front cover all that are known."""
         listed = np.array([c.phi[: self.m] for c in self.front])
         known = self.form.archive.phi[:, : self.m]
-        covered = np.all(listed[None, :, :] - self.rule.slack <= known[:, None, :], axis=2).any(axis=1)
+        covered = np.all(listed[None, :, :] - self.rule.tolerance <= known[:, None, :], axis=2).any(axis=1)
         return bool(covered.all())
 
     def _rescale(self) -> None:
         """Measure the gap of objectives that can be zero against their range on this front."""
         phi = np.array([c.phi for c in self.front])
         needed = self.form.slack(self.gap, ranges(phi))[: self.m]
-        too_wide = needed < self.rule.slack
+        too_wide = needed < self.rule.tolerance
         if np.any(too_wide):
             # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
-            self.rule.slack = np.where(too_wide, self.limits.margin * needed, self.rule.slack)
+            self.rule.tolerance = np.where(too_wide, self.limits.margin * needed, self.rule.tolerance)
             self.proven_designs.clear()
 
     def _proven_at_gap(self) -> bool:
@@ -641,7 +641,7 @@ class FrontSearch:
     def _polished(self, most: int) -> list[Candidate]:
         """Return designs that spread over the front, at most so many, each made as good as its parts allow."""
         form, archive, done = self.form, self.form.archive, set[bytes]()
-        polish_extremes(form, self.m, float(self.rule.slack.max()))
+        polish_extremes(form, self.m, float(self.rule.tolerance.max()))
         for _ in range(self.limits.polishings):
             rough = [c for c in self._spread(list(archive), most) if c.phi[: self.m].tobytes() not in done]
             if not rough:
@@ -656,7 +656,7 @@ class FrontSearch:
         known, effort = self.form.archive.phi, self.limits.fill + self.looked
         if self.by_steps:
             # Not everything that is not dominated, but everything that the gap tells apart.
-            self.may_find_more = self._in_steps(self._with_slack(self.rule.slack)).closed
+            self.may_find_more = self._in_steps(self._with_slack(self.rule.tolerance)).closed
             return not np.array_equal(self.form.archive.phi, known)
         outcome = self._covered(self._with_slack(np.full(self.m, self.tuning.tolerances.tie)), effort, self.points)
         self.complete = outcome.closed and len(self.form.archive) <= self.points
@@ -665,13 +665,13 @@ class FrontSearch:
     def _prove(self) -> bool:
         """Prove the designs chosen; tell whether they stand or better ones were found for some."""
         form, proven = self.form, self.proven_designs
-        stairs = NonImprovement(self.front, self.rule.columns, self.rule.slack, form.archive, proven)
+        stairs = NonImprovement(self.front, self.rule.columns, self.rule.tolerance, form.archive, proven)
         self.stairs = stairs
         if self.by_steps:
             self._begin_tree(None)  # the boxes of one step are not all that is open
             outcome = prove_by_epsilon_constraint(form, self.pool, stairs, self.clock, self.rng, self.effort)
         else:
-            self._begin_tree(stairs.slack)
+            self._begin_tree(stairs.tolerance)
             outcome = branch_and_bound(form, self.pool, stairs, self.clock, self.rng, self.limits.boxes)
         self.looked += outcome.looked
         left = self._close(outcome.open, stairs)

@@ -152,7 +152,7 @@ def _inner(
     for position, k in enumerate(columns):
         even = (share + position / len(columns)) % 1.0
         weights[:, k] = 1.0 if len(columns) == 1 else 0.02 + even
-    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(rule.plain, (count, 1)), form.goal_scales, 0.0)
+    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(rule.fixed_cutoffs, (count, 1)), form.goal_scales, 0.0)
     start = np.tile(form.inside(form.leaves(combinations[:1]), 0.5), (count, 1))
     answer = form.solve_many(tasks, combinations, start)
     points, owner = _makeable(form, combinations, answer.variables)

@@ -280,7 +280,11 @@ def solve_everywhere(
                 weights = np.zeros((len(own), goals))
                 weights[:, columns] = np.maximum(direction, 1e-3)
                 tasks = Tasks(
-                    weights, np.zeros((len(own), goals)), np.tile(rule.plain, (len(own), 1)), form.goal_scales, 0.0
+                    weights,
+                    np.zeros((len(own), goals)),
+                    np.tile(rule.fixed_cutoffs, (len(own), 1)),
+                    form.goal_scales,
+                    0.0,
                 )
                 points = form.makeable(form.solve_many(tasks, own, start).variables if form.n else start)
                 rows, phi = form.feasible_rows(points, own)

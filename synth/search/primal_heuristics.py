@@ -36,12 +36,12 @@ class PrimalHeuristics:
         if form.n and not len(form.archive):
             self._conflicts(batch)
         phi = form.phi_of(batch.bounds)
-        space, along = self.rule.room(phi, batch.cell), phi[:, self.rule.columns[0]]
+        space, along = self.rule.possible_gain(phi, batch.cell), phi[:, self.rule.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
         if form.n and self._worth_solving():
             most = limits.most_problems if len(self.rule.columns) > 1 else limits.least_problems
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
-            chosen = chosen.take(self.rule.room(form.phi_of(chosen.bounds), chosen.cell) > 0)
+            chosen = chosen.take(self.rule.possible_gain(form.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
             more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
             self.nlps = more if 4 * good > len(chosen) else fewer
@@ -93,7 +93,7 @@ class PrimalHeuristics:
         boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
         combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
-        caps = np.tile(self.rule.plain, (len(boxes), 1))
+        caps = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
         tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
         found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
@@ -105,16 +105,16 @@ class PrimalHeuristics:
         """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
         if self.form.conflict:
-            room = self.rule.room(found.phi, self.form.cell_of(combinations))
+            room = self.rule.possible_gain(found.phi, self.form.cell_of(combinations))
             excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
-            importance = np.maximum(excess, float(self.rule.slack.min())) ** -2.0
+            importance = np.maximum(excess, float(self.rule.tolerance.min())) ** -2.0
         self.form.learn(tasks, found, importance)
 
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
         self.offer(form.inside(small, 0.5), form.combination(small))
-        rest = small.take(self.rule.room(form.phi_of(small.bounds), small.cell) > 0)
+        rest = small.take(self.rule.possible_gain(form.phi_of(small.bounds), small.cell) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
         _, stood_for = self.on_edge(form.inside(rest, 0.5), form.combination(rest), len(rest))
         low, high = form.ends(rest)
@@ -124,12 +124,12 @@ class PrimalHeuristics:
         # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
         left[stood_for] = True
         worth = np.zeros(phi.shape[1])
-        worth[self.rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.rule.slack, 0.0)
+        worth[self.rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.rule.tolerance, 0.0)
         phi[stood_for] += worth
-        return rest.take(left & (self.rule.room(phi, rest.cell) > 0))
+        return rest.take(left & (self.rule.possible_gain(phi, rest.cell) > 0))
 
     def _tightened(self, boxes: Boxes) -> Boxes:
-        caps = self.rule.caps(self.form.phi_of(boxes.bounds), boxes.cell)
+        caps = self.rule.cutoffs(self.form.phi_of(boxes.bounds), boxes.cell)
         return self.form.contract(boxes, caps, every_goal=self.every)
 
     def _probe(self, boxes: Boxes) -> int:
@@ -210,7 +210,7 @@ class PrimalHeuristics:
         rows, phi = form.edge_rows(points, combinations)
         if not len(rows):
             return 0, rows
-        space = self.rule.room(phi[rows], form.cell_of(combinations[rows]))
+        space = self.rule.possible_gain(phi[rows], form.cell_of(combinations[rows]))
         rows, space = rows[space > 0], space[space > 0]
         rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
         marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
@@ -312,7 +312,7 @@ class PrimalHeuristics:
                 weights = np.zeros((len(own), len(self.form.goals)))
                 weights[:, self.rule.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
-                caps = np.tile(self.rule.plain, (len(own), 1))
+                caps = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
                 tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
@@ -333,7 +333,7 @@ class PrimalHeuristics:
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
         cell = form.cell_of(combinations[good])
-        space, along = self.rule.room(phi[good], cell), phi[good][:, columns[0]]
+        space, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
@@ -344,11 +344,11 @@ class PrimalHeuristics:
         form, columns = self.form, self.rule.columns
         count, goals = len(base), len(form.goals)
         slopes, weights = np.zeros((count, goals)), np.zeros((count, goals))
-        caps = np.tile(self.rule.plain, (count, 1))
+        caps = np.tile(self.rule.fixed_cutoffs, (count, 1))
         if len(columns) == 1:
             weights[:, columns] = 1.0
         else:
-            slope = self.rule.slack / self.rule.slack.max()
+            slope = self.rule.tolerance / self.rule.tolerance.max()
             known = np.isfinite(base)
             caps[:, columns] = np.where(known, base, np.inf)
             slopes[:, columns] = np.where(known, slope, 0.0)
@@ -394,7 +394,7 @@ class PrimalHeuristics:
         missed = np.ones(len(variables), dtype=bool)
         missed[around.tag[hit]] = False
         narrow = around.take(missed[around.tag])
-        narrow = narrow.take(self.rule.room(form.phi_of(narrow.bounds), narrow.cell) > 0)
+        narrow = narrow.take(self.rule.possible_gain(form.phi_of(narrow.bounds), narrow.cell) > 0)
         if not len(narrow):
             return found
         low, high = form.ends(narrow)

@@ -16,18 +16,18 @@ class PruningRule(Protocol):
     """What a search is for: which designs would still be of use."""
 
     columns: list[int]
-    slack: np.ndarray
-    plain: np.ndarray
+    tolerance: np.ndarray
+    fixed_cutoffs: np.ndarray
     proves: bool  # designs that have been looked for, so that hardly any better ones are left
 
-    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use.
 
         ``cell`` (boxes, factors) tells which combinations a box holds; only where several questions are answered
         together does it matter.
         """
 
-    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than needed a box could be: the least distance to a cap, 0 if it is of no use."""
 
     def leading(self, archive: Archive) -> list[Candidate]:
@@ -45,15 +45,15 @@ class TabledPruningRule(PruningRule, Protocol):
 
 
 class EpsilonCover:
-    """Cover everything: for each possible design a known one that is at most the slack worse in every objective.
+    """Cover everything: for each possible design a known one that is at most the tolerance worse in every objective.
 
     Parameters
     ----------
     columns : list of int
         Numbers of the objectives that are traded off; one of them: its best design is sought.
-    slack : array (columns,)
+    tolerance : array (columns,)
         In phi.
-    plain : array (objectives,)
+    fixed_cutoffs : array (objectives,)
         Caps of phi that every design must keep; infinite where there is none.
     known : Archive
         Designs known, no one better than another in all the objectives traded.
@@ -61,38 +61,40 @@ class EpsilonCover:
 
     proves = False
 
-    def __init__(self, columns: Sequence[int], slack: np.ndarray, plain: np.ndarray, known: Archive) -> None:
-        self.columns, self.slack, self.plain, self.known = list(columns), slack, plain, known
+    def __init__(
+        self, columns: Sequence[int], tolerance: np.ndarray, fixed_cutoffs: np.ndarray, known: Archive
+    ) -> None:
+        self.columns, self.tolerance, self.fixed_cutoffs, self.known = list(columns), tolerance, fixed_cutoffs, known
         self.tie = known.tuning.tolerances.tie
 
-    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
-        caps = np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
-        own = self.known.caps(lower[:, self.columns], self.slack)
-        caps[:, self.columns] = np.minimum(caps[:, self.columns], own)
-        return caps
+        cutoffs = np.tile(self.fixed_cutoffs[: lower.shape[1]] + self.tie, (len(lower), 1))
+        own = self.known.cutoffs(lower[:, self.columns], self.tolerance)
+        cutoffs[:, self.columns] = np.minimum(cutoffs[:, self.columns], own)
+        return cutoffs
 
-    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than the designs known a box could be."""
         if not len(lower):
             return np.empty(0)
         with np.errstate(all="ignore"):
-            distance = self.known.caps(lower[:, self.columns], self.slack) - lower[:, self.columns]
+            distance = self.known.cutoffs(lower[:, self.columns], self.tolerance) - lower[:, self.columns]
             result = np.where(np.isnan(distance), np.inf, distance).min(axis=1)
-            broken = np.any(lower > self.plain[: lower.shape[1]] + self.tie, axis=1)
+            broken = np.any(lower > self.fixed_cutoffs[: lower.shape[1]] + self.tie, axis=1)
         return np.where(broken, 0.0, result)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many no known one covered."""
-        keep = np.all(phi <= self.plain + self.tie, axis=1)
+        keep = np.all(phi <= self.fixed_cutoffs + self.tie, axis=1)
         combinations, variables, phi = combinations[keep], variables[keep], phi[keep]
-        new = int((self.room(phi) > 0).sum())
+        new = int((self.possible_gain(phi) > 0).sum())
         self.known.add(combinations, variables, phi)
         return new
 
     def leading(self, archive: Archive) -> list[Candidate]:
         """Return the best design of an archive in the one objective."""
-        allowed = np.flatnonzero(np.all(archive.phi <= self.plain + self.tie, axis=1))
+        allowed = np.flatnonzero(np.all(archive.phi <= self.fixed_cutoffs + self.tie, axis=1))
         k = self.columns[0]
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
@@ -101,16 +103,16 @@ class EpsilonCover:
         columns, bounded = self.columns, form.bounded
         if reaches_beyond(self, bounded) or len(columns) > 2:
             return None
-        plain = self.plain[:bounded] + self.tie
+        fixed_cutoffs = self.fixed_cutoffs[:bounded] + self.tie
         if len(columns) == 1:
-            least = (self.known.phi[:, columns[0]] - self.slack[0]).min(initial=np.inf)
-            plain[columns[0]] = min(plain[columns[0]], least)
-        known = _covered_from(form, self.known, self.slack) if len(columns) == 2 else ()
-        return CapTables(columns, form.values_of(plain), known=known)
+            least = (self.known.phi[:, columns[0]] - self.tolerance[0]).min(initial=np.inf)
+            fixed_cutoffs[columns[0]] = min(fixed_cutoffs[columns[0]], least)
+        known = _covered_from(form, self.known, self.tolerance) if len(columns) == 2 else ()
+        return CapTables(columns, form.values_of(fixed_cutoffs), known=known)
 
 
 class NonImprovement:
-    """Prove some designs: nothing is better than one of them by more than the slack in every objective.
+    """Prove some designs: nothing is better than one of them by more than the tolerance in every objective.
 
     Those that are best in one objective are proven in that objective alone. A design that is beaten is replaced.
     What a known design covers can beat none of them either, as no known design dominates one of them: this settles
@@ -122,7 +124,7 @@ class NonImprovement:
         None of them dominated by a known one.
     columns : list of int
         Numbers of the objectives.
-    slack : array (columns,)
+    tolerance : array (columns,)
         In phi.
     known : Archive
     proven : set of bytes
@@ -135,12 +137,12 @@ class NonImprovement:
         self,
         designs: Sequence[Candidate],
         columns: Sequence[int],
-        slack: np.ndarray,
+        tolerance: np.ndarray,
         known: Archive,
         proven: Collection[bytes] = (),
     ) -> None:
-        self.designs, self.columns, self.slack, self.known = list(designs), list(columns), slack, known
-        self.plain, self.tie = np.full(known.phi.shape[1], np.inf), known.tuning.tolerances.tie
+        self.designs, self.columns, self.tolerance, self.known = list(designs), list(columns), tolerance, known
+        self.fixed_cutoffs, self.tie = np.full(known.phi.shape[1], np.inf), known.tuning.tolerances.tie
         self._proven = proven
         self._set()
 
@@ -163,26 +165,26 @@ class NonImprovement:
 
     def _set(self) -> None:
         phi = np.array([c.phi[self.columns] for c in self.designs])
-        steps = [phi[[c.phi.tobytes() not in self._proven for c in self.designs]] - self.slack]
+        steps = [phi[[c.phi.tobytes() not in self._proven for c in self.designs]] - self.tolerance]
         for k in range(len(self.columns)):
             row = np.full((1, len(self.columns)), np.inf)
-            row[0, k] = phi[:, k].min() - self.slack[k]
+            row[0, k] = phi[:, k].min() - self.tolerance[k]
             steps.append(row)
         self.steps = np.concatenate(steps)
 
-    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to beat one of the designs."""
-        caps = np.full(lower.shape, np.inf)
+        cutoffs = np.full(lower.shape, np.inf)
         own = lower[:, self.columns]
         below = self._below_two(own) if len(self.columns) == 2 else self._below(own)
-        caps[:, self.columns] = np.minimum(below, self.known.caps(own, self.slack))
-        return caps
+        cutoffs[:, self.columns] = np.minimum(below, self.known.cutoffs(own, self.tolerance))
+        return cutoffs
 
-    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how far below one of the designs a box could be."""
         own = lower[:, self.columns]
         with np.errstate(all="ignore"):
-            distance = (self.caps(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)
+            distance = (self.cutoffs(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)
         room: np.ndarray = np.maximum(distance, 0.0)
         return room
 
@@ -218,7 +220,7 @@ class NonImprovement:
         columns = self.columns
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
-        (first, highest), known = self._in_order(), _covered_from(form, self.known, self.slack)
+        (first, highest), known = self._in_order(), _covered_from(form, self.known, self.tolerance)
         steps = form.signed(columns[0], first), form.signed(columns[1], highest)
         return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
@@ -227,9 +229,9 @@ class NonImprovement:
         own = phi[:, self.columns]
         least = np.array([c.phi[self.columns] for c in self.designs])
         beats = beating(own[:, None, :], least[None, :, :], self.tie)
-        worth = np.where(beats, (own / self.slack).sum(axis=1)[:, None], np.inf)
+        worth = np.where(beats, (own / self.tolerance).sum(axis=1)[:, None], np.inf)
         for k, j in enumerate(np.argmin(least, axis=0)):
-            lower = own[:, k] < least[j, k] - self.slack[k]
+            lower = own[:, k] < least[j, k] - self.tolerance[k]
             if lower.any():
                 worth[:, j] = np.where(lower, own[:, k], np.inf)
         beaten = np.flatnonzero(np.isfinite(worth).any(axis=0))
@@ -251,9 +253,11 @@ def beating(rows: np.ndarray, phi: np.ndarray, tie: float) -> np.ndarray:
     return better
 
 
-def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+def _covered_from(
+    form: Formulation, known: Archive, tolerance: np.ndarray
+) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
     """Return what designs cover of two objectives, in signed values."""
-    pairs = zip((0, 1), known.covering(slack), strict=True)
+    pairs = zip((0, 1), known.covering(tolerance), strict=True)
     first, second = known.columns
     return tuple(
         (form.signed((second, first)[k], at), form.signed((first, second)[k], least)) for k, (at, least) in pairs
@@ -262,4 +266,4 @@ def _covered_from(form: Formulation, known: Archive, slack: np.ndarray) -> tuple
 
 def reaches_beyond(rule: PruningRule, bounded: int) -> bool:
     """Tell whether a search speaks of more than the first objectives."""
-    return max(rule.columns) >= bounded or bool(np.any(np.isfinite(rule.plain[bounded:])))
+    return max(rule.columns) >= bounded or bool(np.any(np.isfinite(rule.fixed_cutoffs[bounded:])))

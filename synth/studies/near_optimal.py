@@ -207,24 +207,24 @@ class _Near:
 
     def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray, tie: float) -> None:
         self.columns, self.tie = list(range(traded)), tie
-        self.slack, self.plain = sizes, caps
+        self.tolerance, self.fixed_cutoffs = sizes, caps
         self.own = own
         self.found: dict[int, tuple[float, Candidate]] = {}
 
-    def caps(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return the caps, the same for every box."""
-        return np.tile(self.plain[: lower.shape[1]] + self.tie, (len(lower), 1))
+        return np.tile(self.fixed_cutoffs[: lower.shape[1]] + self.tie, (len(lower), 1))
 
-    def room(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
+    def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how far within the caps a box could be."""
         with np.errstate(all="ignore"):
-            distance = (self.plain[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
+            distance = (self.fixed_cutoffs[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
         room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
         return room
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many combinations are new."""
-        kept = np.flatnonzero(np.all(phi[:, self.columns] <= self.plain[self.columns] + self.tie, axis=1))
+        kept = np.flatnonzero(np.all(phi[:, self.columns] <= self.fixed_cutoffs[self.columns] + self.tie, axis=1))
         worse = self.worse(phi[kept])
         order = np.lexsort((worse, combinations[kept]))
         _, first = np.unique(combinations[kept][order], return_index=True)
@@ -239,7 +239,7 @@ class _Near:
 
     def worse(self, phi: np.ndarray) -> np.ndarray:
         """Return by how much designs are worse than the chosen one, as a share of what is allowed."""
-        worse: np.ndarray = ((phi[:, self.columns] - self.own[self.columns]) / self.slack).max(axis=1)
+        worse: np.ndarray = ((phi[:, self.columns] - self.own[self.columns]) / self.tolerance).max(axis=1)
         return worse
 
     def leading(self, archive: Archive) -> list[Candidate]:
@@ -328,7 +328,7 @@ class _Enumeration:
         """Look at everything; tell whether every combination is decided."""
         form, near, batch_size = self.form, self.near, self.limits.batch
         seeker = PrimalHeuristics(form, near, self.rng, every=False)
-        caps = near.plain[: form.bounded] + near.tie
+        caps = near.fixed_cutoffs[: form.bounded] + near.tie
         stack = [form.lean(form.root())]
         while stack:
             boxes = stack.pop()
@@ -339,7 +339,7 @@ class _Enumeration:
                 return False
             self.looked += len(batch)
             batch = form.contract(batch, caps)
-            batch = self._open(batch.take(near.room(form.phi_of(batch.bounds)) > 0))
+            batch = self._open(batch.take(near.possible_gain(form.phi_of(batch.bounds)) > 0))
             if not len(batch):
                 continue
             self._try(batch)
@@ -383,14 +383,14 @@ class _Enumeration:
             return
         count, goals = len(combinations), len(form.goals)
         slopes, caps = np.zeros((count, goals)), np.full((count, goals), np.inf)
-        slopes[:, :m], caps[:, :m] = near.slack / near.slack.max(), near.own[:m]
+        slopes[:, :m], caps[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
         tasks = Tasks(np.zeros((count, goals)), slopes, caps, form.goal_scales, t_weight=1.0)
         answer = form.solve_many(tasks, combinations, start)
         if not form.gridded.any():
             self._offer(answer.variables, combinations)
             return
         phi = answer.phi[:, :m]
-        within = np.all(phi <= near.plain[:m] + near.tie, axis=1)
+        within = np.all(phi <= near.fixed_cutoffs[:m] + near.tie, axis=1)
         good = np.flatnonzero((answer.violation <= form.tuning.nlp.missed) & within)
         for k in good:
             self._round(int(combinations[k]), answer.variables[[k]])
@@ -405,7 +405,7 @@ class _Enumeration:
         cell = form.whole(combination).cell
         whole = form.leaves(np.full(len(low), combination), low, high)
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
-        around = form.contract(form.lean(around), near.plain[: form.bounded] + near.tie)
+        around = form.contract(form.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
             points = form.makeable(form.inside(around, share))
             self._offer(points, form.combination(around))
@@ -450,9 +450,9 @@ class _Enumeration:
         if hurried:
             return known
         gap = self.limits.settling_gap
-        slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.slack)
-        caps = near.plain.copy()
-        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.slack + near.tie
+        slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.tolerance)
+        caps = near.fixed_cutoffs.copy()
+        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
         rule = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
         rule.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         branch_and_bound(

@@ -54,7 +54,7 @@ def test_boxes_with_most_room_come_first_until_too_many_wait(form):
     rule = whole(form, 0.01)
     branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100)
     left = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100).open
-    room = rule.room(form.phi_of(left.bounds))
+    room = rule.possible_gain(form.phi_of(left.bounds))
     assert room.min() < 0.01 < room.max() / 2
     # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
     for most, low, high in ((10**6, room.max() / 2, room.max()), (0, 0.0, 0.01)):
@@ -62,7 +62,7 @@ def test_boxes_with_most_room_come_first_until_too_many_wait(form):
         waiting.add(left)
         assert len(waiting) == len(left) == sum(len(b) for b in waiting.batches)
         batch = waiting.next()
-        first = rule.room(form.phi_of(batch.bounds))[0]
+        first = rule.possible_gain(form.phi_of(batch.bounds))[0]
         assert low <= first <= high
         assert len(waiting) + len(batch) == len(left)
 

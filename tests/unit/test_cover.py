@@ -55,7 +55,7 @@ def test_caps_and_room_of_a_cover_against_brute_force(m, seed):
     lower = some_phi(rng, 50)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
     rule = EpsilonCover(range(m), slack, plain, archive)
-    caps, room = rule.caps(lower), rule.room(lower)
+    caps, room = rule.cutoffs(lower), rule.possible_gain(lower)
     for own, cap, space in zip(lower, caps, room, strict=True):
         by_hand = [cap_by_hand(archive.phi[:, :m], slack, own[:m], k) for k in range(m)]
         expected = plain + TIE
@@ -77,9 +77,11 @@ def test_a_box_without_room_is_covered_and_caps_cut_off_only_what_is_covered(m, 
     design = lower + rng.exponential(0.1, lower.shape)  # anything the box may hold
     known = archive.phi[:, :m] - slack
     covered = np.all(known[None] <= design[:, None, :m], axis=2).any(axis=1)
-    assert covered[rule.room(lower) <= 0].all()
-    assert np.any(rule.room(lower) > 0) == (not np.all(np.all(known[None] <= lower[:, None, :m], axis=2).any(axis=1)))
-    assert covered[np.any(design > rule.caps(lower), axis=1)].all()
+    assert covered[rule.possible_gain(lower) <= 0].all()
+    assert np.any(rule.possible_gain(lower) > 0) == (
+        not np.all(np.all(known[None] <= lower[:, None, :m], axis=2).any(axis=1))
+    )
+    assert covered[np.any(design > rule.cutoffs(lower), axis=1)].all()
 
 
 def test_a_cover_takes_what_no_known_design_covers():
@@ -119,7 +121,7 @@ def test_caps_and_room_of_a_staircase_against_brute_force(m, seed):
     steps = steps_by_hand(designs, slack, proven, m)
     lower = some_phi(rng, 50) - 0.1
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    for own, cap, space in zip(lower[:, :m], rule.caps(lower), rule.room(lower), strict=True):
+    for own, cap, space in zip(lower[:, :m], rule.cutoffs(lower), rule.possible_gain(lower), strict=True):
         known = [cap_by_hand(archive.phi[:, :m], slack, own, k) for k in range(m)]
         below = [s for s in steps if np.all(own < s)]
         expected = [min(max((s[k] for s in below), default=-np.inf), known[k]) for k in range(m)]
@@ -140,7 +142,7 @@ def test_a_design_that_is_beaten_is_replaced():
     better = np.array([[0.48, 0.45, 0, 0], [0.05, 0.9, 0, 0]])
     assert rule.take(np.array([7, 8]), np.empty((2, 0)), better) == 2
     assert sorted(c.combination for c in rule.designs) == [2, 7, 8]
-    assert rule.room(np.array([[0.36, 0.34, 0, 0]]))[0] == pytest.approx(0.01)
+    assert rule.possible_gain(np.array([[0.36, 0.34, 0, 0]]))[0] == pytest.approx(0.01)
 
 
 # -- what is chosen ----------------------------------------------------------------------------------

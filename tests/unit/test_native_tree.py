@@ -76,8 +76,8 @@ def by_single_steps(form, rule, boxes, levels):
     """Return halves, and boxes too small to be split, after some generations, step by step."""
     small = [boxes.take(slice(0, 0))]
     for _ in range(levels):
-        boxes = form.contract(boxes, rule.caps(form.phi_of(boxes.bounds), boxes.cell))
-        boxes = boxes.take(rule.room(form.phi_of(boxes.bounds), boxes.cell) > 0)
+        boxes = form.contract(boxes, rule.cutoffs(form.phi_of(boxes.bounds), boxes.cell))
+        boxes = boxes.take(rule.possible_gain(form.phi_of(boxes.bounds), boxes.cell) > 0)
         boxes, rest = form.split(boxes)
         small.append(rest)
     return boxes, Boxes.joined(small)
@@ -133,7 +133,7 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     grown = form.grow(boxes, rule.tables(form), 6)
     points, combinations, phi = designs_of(form, rng, 60_000)
     # Of use: better than what is known, by the slack and a little.
-    useful = rule.room(phi) > 10 * TIE
+    useful = rule.possible_gain(phi) > 10 * TIE
     points, combinations = points[useful], combinations[useful]
     assert len(points) > 20
     assert not lost(boxes, points, combinations, form).any()

@@ -704,7 +704,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     cell = np.stack([rng.integers(0, len(t), boxes) for t in form.cells.trees], axis=1).astype(np.int32)
     lower = np.round(rng.random((boxes, goals)), 1)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    caps, room = rule.caps(lower, cell), rule.room(lower, cell)
+    caps, room = rule.cutoffs(lower, cell), rule.possible_gain(lower, cell)
     for b in range(boxes):
         rows = [int(q) for q in tree.rows(int(cell[b, 0]))]
         cap = max(needed[q] for q in rows)
