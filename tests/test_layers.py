@@ -118,3 +118,23 @@ def test_no_class_name_stands_for_two_things() -> None:
                 homes.setdefault(node.name, []).append(module)
     assert len(homes) > 100
     assert {name: found for name, found in homes.items() if len(found) > 1} == {}
+
+
+def picture() -> str:
+    """Return the packages as text: a line for each level from the ground up, with what its places import."""
+    lines = []
+    for level, places in enumerate(LAYERS[:-1]):
+        for place in places:
+            needs = {end[1] for end in arrows() if end[0] == place}
+            packages = sorted((p for p in needs if (ENGINE / p).is_dir()), key=lambda p: (LEVELS[p], p))
+            if (ENGINE / place).is_dir():
+                lines.append(f"{level - GROUND:2d}  {place:13s} <- {' '.join(packages) or 'the ground'}")
+    return "\n".join(lines)
+
+
+GROUND = next(level for level, places in enumerate(LAYERS) if (ENGINE / places[0]).is_dir()) - 1
+
+
+def test_contributing_shows_the_packages_as_they_are() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert f"```text\n{picture()}\n```" in text
