@@ -20,9 +20,15 @@ from synth.tuning import TUNING, Tuning
 
 
 def pose(
-    p: Any, requirements: Mapping[str, Any], objectives: Any = None, points: int = 30, catalogs: Any = None,
-    parts: Any = None, tuning: Tuning = TUNING, **more: Any,
-) -> Question:  # fmt: skip
+    p: Any,
+    requirements: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    parts: Any = None,
+    tuning: Tuning = TUNING,
+    **more: Any,
+) -> Question:
     """Return a question that has been checked."""
     how = {name: more.pop(name) for name in SEARCHED if name in more}
     request = Request.of(p, requirements, catalogs, objectives=objectives, parts=parts, **more)
@@ -30,9 +36,15 @@ def pose(
 
 
 def instance_of(
-    problem: DesignProblem, requirements: Mapping[str, Any], catalogs: Catalogs, parts: Any = None, limits: Any = None,
-    fix: Any = None, grid: bool = True, **how: bool,
-) -> Instance:  # fmt: skip
+    problem: DesignProblem,
+    requirements: Mapping[str, Any],
+    catalogs: Catalogs,
+    parts: Any = None,
+    limits: Any = None,
+    fix: Any = None,
+    grid: bool = True,
+    **how: bool,
+) -> Instance:
     """Return a model with its requirement values and restrictions."""
     asked = {"parts": parts, "limits": limits, "fix": fix, "grid": grid}
     return Instance(Request(problem=problem, requirements=requirements, catalogs=catalogs, **asked), **how)

@@ -87,8 +87,11 @@ def test_imports_are_found_wherever_they_stand() -> None:
         "if TYPE_CHECKING:\n    from synth.d import E\ndef f():\n    import synth.g\n"
     )
     assert imports(text, {"synth.a", "synth.a.b", "synth.d", "synth.g"}) == {
-        "synth.a", "synth.a.b", "synth.d", "synth.g",
-    }  # fmt: skip
+        "synth.a",
+        "synth.a.b",
+        "synth.d",
+        "synth.g",
+    }
 
 
 def test_every_place_has_a_level_and_every_level_a_place() -> None:

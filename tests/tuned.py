@@ -20,9 +20,16 @@ def tuned(**changes: Mapping[str, Any]) -> Tuning:
 
 
 def synthesize(
-    tuning: Tuning, p: Any, requirements: Mapping[str, Any], objectives: Any = None, points: int = 30,
-    catalogs: Any = None, robust: Any = None, progress: Any = None, **more: Any,
-) -> synth.ParetoFront:  # fmt: skip
+    tuning: Tuning,
+    p: Any,
+    requirements: Mapping[str, Any],
+    objectives: Any = None,
+    points: int = 30,
+    catalogs: Any = None,
+    robust: Any = None,
+    progress: Any = None,
+    **more: Any,
+) -> synth.ParetoFront:
     """Do what ``synth.synthesize`` does, with these numbers."""
     how = {name: more.pop(name) for name in SEARCHED if name in more}
     request = Request.of(p, requirements, catalogs, robust, objectives=objectives, **more)

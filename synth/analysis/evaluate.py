@@ -260,9 +260,15 @@ def _solutions(
         with np.errstate(all="ignore"):
             try:
                 answer = least_squares(
-                    difference, np.clip(start, lower, upper), jac=slope, bounds=(lower, upper),
-                    xtol=1e-15, ftol=1e-15, gtol=1e-15, x_scale=np.maximum(np.abs(lower), np.abs(upper)),
-                )  # fmt: skip
+                    difference,
+                    np.clip(start, lower, upper),
+                    jac=slope,
+                    bounds=(lower, upper),
+                    xtol=1e-15,
+                    ftol=1e-15,
+                    gtol=1e-15,
+                    x_scale=np.maximum(np.abs(lower), np.abs(upper)),
+                )
             except (ValueError, np.linalg.LinAlgError):
                 continue  # this start left the domain of a formula
             x = _polish(answer.x, difference, slope, lower, upper)

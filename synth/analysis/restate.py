@@ -50,10 +50,15 @@ def asked_again(front: ParetoFront, problem: DesignProblem, catalogs: Catalogs) 
     settings = front.settings
     return Instance(
         Request(
-            problem=problem, requirements=front.frame.requirements, catalogs=catalogs, parts=settings["parts"],
-            limits=settings["limits"], fix=settings["fix"], grid=bool(settings["grid"]),
+            problem=problem,
+            requirements=front.frame.requirements,
+            catalogs=catalogs,
+            parts=settings["parts"],
+            limits=settings["limits"],
+            fix=settings["fix"],
+            grid=bool(settings["grid"]),
         )
-    )  # fmt: skip
+    )
 
 
 def question_of(front: ParetoFront, problem: Any = None, catalogs: Any = None) -> Instance:

@@ -34,20 +34,48 @@ BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
 SCORE_WIDTH = 16
 
 NUMBERS = {
-    "count": "long long", "passes": "long long", "factors": "long long", "goals": "long long",
-    "caps_step": "long long", "weights_step": "long long", "bits": "long long",
-    "score_width": "long long", "snap": "double", "pinned": "double",
-}  # fmt: skip
+    "count": "long long",
+    "passes": "long long",
+    "factors": "long long",
+    "goals": "long long",
+    "caps_step": "long long",
+    "weights_step": "long long",
+    "bits": "long long",
+    "score_width": "long long",
+    "snap": "double",
+    "pinned": "double",
+}
 GIVEN = {
-    "cell": "int", "low": "double", "high": "double", "bounds": "double", "tag": "int", "caps": "double",
-    "constants": "double", "rights": "double", "root_low": "double", "root_high": "double", "lower": "double",
-    "upper": "double", "spans": "double", "weights": "double", "steep": "double", "rows": "double *const",
-    "spreads": "float *const", "grids": "double *const", "grid_sizes": "long long",
-}  # fmt: skip
+    "cell": "int",
+    "low": "double",
+    "high": "double",
+    "bounds": "double",
+    "tag": "int",
+    "caps": "double",
+    "constants": "double",
+    "rights": "double",
+    "root_low": "double",
+    "root_high": "double",
+    "lower": "double",
+    "upper": "double",
+    "spans": "double",
+    "weights": "double",
+    "steep": "double",
+    "rows": "double *const",
+    "spreads": "float *const",
+    "grids": "double *const",
+    "grid_sizes": "long long",
+}
 TAKEN = {
-    "out_cell": "int", "out_low": "double", "out_high": "double", "out_bounds": "double", "out_tag": "int",
-    "out_scores": "float", "alive": "unsigned char", "open": "unsigned char",
-}  # fmt: skip
+    "out_cell": "int",
+    "out_low": "double",
+    "out_high": "double",
+    "out_bounds": "double",
+    "out_tag": "int",
+    "out_scores": "float",
+    "alive": "unsigned char",
+    "open": "unsigned char",
+}
 CTYPES: dict[str, type[ctypes.c_longlong | ctypes.c_double]] = {
     "long long": ctypes.c_longlong,
     "double": ctypes.c_double,
@@ -147,9 +175,11 @@ class Prepared:
         for name, arrays in self._lists.items():
             self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
         self.numbers = {
-            "factors": self.factors, "score_width": width,
-            "snap": question.margins[0], "pinned": question.margins[1],
-        }  # fmt: skip
+            "factors": self.factors,
+            "score_width": width,
+            "snap": question.margins[0],
+            "pinned": question.margins[1],
+        }
 
 
 class BoxCode:
@@ -225,9 +255,15 @@ class BoxCode:
             return array[rows[0]] if parts == 1 else np.concatenate([array[own] for own in rows])
 
         return Packed(
-            taken["alive"], packed("out_cell"), packed("out_low"), packed("out_high"), packed("out_bounds"),
-            packed("out_scores"), packed("out_tag"), taken["open"],
-        )  # fmt: skip
+            taken["alive"],
+            packed("out_cell"),
+            packed("out_low"),
+            packed("out_high"),
+            packed("out_bounds"),
+            packed("out_scores"),
+            packed("out_tag"),
+            taken["open"],
+        )
 
     def grow(
         self,
@@ -363,11 +399,17 @@ def source(code: Code) -> str | None:
     statements = [*sweeps.first, *sweeps.later]
     try:
         parts = [
-            template("compiled", "vectors"), template("bounds", "margins"), rules.common(), _sizes(code),
+            template("compiled", "vectors"),
+            template("bounds", "margins"),
+            rules.common(),
+            _sizes(code),
             *_specials(statements, owner.program),
             *_rules(statements, owner),
-            _loading(code), _tighten(code), template("bounds", "boxes"), template("bounds", "subtrees"),
-        ]  # fmt: skip
+            _loading(code),
+            _tighten(code),
+            template("bounds", "boxes"),
+            template("bounds", "subtrees"),
+        ]
     except (UnsupportedOperation, KeyError):
         return None
     return "\n".join(parts)
@@ -383,9 +425,13 @@ def _struct() -> str:
 def _sizes(code: Code) -> str:
     owner = code.contractor
     sizes = {
-        "N": owner.layout.n_variables + len(owner.pivots), "LIMITS": len(owner.cuts), "GOALS": len(owner.goals),
-        "TABLES": len(owner.tables), "NODES": len(owner.program.nodes), "SCORE_WIDTH": SCORE_WIDTH,
-    }  # fmt: skip
+        "N": owner.layout.n_variables + len(owner.pivots),
+        "LIMITS": len(owner.cuts),
+        "GOALS": len(owner.goals),
+        "TABLES": len(owner.tables),
+        "NODES": len(owner.program.nodes),
+        "SCORE_WIDTH": SCORE_WIDTH,
+    }
     lines = [f"#define {name} {value}" for name, value in sizes.items()]
     return "\n".join([*lines, "#define ANY(n) ((n) + 1)", _struct()])
 

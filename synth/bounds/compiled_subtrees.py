@@ -21,10 +21,25 @@ from synth.tuning import CodeSizes
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
-    "column", "plain", "of_cluster", "known_at_first", "known_least_first", "known_at_second", "known_least_second",
-    "steps_at", "steps_largest", "left", "right", "ranges",
-    "out_cell", "out_low", "out_high", "out_bounds", "out_tag", "too_small",
-)  # fmt: skip
+    "column",
+    "plain",
+    "of_cluster",
+    "known_at_first",
+    "known_least_first",
+    "known_at_second",
+    "known_least_second",
+    "steps_at",
+    "steps_largest",
+    "left",
+    "right",
+    "ranges",
+    "out_cell",
+    "out_low",
+    "out_high",
+    "out_bounds",
+    "out_tag",
+    "too_small",
+)
 
 
 @dataclass(frozen=True)
@@ -157,10 +172,11 @@ def grow(
     if caps.steps is not None:
         fixed["steps_at"], fixed["steps_largest"] = (np.ascontiguousarray(x, dtype=float) for x in caps.steps)
     numbers = {
-        "levels": levels, "columns": len(caps.columns),
+        "levels": levels,
+        "columns": len(caps.columns),
         "known": len(caps.known[0][0]) if caps.known else 0,
         "steps": -1 if caps.steps is None else len(caps.steps[0]),
-    }  # fmt: skip
+    }
     found: list[Grown | None] = [None] * -(-count // sizes.tree_part)
 
     def part(k: int) -> Callable[[], None]:

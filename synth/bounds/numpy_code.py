@@ -60,9 +60,15 @@ def _in_python(statement: Statement, narrowed: np.ndarray) -> list[str]:
 def python_function(text: str, program: Program) -> Callable[..., Any]:
     """Return generated code as a function."""
     scope: dict[str, Any] = {
-        "np": np, "v_fmax": np.fmax, "v_fmin": np.fmin, "v_sqrt": np.sqrt, "v_abs": np.abs, "choose": np.where,
-        "loosened": loosened, "whole": whole,
-    }  # fmt: skip
+        "np": np,
+        "v_fmax": np.fmax,
+        "v_fmin": np.fmin,
+        "v_sqrt": np.sqrt,
+        "v_abs": np.abs,
+        "choose": np.where,
+        "loosened": loosened,
+        "whole": whole,
+    }
     scope |= {f"forward_{op + 100}": rule for op, rule in FORWARD.items()}
     scope |= {f"backward_{op + 100}": rule for op, rule in BACKWARD.items()}
     for i, function in enumerate(program.specials):

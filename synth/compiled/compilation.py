@@ -100,9 +100,13 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
         command = [compiler, *flags, "-o", str(made), str(origin), "-lm"]
         # In a session of its own: it is not the terminal that ends it but we, with all that it has started.
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True, env={**os.environ, "TMPDIR": str(folder)},
-        )  # fmt: skip
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+            env={**os.environ, "TMPDIR": str(folder)},
+        )
         _wait(process)
         if process.returncode != 0:
             raise subprocess.CalledProcessError(process.returncode, command)

@@ -151,9 +151,15 @@ def batch(
         keep = _TemporaryFolder()
         output = keep.path
     job = BatchJob(
-        p, table, Path(output), mapping, catalogs, database, settings,
+        p,
+        table,
+        Path(output),
+        mapping,
+        catalogs,
+        database,
+        settings,
         {"parts": parts, "limits": limits, "fix": fix, "objectives": objectives, "grid": grid},
-    )  # fmt: skip
+    )
     with closing(job), claimed(job.folder, job.id):
         job.plan()
         stopped = job.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
@@ -231,10 +237,18 @@ class BatchJob:
         }
         self.basis = digest([self.settings, {k: v for k, v in self.hashes.items() if k != "rows"}])
         own = self.questioner.own
-        self.id = digest([
-            self.basis, self.hashes["rows"], self.table.header(), self.mapping, self.common,
-            self.questioner.default, self.questioner.own_options, None if own is None else own.__qualname__,
-        ])[:16]  # fmt: skip
+        self.id = digest(
+            [
+                self.basis,
+                self.hashes["rows"],
+                self.table.header(),
+                self.mapping,
+                self.common,
+                self.questioner.default,
+                self.questioner.own_options,
+                None if own is None else own.__qualname__,
+            ]
+        )[:16]
         self.address: Any = database or file_url(folder.resolve() / DATABASE)
         self.faults: dict[tuple[str, str | None, str], list[int]] = {}  # column, value, right -> lines; the first kinds
         self.bad = 0
@@ -298,12 +312,15 @@ class BatchJob:
             checked.seek(0)
             return not self.store.create(
                 {
-                    "id": self.id, "basis": self.basis, "source": self.table.name,
-                    "folder": str(self.folder.resolve()), "content": self._content(),
+                    "id": self.id,
+                    "basis": self.basis,
+                    "source": self.table.name,
+                    "folder": str(self.folder.resolve()),
+                    "content": self._content(),
                 },
                 (_taught(school, *pickle.load(checked)) for _ in range(count)),
                 ROWS_PER_UNIT if self._is_single() else FRONTS_PER_UNIT,
-            )  # fmt: skip
+            )
 
     def _is_planned(self) -> bool:
         place = self.address if isinstance(self.address, str) else Path(str(self.address.database))

@@ -17,9 +17,18 @@ FORMAT = 1
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
 GROUPS = ("objectives", "searched", "choices", "parts", "derived", "limits")
 ROW_COLUMNS = (
-    "line", "row", "family", "status", "designs", "seconds", "certificate", "gap", "best design", "explanation",
+    "line",
+    "row",
+    "family",
+    "status",
+    "designs",
+    "seconds",
+    "certificate",
+    "gap",
+    "best design",
+    "explanation",
     "remarks",
-)  # fmt: skip
+)
 SHORT = 12  # digits of a key that tell rows apart
 
 
@@ -157,12 +166,18 @@ def _write_rows(file: TextIO, store: Store, job: str, content: Mapping[str, Any]
         answer = row.content or {}
         designs = answer.get("rows", [])
         own = [
-            row.line, (row.key or "")[:SHORT], row.family, status, len(designs),
+            row.line,
+            (row.key or "")[:SHORT],
+            row.family,
+            status,
+            len(designs),
             "" if row.seconds is None else f"{row.seconds:.3f}",
-            answer.get("certificate", ""), _text(answer.get("gap")),
+            answer.get("certificate", ""),
+            _text(answer.get("gap")),
             best_design(layouts[row.layout], designs[0]) if designs and row.layout else "",
-            explanation_of(row), row.remarks,
-        ]  # fmt: skip
+            explanation_of(row),
+            row.remarks,
+        ]
         write([*own, *(row.cells[k] if k < len(row.cells) else "" for k in carried)])
     return dict(sorted(counts.items()))
 

@@ -122,9 +122,13 @@ class Runner:
         while free > 0 and self.waiting:
             claim = self.waiting.popleft()
             work = {
-                "job": self.job, "questions": claim.questions, "settings": dict(self.shares.settings),
-                "catalogs": self.shares.catalogs, "own": self.shares.own, "code": code_digest(),
-            }  # fmt: skip
+                "job": self.job,
+                "questions": claim.questions,
+                "settings": dict(self.shares.settings),
+                "catalogs": self.shares.catalogs,
+                "own": self.shares.own,
+                "code": code_digest(),
+            }
             self.under_way[self.executor.submit(solve_unit, work)] = claim
             free -= 1
 
@@ -184,15 +188,17 @@ class Runner:
             self.first = account
         elapsed, fresh = self.said - self.started, account.done - self.first.done
         rate = fresh / elapsed if elapsed > 0 else 0.0
-        self.progress({
-            "rows": account.rows,
-            "done": account.done,
-            "failed": account.status.get("failed", 0),
-            "infeasible": account.status.get("infeasible", 0),
-            "bad": account.bad,
-            "rate": rate,
-            "left": (account.rows - account.done) / rate if rate > 0 else None,
-        })  # fmt: skip
+        self.progress(
+            {
+                "rows": account.rows,
+                "done": account.done,
+                "failed": account.status.get("failed", 0),
+                "infeasible": account.status.get("infeasible", 0),
+                "bad": account.bad,
+                "rate": rate,
+                "left": (account.rows - account.done) / rate if rate > 0 else None,
+            }
+        )
 
 
 def _patiently(call: Callable[[], T]) -> T:

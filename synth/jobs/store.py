@@ -129,9 +129,11 @@ def engine_for(url: str | sa.URL) -> sa.Engine:
         address = address.set(drivername="postgresql+psycopg")
     try:
         engine = sa.create_engine(
-            address, connect_args={"timeout": PATIENCE} if kind == "sqlite" else {}, pool_pre_ping=True,
+            address,
+            connect_args={"timeout": PATIENCE} if kind == "sqlite" else {},
+            pool_pre_ping=True,
             json_deserializer=lambda text: _read_back(text, shown),
-        )  # fmt: skip
+        )
     except (ImportError, NoSuchModuleError) as error:
         wanted = "an installed driver: pip install 'clutchsynth[postgres]'"
         raise InputError("--database", shown, wanted) from error
@@ -449,7 +451,7 @@ class Store:
             .where(RowQuestion.job == job, RowQuestion.key == sa.bindparam("of_key"))
             .values(unit=sa.bindparam("of_unit")),
             members,
-        )  # fmt: skip
+        )
 
     def _insert_once(self, table: Any) -> Any:
         """Return an insert that leaves what is there already."""
@@ -582,12 +584,16 @@ class Store:
                     self._insert_once(Result),
                     [
                         {
-                            "job": job, "key": key, "status": o.status, "seconds": o.seconds, "content": o.content,
+                            "job": job,
+                            "key": key,
+                            "status": o.status,
+                            "seconds": o.seconds,
+                            "content": o.content,
                             "layout": None if o.layout is None else digest(o.layout),
                         }
                         for key, o in final.items()
                     ],
-                )  # fmt: skip
+                )
             if again:
                 self._add_units(connection, job, [[key] for key in again], attempts)
             for key, error in errors.items():
@@ -627,13 +633,21 @@ class Store:
         joined = sa.and_(Result.job == Row.job, Result.key == Row.key)
         asked = (
             sa.select(
-                Row.line, Row.key, Row.family, Row.cells, Row.remarks, Row.faults, Result.status, Result.seconds,
-                Result.layout, Result.content,
+                Row.line,
+                Row.key,
+                Row.family,
+                Row.cells,
+                Row.remarks,
+                Row.faults,
+                Result.status,
+                Result.seconds,
+                Result.layout,
+                Result.content,
             )
             .join(Result, joined, isouter=True)
             .where(Row.job == job)
             .order_by(*((Row.position, Row.line) if canonical else (Row.line,)))
-        )  # fmt: skip
+        )
         with self.engine.connect().execution_options(stream_results=True, yield_per=CHUNK) as connection:
             for row in connection.execute(asked):
                 yield Answered(*row)

@@ -139,11 +139,19 @@ class Model:
         void = self._void_inputs(sides)
         self.constraints = tuple(
             Constraint(
-                name=x.name, sense=x.sense, value=sides[x.name][0], bound=sides[x.name][1], unit=x.unit, scale=x.scale,
-                guard=x.guard, origin=x.origin, void_without=tuple(void[x.name]), behind=tuple(behind[x.name]),
+                name=x.name,
+                sense=x.sense,
+                value=sides[x.name][0],
+                bound=sides[x.name][1],
+                unit=x.unit,
+                scale=x.scale,
+                guard=x.guard,
+                origin=x.origin,
+                void_without=tuple(void[x.name]),
+                behind=tuple(behind[x.name]),
             )
             for x in self.limits
-        )  # fmt: skip
+        )
 
     # -- the trace -----------------------------------------------------------------------------
 
@@ -255,10 +263,15 @@ class Model:
         """
         unit = self.units[quantity]
         return Constraint(
-            name=name or f"{quantity} {SIGNS[sense]} {format_quantity(bound, unit, None)}", sense=sense,
-            value=self.quantity_node[quantity], bound=float(bound), unit=unit, origin=origin, quantity=quantity,
+            name=name or f"{quantity} {SIGNS[sense]} {format_quantity(bound, unit, None)}",
+            sense=sense,
+            value=self.quantity_node[quantity],
+            bound=float(bound),
+            unit=unit,
+            origin=origin,
+            quantity=quantity,
             behind=self.guards_of(quantity),
-        )  # fmt: skip
+        )
 
     # -- names ---------------------------------------------------------------------------------
 

@@ -199,12 +199,21 @@ class BatchNlp:
             rows = slice(first, min(first + chunk, count))
             return self._solve_part(
                 Tasks(
-                    tasks.weights[rows], tasks.slopes[rows], tasks.caps[rows], tasks.goal_scales,
-                    tasks.t_weight, tasks.elastic, None if tasks.moved is None else tasks.moved[rows],
+                    tasks.weights[rows],
+                    tasks.slopes[rows],
+                    tasks.caps[rows],
+                    tasks.goal_scales,
+                    tasks.t_weight,
+                    tasks.elastic,
+                    None if tasks.moved is None else tasks.moved[rows],
                 ),
                 [x if x.ndim == 0 else x[rows] for x in columns],
-                start[rows], low[rows], high[rows], bounds, void[rows],
-            )  # fmt: skip
+                start[rows],
+                low[rows],
+                high[rows],
+                bounds,
+                void[rows],
+            )
 
         begins = range(0, max(count, 1), chunk)
         if self.compiled and min(workers, len(begins)) > 1:

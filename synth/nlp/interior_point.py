@@ -75,10 +75,15 @@ class Problems:
         low, high = self.low[:, number], self.high[:, number]
         return Problems(
             [x if np.ndim(x) == 0 else x[number] for x in self.stored],
-            low + share * (high - low), low, high,
-            self.counts[:, number], self.slopes[:, number], self.rights[:, number],
-            self.weights[:, number], self.t_weight[number],
-        )  # fmt: skip
+            low + share * (high - low),
+            low,
+            high,
+            self.counts[:, number],
+            self.slopes[:, number],
+            self.rights[:, number],
+            self.weights[:, number],
+            self.t_weight[number],
+        )
 
 
 @dataclass(frozen=True)

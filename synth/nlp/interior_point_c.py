@@ -56,9 +56,13 @@ class Solver:
         """Solve all problems, each from its start."""
         n, rows, count = self.functions.n, self.functions.n_rows, len(problems)
         ends = Ends(
-            np.empty((n, count)), np.empty(count), np.empty((rows, count)), np.empty((rows, count)),
-            np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64),
-        )  # fmt: skip
+            np.empty((n, count)),
+            np.empty(count),
+            np.empty((rows, count)),
+            np.empty((rows, count)),
+            np.empty(count, dtype=np.int64),
+            np.empty(count, dtype=np.int64),
+        )
         stored = [np.ascontiguousarray(x, dtype=float).reshape(-1) for x in problems.stored]
         steps = np.array([0 if len(x) == 1 else 1 for x in stored] or [0], dtype=np.int64)
         columns = (DOUBLES * max(len(stored), 1))(*(x.ctypes.data_as(DOUBLES) for x in stored))

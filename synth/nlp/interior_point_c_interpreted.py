@@ -91,19 +91,32 @@ class General(Solver):
         layout = SparsityPattern(functions)
         constants, steps, outputs, slots = _listed(functions)
         numbers = {
-            "n": layout.n, "rows": layout.rows, "cuts": layout.cuts, "goals": layout.goals,
-            "nonzeros": len(layout.row), "curvatures": len(layout.hessian), "stored": len(functions.stored),
-            "slots": slots, "constants": len(constants), "steps": len(steps),
-        }  # fmt: skip
+            "n": layout.n,
+            "rows": layout.rows,
+            "cuts": layout.cuts,
+            "goals": layout.goals,
+            "nonzeros": len(layout.row),
+            "curvatures": len(layout.hessian),
+            "stored": len(functions.stored),
+            "slots": slots,
+            "constants": len(constants),
+            "steps": len(steps),
+        }
         terms = [
             (a, b, i, j)
             for a, b, first, second in layout.pairs
             for i, j in zip(first.tolist(), second.tolist(), strict=True)
         ]
         lists = {
-            "equal": layout.equal, "guard": layout.guard, "row": layout.row, "column": layout.column,
-            "curvature": layout.hessian, "term": terms, "code": steps, "output": outputs,
-        }  # fmt: skip
+            "equal": layout.equal,
+            "guard": layout.guard,
+            "row": layout.row,
+            "column": layout.column,
+            "curvature": layout.hessian,
+            "term": terms,
+            "code": steps,
+            "output": outputs,
+        }
         # What the structure points to must live as long as it does.
         self._lists = {name: np.array(x, dtype=np.intc).ravel() for name, x in lists.items()}
         self._constants = np.array(constants, dtype=float)
@@ -157,9 +170,12 @@ def _listed(functions: RowFunctions) -> tuple[list[float], list[tuple[int, ...]]
 def fits(functions: RowFunctions) -> bool:
     """Tell whether the code has room for row functions."""
     sizes = {
-        "N": functions.n, "ROWS": functions.n_rows, "GOALS": functions.n_goals, "NONZEROS": len(functions.row),
+        "N": functions.n,
+        "ROWS": functions.n_rows,
+        "GOALS": functions.n_goals,
+        "NONZEROS": len(functions.row),
         "CURVATURES": len(functions.hessian),
-    }  # fmt: skip
+    }
     return functions.n > 0 and all(size <= MOST[name] for name, size in sizes.items())
 
 

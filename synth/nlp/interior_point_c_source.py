@@ -53,9 +53,14 @@ def settings(own: InteriorPointSettings) -> list[str]:
 def _sizes(functions: RowFunctions, own: InteriorPointSettings) -> str:
     layout = method.SparsityPattern(functions)
     numbers = {
-        "N": layout.n, "ROWS": layout.rows, "CUTS": layout.cuts, "GOALS": layout.goals, "NONZEROS": len(layout.row),
-        "CURVATURES": len(layout.hessian), "STORED": len(functions.stored),
-    }  # fmt: skip
+        "N": layout.n,
+        "ROWS": layout.rows,
+        "CUTS": layout.cuts,
+        "GOALS": layout.goals,
+        "NONZEROS": len(layout.row),
+        "CURVATURES": len(layout.hessian),
+        "STORED": len(functions.stored),
+    }
     lines = settings(own) + [f"#define {name} {value}" for name, value in numbers.items()]
     lines += [f"#define MOST_{name} {name}" for name in ("N", "ROWS", "GOALS")]
     lines += [f"#define MOST_{name} AT_LEAST_ONE({name})" for name in ("NONZEROS", "CURVATURES")]

@@ -51,9 +51,13 @@ class InteriorPoint:
         """Solve all problems, each from its start."""
         n, rows, count = self.functions.n, self.functions.n_rows, len(problems)
         ends = Ends(
-            np.empty((n, count)), np.empty(count), np.empty((rows, count)), np.empty((rows, count)),
-            np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64),
-        )  # fmt: skip
+            np.empty((n, count)),
+            np.empty(count),
+            np.empty((rows, count)),
+            np.empty((rows, count)),
+            np.empty(count, dtype=np.int64),
+            np.empty(count, dtype=np.int64),
+        )
         waiting, most, refill = 0, self.settings.lanes, self.settings.refill
         lanes: InteriorPointBatch | None = None
         with np.errstate(all="ignore"):
@@ -142,21 +146,44 @@ class InteriorPointBatch:
             layout=layout,
             method=method,
             stored=[x if np.ndim(x) == 0 else x[number] for x in problems.stored],
-            number=number, low=low, high=high, free=free, counts=counts,
-            slopes=np.where(counts & t_free, slopes, 0.0), rights=problems.rights[:, number],
-            weights=problems.weights[:, number], t_weight=t_weight,
+            number=number,
+            low=low,
+            high=high,
+            free=free,
+            counts=counts,
+            slopes=np.where(counts & t_free, slopes, 0.0),
+            rights=problems.rights[:, number],
+            weights=problems.weights[:, number],
+            t_weight=t_weight,
             t_free=t_free,
-            y=np.where(free, inside, 0.5 * (low + high)), t=zero, form=per_row, values=per_row,
-            absent=np.ones((rows, count), dtype=bool), missing=none + rows + 2,
-            multipliers=per_row, low_dual=per_variable, high_dual=per_variable,
+            y=np.where(free, inside, 0.5 * (low + high)),
+            t=zero,
+            form=per_row,
+            values=per_row,
+            absent=np.ones((rows, count), dtype=bool),
+            missing=none + rows + 2,
+            multipliers=per_row,
+            low_dual=per_variable,
+            high_dual=per_variable,
             barrier=zero + method.first_barrier,
-            penalty=zero + method.first_penalty, next_penalty=zero + method.first_penalty,
-            restoring=np.zeros(count, dtype=bool), merit=zero,
-            direction=np.zeros((n + 1, count)), uncorrected=np.zeros((n + 1, count)), forecast=per_row,
-            change=per_row, low_change=per_variable, high_change=per_variable,
-            slope=zero, step=zero, dual_step=zero, rejected=none, evaluations=none, late=none,
+            penalty=zero + method.first_penalty,
+            next_penalty=zero + method.first_penalty,
+            restoring=np.zeros(count, dtype=bool),
+            merit=zero,
+            direction=np.zeros((n + 1, count)),
+            uncorrected=np.zeros((n + 1, count)),
+            forecast=per_row,
+            change=per_row,
+            low_change=per_variable,
+            high_change=per_variable,
+            slope=zero,
+            step=zero,
+            dual_step=zero,
+            rejected=none,
+            evaluations=none,
+            late=none,
             status=none,
-        )  # fmt: skip
+        )
 
     def __len__(self) -> int:
         return len(self.number)
@@ -207,10 +234,17 @@ class InteriorPointBatch:
         fresh = missing < self.missing
         taken = fresh | ((missing == self.missing) & (merit <= enough))
         self._set(
-            taken, y=y, t=t, form=form, values=values, absent=absent, missing=missing, multipliers=multipliers,
+            taken,
+            y=y,
+            t=t,
+            form=form,
+            values=values,
+            absent=absent,
+            missing=missing,
+            multipliers=multipliers,
             low_dual=self.low_dual + self.dual_step * self.low_change,
             high_dual=self.high_dual + self.dual_step * self.high_change,
-        )  # fmt: skip
+        )
         self.evaluations = self.evaluations + 1
         self.late = self.late + (self.barrier <= method.late_barrier)
         self.rejected = np.where(taken, 0, self.rejected + 1)
@@ -359,11 +393,15 @@ class InteriorPointBatch:
         along_t = np.where(self.t_free & ~first, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
         dual = np.maximum(np.abs(residual).max(axis=0, initial=0.0), np.abs(along_t))
         dual /= np.maximum(1.0, 0.1 * np.abs(signed).max(axis=0, initial=0.0))
-        products = np.concatenate([
-            self.multipliers * slack, (self._prices() - self.multipliers) * excess,
-            np.where(self.free, self.low_dual * below, self.barrier),
-            np.where(self.free, self.high_dual * above, self.barrier), self.barrier[None],
-        ])  # fmt: skip
+        products = np.concatenate(
+            [
+                self.multipliers * slack,
+                (self._prices() - self.multipliers) * excess,
+                np.where(self.free, self.low_dual * below, self.barrier),
+                np.where(self.free, self.high_dual * above, self.barrier),
+                self.barrier[None],
+            ]
+        )
         largest, least = products.max(axis=0), products.min(axis=0)
         over = np.where(layout.equal, np.abs(self.values), self.values).max(axis=0, initial=0.0)
         over = np.where(self.missing > 0, np.inf, over)
@@ -443,20 +481,34 @@ class InteriorPointBatch:
         high_change = self.barrier / above - self.high_dual * (1 - direction[:n] / above)
         # The largest share of the step that keeps everything positive; each row is a rate of decrease.
         nearly = np.maximum(self.method.to_boundary, 1 - self.barrier)
-        primal = np.concatenate([
-            1 + (change - own) * rest / both, -direction[:n] / below, direction[:n] / above,
-        ])  # fmt: skip
-        dual = np.concatenate([
-            -change * rest / both, change * self.multipliers / both,
-            -low_change / self.low_dual, -high_change / self.high_dual,
-        ])  # fmt: skip
+        primal = np.concatenate(
+            [
+                1 + (change - own) * rest / both,
+                -direction[:n] / below,
+                direction[:n] / above,
+            ]
+        )
+        dual = np.concatenate(
+            [
+                -change * rest / both,
+                change * self.multipliers / both,
+                -low_change / self.low_dual,
+                -high_change / self.high_dual,
+            ]
+        )
         step = nearly / np.maximum(nearly, primal.max(axis=0, initial=0.0))
         dual_step = nearly / np.maximum(nearly, dual.max(axis=0, initial=0.0))
         merit = self._merit(self.y, self.t, self.form, self.values, self.missing)
         self._set(
-            taken, direction=direction, change=change, low_change=low_change, high_change=high_change, merit=merit,
-            slope=(gradient * direction).sum(axis=0), dual_step=dual_step,
-        )  # fmt: skip
+            taken,
+            direction=direction,
+            change=change,
+            low_change=low_change,
+            high_change=high_change,
+            merit=merit,
+            slope=(gradient * direction).sum(axis=0),
+            dual_step=dual_step,
+        )
         corrected = self.uncorrected + direction / np.where(self.step > 0, self.step, 1.0)
         self._set(~taken, direction=np.where(bent, corrected, self.uncorrected))
         self._set(taken, uncorrected=direction, forecast=self.values + step * moved)

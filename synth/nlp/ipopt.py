@@ -318,10 +318,18 @@ class ParametricNlp:
         _, condition_sizes = self.branches.at([*x0, *data])
         sizes = self._row_sizes(task, x0, data, bounds)
         variable_weights = np.zeros(n) if task.variable_weights is None else task.variable_weights
-        parameters = np.concatenate([
-            data, bounds, sizes, task.weights, task.slopes, variable_weights,
-            [task.t_weight, task.elastic], condition_sizes,
-        ])  # fmt: skip
+        parameters = np.concatenate(
+            [
+                data,
+                bounds,
+                sizes,
+                task.weights,
+                task.slopes,
+                variable_weights,
+                [task.t_weight, task.elastic],
+                condition_sizes,
+            ]
+        )
         equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
         upper_g = np.zeros(len(rows.cuts))
         lower_g = np.where(void | ~equal, -np.inf, 0.0)

@@ -513,9 +513,15 @@ class KinkedNlp:
             return found
         arrays = [np.asarray(x, dtype=float) for x in data]
         sharp = self.pieced.solve(
-            tasks.take(doubtful), [x if x.ndim == 0 else x[doubtful] for x in arrays], found.variables[doubtful],
-            low[doubtful], high[doubtful], bounds, void[doubtful], workers,
-        )  # fmt: skip
+            tasks.take(doubtful),
+            [x if x.ndim == 0 else x[doubtful] for x in arrays],
+            found.variables[doubtful],
+            low[doubtful],
+            high[doubtful],
+            bounds,
+            void[doubtful],
+            workers,
+        )
         # An answer to other formulas is none, but may be a design; one to the same formulas may be better.
         known, missed = found.take(doubtful), self.pieced.nlp_settings.missed
         lost = (known.violation <= missed) & (sharp.violation > missed)

@@ -121,9 +121,13 @@ class RowFunctions:
     def input_number(self, group: str, k: int) -> int:
         """Return the number of one input: group y, data, bounds, sizes, scales or weights."""
         lengths = {
-            "y": self.n, "data": self.n_data, "bounds": self.n_cuts, "sizes": self.n_rows, "scales": self.n,
+            "y": self.n,
+            "data": self.n_data,
+            "bounds": self.n_cuts,
+            "sizes": self.n_rows,
+            "scales": self.n,
             "weights": self.n_rows,
-        }  # fmt: skip
+        }
         first = 0
         for name, length in lengths.items():
             if name == group:

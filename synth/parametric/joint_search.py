@@ -283,13 +283,15 @@ class JointSearch:
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
-            self.progress({
-                "stage": "search",
-                "done": 0.0,
-                "combinations": self.together.combinations.size,
-                "incumbents": len(self.known),
-                "message": f"{open_boxes} boxes open",
-            })  # fmt: skip
+            self.progress(
+                {
+                    "stage": "search",
+                    "done": 0.0,
+                    "combinations": self.together.combinations.size,
+                    "incumbents": len(self.known),
+                    "message": f"{open_boxes} boxes open",
+                }
+            )
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
         """Return where to look first, from designs of similar questions."""
@@ -338,9 +340,14 @@ class JointSearch:
             )
             certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
             fronts[number] = front_of(
-                question.instance, designs[0].frame, designs, certificate, statistics, question.record(),
+                question.instance,
+                designs[0].frame,
+                designs,
+                certificate,
+                statistics,
+                question.record(),
                 complete=traded == 1,
-            )  # fmt: skip
+            )
         return fronts
 
     def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:

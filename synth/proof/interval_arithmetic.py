@@ -182,11 +182,22 @@ class Arithmetic:
 
 
 RISING = {
-    ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SQRT: "sqrt", ca.OP_LOG1P: "log1p", ca.OP_EXPM1: "expm1",
-    ca.OP_ATAN: "arctan", ca.OP_SINH: "sinh", ca.OP_TANH: "tanh", ca.OP_ASINH: "arcsinh",
-    ca.OP_ACOSH: "arccosh", ca.OP_ATANH: "arctanh", ca.OP_ERF: "erf", ca.OP_FLOOR: "floor", ca.OP_CEIL: "ceil",
+    ca.OP_EXP: "exp",
+    ca.OP_LOG: "log",
+    ca.OP_SQRT: "sqrt",
+    ca.OP_LOG1P: "log1p",
+    ca.OP_EXPM1: "expm1",
+    ca.OP_ATAN: "arctan",
+    ca.OP_SINH: "sinh",
+    ca.OP_TANH: "tanh",
+    ca.OP_ASINH: "arcsinh",
+    ca.OP_ACOSH: "arccosh",
+    ca.OP_ATANH: "arctanh",
+    ca.OP_ERF: "erf",
+    ca.OP_FLOOR: "floor",
+    ca.OP_CEIL: "ceil",
     ca.OP_SIGN: "sign",
-}  # fmt: skip
+}
 # Least argument for which they are defined.
 DEFINED_FROM = {ca.OP_SQRT: 0.0, ca.OP_LOG: 0.0, ca.OP_LOG1P: -1.0, ca.OP_ACOSH: 1.0}
 # Their value is one of finitely many or jumps: the center is the whole range, and there is no slope.
@@ -340,9 +351,22 @@ class Ranges(Arithmetic):
         return self.divide((1.0, 1.0), a)
 
     _RULES: ClassVar[dict[int, Callable[..., Pair]]] = {
-        ca.OP_ADD: Arithmetic.add, ca.OP_SUB: Arithmetic.subtract, ca.OP_DIV: Arithmetic.divide,
-        ca.OP_NEG: Arithmetic.negative, ca.OP_SQ: Arithmetic.square, ca.OP_FABS: Arithmetic.size,
-        ca.OP_TWICE: _twice, ca.OP_INV: _inverse, ca.OP_FMIN: _least, ca.OP_FMAX: _most, ca.OP_SIN: _sine,
-        ca.OP_COS: _cosine, ca.OP_TAN: _tangent, ca.OP_COSH: _cosh, ca.OP_ACOS: _arccos, ca.OP_ASIN: _arcsin,
-        ca.OP_HYPOT: _hypot, ca.OP_ATAN2: _arctan2,
-    }  # fmt: skip
+        ca.OP_ADD: Arithmetic.add,
+        ca.OP_SUB: Arithmetic.subtract,
+        ca.OP_DIV: Arithmetic.divide,
+        ca.OP_NEG: Arithmetic.negative,
+        ca.OP_SQ: Arithmetic.square,
+        ca.OP_FABS: Arithmetic.size,
+        ca.OP_TWICE: _twice,
+        ca.OP_INV: _inverse,
+        ca.OP_FMIN: _least,
+        ca.OP_FMAX: _most,
+        ca.OP_SIN: _sine,
+        ca.OP_COS: _cosine,
+        ca.OP_TAN: _tangent,
+        ca.OP_COSH: _cosh,
+        ca.OP_ACOS: _arccos,
+        ca.OP_ASIN: _arcsin,
+        ca.OP_HYPOT: _hypot,
+        ca.OP_ATAN2: _arctan2,
+    }

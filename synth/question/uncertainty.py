@@ -104,9 +104,14 @@ def read_block(robust: Any, where: str = "robust") -> Uncertainty:
     with at("robust", "scenarios"):
         scenarios = _scenarios(block.get("scenarios") or {}, f"{where}: scenarios")
     return Uncertainty(
-        MappingProxyType(ranges), MappingProxyType({str(k): v for k, v in tolerance.items()}), mode, samples, seed,
-        confidence, scenarios,
-    )  # fmt: skip
+        MappingProxyType(ranges),
+        MappingProxyType({str(k): v for k, v in tolerance.items()}),
+        mode,
+        samples,
+        seed,
+        confidence,
+        scenarios,
+    )
 
 
 def read_remaining(robust: Any, where: str = "robust") -> Uncertainty | None:

@@ -31,9 +31,15 @@ def rating_row(design: Design) -> list[Any]:
     if not told:
         return [None] * len(COLUMNS)
     return [
-        "yes" if told["holds"] else "no", told["proof"], told["yield"], told["yield_low"], told["yield_high"],
-        told["worst_limit"], told["worst_utilisation"], shown_at(told["worst_at"], told["units"]),
-    ]  # fmt: skip
+        "yes" if told["holds"] else "no",
+        told["proof"],
+        told["yield"],
+        told["yield_low"],
+        told["yield_high"],
+        told["worst_limit"],
+        told["worst_utilisation"],
+        shown_at(told["worst_at"], told["units"]),
+    ]
 
 
 def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]:
@@ -47,10 +53,19 @@ def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]
             unit = design.frame.limit_units[name]
             sides = [None if told[k] is None else _shown(told[k], unit) for k in ("value", "limit")]
             at = [_shown(told["at"][n], u) if n in told["at"] else None for n, u in units.items()]
-            rows.append([
-                design.rank, name, "yes" if told["holds"] else "no", told["proof"], *sides, unit,
-                told["utilisation"], told["residual"], *at,
-            ])  # fmt: skip
+            rows.append(
+                [
+                    design.rank,
+                    name,
+                    "yes" if told["holds"] else "no",
+                    told["proof"],
+                    *sides,
+                    unit,
+                    told["utilisation"],
+                    told["residual"],
+                    *at,
+                ]
+            )
     return columns, rows
 
 

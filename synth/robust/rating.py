@@ -229,9 +229,13 @@ class Rater:
     def _data(self, design: Design) -> list[Any]:
         instance = self.instance
         return inputs_of_design(
-            self.model, instance.requirements, instance.row_values, design.values, design.choices,
+            self.model,
+            instance.requirements,
+            instance.row_values,
+            design.values,
+            design.choices,
             lambda entry: float(first_value([self._cells(design, entry.name, c) for c in entry.columns])[0]),
-        )  # fmt: skip
+        )
 
     # -- proofs --------------------------------------------------------------------------------
 

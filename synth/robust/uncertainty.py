@@ -163,10 +163,11 @@ class _RangeReader:
         taken = [part.slot for part in slots if LEAST in part.columns or MOST in part.columns]
         if taken:
             raise InputError(
-                f"{self.where}: friction", text,
+                f"{self.where}: friction",
+                text,
                 f"no friction here: the limits of {self.d.problem} hold from {LEAST} to {MOST} of {taken[0]} already, "
                 "as it is or with these options",
-            )  # fmt: skip
+            )
         found = []
         for part in slots:
             field = f"{self.where}: friction"

@@ -233,9 +233,17 @@ class Formulation:
         The boxes carry their pivots and the bounds of the first objectives alone.
         """
         found = self.propagation.grown(
-            boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
-            caps, passes, levels, self.tuning.tolerances.margins, self.workers,
-        )  # fmt: skip
+            boxes.cell,
+            boxes.low,
+            boxes.high,
+            boxes.bounds,
+            boxes.tag,
+            caps,
+            passes,
+            levels,
+            self.tuning.tolerances.margins,
+            self.workers,
+        )
         if found is None:
             return None
         self.contracted += found.contracted
@@ -258,9 +266,17 @@ class Formulation:
         self.contracted += len(boxes)
         values = None if caps is None else self.values_of(caps)
         packed = self.propagation.packed(
-            boxes.cell, boxes.low, boxes.high, boxes.bounds, boxes.tag,
-            values, passes, every, self.tuning.tolerances.margins, self.workers,
-        )  # fmt: skip
+            boxes.cell,
+            boxes.low,
+            boxes.high,
+            boxes.bounds,
+            boxes.tag,
+            values,
+            passes,
+            every,
+            self.tuning.tolerances.margins,
+            self.workers,
+        )
         if packed is not None:
             result = Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
             return self._without_refused(result) if self.instance.joint_refusals else result
@@ -341,9 +357,9 @@ class Formulation:
             if len(own):
                 clusters = whole.cell[own, f]
                 left_cell[own, f], right_cell[own, f] = tree.left[clusters], tree.right[clusters]
-        halves = Boxes.joined([
-            replace(whole, cell=left_cell, high=left_high), replace(whole, cell=right_cell, low=right_low)
-        ])  # fmt: skip
+        halves = Boxes.joined(
+            [replace(whole, cell=left_cell, high=left_high), replace(whole, cell=right_cell, low=right_low)]
+        )
         return halves, rest
 
     def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -314,13 +314,15 @@ class FrontSearch:
     def _say(self, stage: str, done: float, message: str = "") -> None:
         self.stage, self.done = stage, done
         if self.progress is not None:
-            self.progress({
-                "stage": stage,
-                "done": float(min(max(done, 0.0), 1.0)),
-                "combinations": self.instance.combinations.count,
-                "incumbents": len(self.form.archive),
-                "message": message,
-            })  # fmt: skip
+            self.progress(
+                {
+                    "stage": stage,
+                    "done": float(min(max(done, 0.0), 1.0)),
+                    "combinations": self.instance.combinations.count,
+                    "incumbents": len(self.form.archive),
+                    "message": message,
+                }
+            )
 
     def _root(self) -> None:
         self.clock.check()
@@ -802,6 +804,13 @@ class FrontSearch:
             seconds={**self.stage_seconds, "total": time.monotonic() - self.started},
         )
         return front_of(
-            self.instance, frame, designs, certificate, statistics, settings,
-            complete=self.complete, explanation=explanation, interrupted=interrupted,
-        )  # fmt: skip
+            self.instance,
+            frame,
+            designs,
+            certificate,
+            statistics,
+            settings,
+            complete=self.complete,
+            explanation=explanation,
+            interrupted=interrupted,
+        )

@@ -68,9 +68,16 @@ def improve(
         points=kept["points"], gap=kept["gap"], workers=workers, seed=kept["seed"], time_limit=time_limit
     )
     request = Request(
-        problem=own, requirements=frame.requirements, catalogs=tables, objectives=dict(frame.objectives),
-        parts=kept["parts"], limits=kept["limits"], fix=kept["fix"], weights=kept["weights"], grid=kept["grid"],
-    )  # fmt: skip
+        problem=own,
+        requirements=frame.requirements,
+        catalogs=tables,
+        objectives=dict(frame.objectives),
+        parts=kept["parts"],
+        limits=kept["limits"],
+        fix=kept["fix"],
+        weights=kept["weights"],
+        grid=kept["grid"],
+    )
     question = pose(request, settings)
     return go_on(front, question.within(settings.since(begun).time_limit), "front", progress)
 

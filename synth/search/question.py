@@ -83,9 +83,15 @@ class Question:
     ) -> FrontSearch:
         """Return the search that answers."""
         return FrontSearch(
-            self.instance, self.chosen, self.settings, progress, known=known, alike=self.alike, lessons=lessons,
+            self.instance,
+            self.chosen,
+            self.settings,
+            progress,
+            known=known,
+            alike=self.alike,
+            lessons=lessons,
             tuning=self.tuning,
-        )  # fmt: skip
+        )
 
 
 def pose(

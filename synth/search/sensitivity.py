@@ -97,9 +97,14 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
 
 
 def optima(
-    form: Formulation, combinations: np.ndarray, start: np.ndarray, phi: np.ndarray, chosen: int, k: int,
+    form: Formulation,
+    combinations: np.ndarray,
+    start: np.ndarray,
+    phi: np.ndarray,
+    chosen: int,
+    k: int,
     sizes: np.ndarray | None = None,
-) -> Optima:  # fmt: skip
+) -> Optima:
     """Make designs as good as their parts allow in one objective, and return what moves it there.
 
     Parameters
@@ -142,7 +147,7 @@ def optima(
         requirements[solved] = slope * known[:, places]
     return Optima(
         answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
-    )  # fmt: skip
+    )
 
 
 def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndarray | None = None) -> Tasks:
@@ -255,9 +260,14 @@ def _gradient(form: Formulation) -> Any:
     function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
 
     def evaluate(
-        own: Formulation, points: np.ndarray, known: np.ndarray, size: np.ndarray, cuts: np.ndarray,
-        goals: np.ndarray, k: int,
-    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        own: Formulation,
+        points: np.ndarray,
+        known: np.ndarray,
+        size: np.ndarray,
+        cuts: np.ndarray,
+        goals: np.ndarray,
+        k: int,
+    ) -> tuple[np.ndarray, np.ndarray]:
         clean = np.where(np.isnan(known), 1.0, known)
         units = np.where(rows.log_goals, 1.0, own.goal_scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units

@@ -87,9 +87,17 @@ def synthesize(
     settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
     check_progress(progress)
     request = Request.of(
-        p, requirements, catalogs, robust, objectives=objectives, parts=parts, limits=limits, fix=fix, weights=weights,
+        p,
+        requirements,
+        catalogs,
+        robust,
+        objectives=objectives,
+        parts=parts,
+        limits=limits,
+        fix=fix,
+        weights=weights,
         grid=grid,
-    )  # fmt: skip
+    )
     return find_front(request, settings.since(begun), progress)
 
 

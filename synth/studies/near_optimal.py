@@ -293,13 +293,15 @@ class _Enumeration:
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
-            self.progress({
-                "stage": self.stage,
-                "done": 0.0 if self.stage == "enumerate" else 1.0,
-                "combinations": self.instance.combinations.count,
-                "incumbents": len(self.near.found),
-                "message": f"{open_boxes} boxes open" if open_boxes else "",
-            })  # fmt: skip
+            self.progress(
+                {
+                    "stage": self.stage,
+                    "done": 0.0 if self.stage == "enumerate" else 1.0,
+                    "combinations": self.instance.combinations.count,
+                    "incumbents": len(self.near.found),
+                    "message": f"{open_boxes} boxes open" if open_boxes else "",
+                }
+            )
 
     # -- the run -------------------------------------------------------------------------------
 
@@ -475,9 +477,16 @@ class _Enumeration:
             parts, _, choices = self.instance.combinations.describe(c.combination)
             rows = {slot: part_row(table, row) for slot, (table, row) in parts.items()}
             design = make_design(
-                self.instance, self.reference.frame, c.variables, result, k, rows, choices,
-                status=Status.FEASIBLE, rank=k + 1,
-            )  # fmt: skip
+                self.instance,
+                self.reference.frame,
+                c.variables,
+                result,
+                k,
+                rows,
+                choices,
+                status=Status.FEASIBLE,
+                rank=k + 1,
+            )
             designs.append(design)
             changes.append({n: _change(design.objectives[n], self.reference.objectives[n]) for n in self.chosen})
             differences.append(self._differences(c.combination))

@@ -196,9 +196,14 @@ def run(
     from synth.terminal.console import explanation_text
 
     asked = read_spec(spec).merged(
-        points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
+        points=points,
+        gap=gap,
+        grid=grid,
+        seed=seed,
+        time_limit=time_limit,
+        workers=workers,
         objectives=objectives(objective or []),
-    )  # fmt: skip
+    )
     must_be_a_question(asked)
     claim_output(folder, FRONT)
     if asked.compares:

@@ -62,9 +62,12 @@ def plain_table(*headings: str, right: Sequence[int] = (), wide: int | None = No
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="")
     for k, heading in enumerate(headings):
         table.add_column(
-            heading, justify="right" if k in right else "left", no_wrap=k != wide, overflow="fold",
+            heading,
+            justify="right" if k in right else "left",
+            no_wrap=k != wide,
+            overflow="fold",
             ratio=1 if k == wide else None,
-        )  # fmt: skip
+        )
     return table
 
 
@@ -78,9 +81,15 @@ def print_explanation(found: Explanation, title: str, console: Console) -> None:
         console.print(f"\nRefused: {guard.name}: expected {guard.message}", soft_wrap=True)
         for name, value in guard.lifted_by.items():
             console.print(f"  not refused with {name} {value}", soft_wrap=True)
-    titles = {"requirement": "One requirement alone", "limit": "One limit alone", "fix": "One pin alone",
-              "choice": "Another choice", "joint": "All that was asked together", "physics": "All limits together",
-              "part": "Another part"}  # fmt: skip
+    titles = {
+        "requirement": "One requirement alone",
+        "limit": "One limit alone",
+        "fix": "One pin alone",
+        "choice": "Another choice",
+        "joint": "All that was asked together",
+        "physics": "All limits together",
+        "part": "Another part",
+    }
     for kind, heading in titles.items():
         ways = [way for way in found.ways if way.kind == kind]
         if not ways:

@@ -49,9 +49,14 @@ def given_design(asked: Spec) -> tuple[DesignProblem, Catalogs, Design]:
     problem = robust_counterpart(load(asked.family, **asked.options), asked.robust or None, asked.limits)
     catalogs = catalogs_for(problem, asked.catalogs, asked.folder)
     design = evaluate(
-        problem, asked.requirements, values=asked.values, parts=_one_each(asked),
-        catalogs=catalogs, limits=asked.limits, objectives=asked.objectives,
-    )  # fmt: skip
+        problem,
+        asked.requirements,
+        values=asked.values,
+        parts=_one_each(asked),
+        catalogs=catalogs,
+        limits=asked.limits,
+        objectives=asked.objectives,
+    )
     return problem, catalogs, design
 
 

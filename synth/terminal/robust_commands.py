@@ -61,9 +61,13 @@ def rate(
     block = dict(pairs) if pairs else {**known}
     with progress_display(quiet) as progress:
         found = rate_designs(
-            designs, {**block, **told} if block or told else None, problem=problem, catalogs=catalogs,
-            progress=progress, time_limit=seconds,
-        )  # fmt: skip
+            designs,
+            {**block, **told} if block or told else None,
+            problem=problem,
+            catalogs=catalogs,
+            progress=progress,
+            time_limit=seconds,
+        )
     target = found.save(folder)
     if not quiet:
         print_ratings(found, output())

@@ -57,10 +57,14 @@ def print_designs(designs: Sequence[Design], console: Console) -> None:
         used = "" if told["worst_utilisation"] is None else f"{float(told['worst_utilisation']):.3f}"
         where = shown_at(told["worst_at"], told["units"])
         table.add_row(
-            f"#{design.rank}" if design.rank else "", "yes" if told["holds"] else "no", told["proof"],
-            percent(told["yield"]), f"{percent(told['yield_low'])} .. {percent(told['yield_high'])}", used,
+            f"#{design.rank}" if design.rank else "",
+            "yes" if told["holds"] else "no",
+            told["proof"],
+            percent(told["yield"]),
+            f"{percent(told['yield_low'])} .. {percent(told['yield_high'])}",
+            used,
             f"{told['worst_limit']}{' at ' if where else ''}{where}",
-        )  # fmt: skip
+        )
     console.print(table)
     if len(rated) > SHOWN:
         console.print(f"{len(rated) - SHOWN} more in the files")

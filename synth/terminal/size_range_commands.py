@@ -59,9 +59,7 @@ def size_range(
         if folder is None:
             raise InputError("--output", None, "a folder for the batch and the size range, for example -o out/")
         asked = None if objective is None else [objective]
-        job = batch_job(
-            source, folder, family, mapping, points, None, True, 0, None, asked, None, database
-        )  # fmt: skip
+        job = batch_job(source, folder, family, mapping, points, None, True, 0, None, asked, None, database)
         job_id = job.id
         code = finish(lambda: job, workers, None, quiet)
         if code == STOPPED:
@@ -70,9 +68,16 @@ def size_range(
     target = source if folder is None else folder
     claim_output(target)
     found = choose(
-        source, variants, objective, per_row=per_row or None, candidates=candidates, gap=gap, time_limit=seconds,
-        database=database, job=job_id,
-    )  # fmt: skip
+        source,
+        variants,
+        objective,
+        per_row=per_row or None,
+        candidates=candidates,
+        gap=gap,
+        time_limit=seconds,
+        database=database,
+        job=job_id,
+    )
     files = found.files()
     draw = report("figure")
     if draw is not None:

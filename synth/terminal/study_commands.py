@@ -54,9 +54,14 @@ def whatif(
     from synth.question.spec import read_spec
 
     asked = read_spec(spec).merged(
-        points=points, gap=gap, grid=grid, seed=seed, time_limit=time_limit, workers=workers,
+        points=points,
+        gap=gap,
+        grid=grid,
+        seed=seed,
+        time_limit=time_limit,
+        workers=workers,
         objectives=objectives(objective or []),
-    )  # fmt: skip
+    )
     must_be_a_question(asked)
     must_be_one_family(asked)
     claim_output(folder, STUDY)

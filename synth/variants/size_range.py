@@ -62,11 +62,13 @@ class SizeRange:
         import pandas as pd
 
         excess = header("total_excess", self.unit)
-        frame = pd.DataFrame({
-            "variants [-]": [point["variants"] for point in self.points],
-            excess: [point["cost"] for point in self.points],
-            "gap [-]": [point["gap"] for point in self.points],
-        })  # fmt: skip
+        frame = pd.DataFrame(
+            {
+                "variants [-]": [point["variants"] for point in self.points],
+                excess: [point["cost"] for point in self.points],
+                "gap [-]": [point["gap"] for point in self.points],
+            }
+        )
         frame.attrs = {
             "title": f"Size range: excess of {self.objective} over the number of variants",
             "x": "variants [-]",
@@ -234,12 +236,15 @@ class _Batch:
         self.catalogs = as_catalogs(catalogs if content["catalogs"] == "memory" else content["catalogs"])
         self.rows = [
             {
-                "line": row.line, "key": row.key, "family": row.family, "status": status_of(row),
+                "line": row.line,
+                "key": row.key,
+                "family": row.family,
+                "status": status_of(row),
                 "explanation": explanation_of(row),
                 "designs": [] if row.content is None else row.content.get("designs", []),
             }
             for row in store.rows(job.id, canonical=False)
-        ]  # fmt: skip
+        ]
         self.layouts = list(store.layouts(job.id).values())
         questions = {key: content for key, _, content in store.questions(job.id)}
         self.objective, self.sense = self._objective(objective)
@@ -378,8 +383,14 @@ class _Batch:
         """Say everything in terms of rows and designs."""
         unit = next(iter(self.models.values())).units[self.objective]
         serving = self._serving(choice, costs)
-        order = sorted(set(serving.values()), key=lambda j: (self.candidates[chosen_from[j]].family,
-                       float(np.nanmean(values[:, j])), self.candidates[chosen_from[j]].label))  # fmt: skip
+        order = sorted(
+            set(serving.values()),
+            key=lambda j: (
+                self.candidates[chosen_from[j]].family,
+                float(np.nanmean(values[:, j])),
+                self.candidates[chosen_from[j]].label,
+            ),
+        )
         number = {j: k + 1 for k, j in enumerate(order)}
         assignment, unserved = [], []
         index = {asked.key: k for k, asked in enumerate(self.asked)}
@@ -394,28 +405,46 @@ class _Batch:
             count[j] += 1
             total[j] += float(costs[k, j]) * scale
             most[j] = max(most[j], self.sign * float(values[k, j]))
-            assignment.append({
-                "line": row["line"], "row": row["key"][:SHORT], "family": row["family"], "variant": number[j],
-                header(self.objective, unit): shown_value(float(values[k, j]), unit),
-                header("own_best", unit): shown_value(self.sign * self.asked[k].best, unit),
-                header("excess", unit): float(costs[k, j]) * scale,
-            })  # fmt: skip
+            assignment.append(
+                {
+                    "line": row["line"],
+                    "row": row["key"][:SHORT],
+                    "family": row["family"],
+                    "variant": number[j],
+                    header(self.objective, unit): shown_value(float(values[k, j]), unit),
+                    header("own_best", unit): shown_value(self.sign * self.asked[k].best, unit),
+                    header("excess", unit): float(costs[k, j]) * scale,
+                }
+            )
         table = []
         for j in order:
             variant = self.candidates[chosen_from[j]]
             shown = shown_value(self.sign * most[j], unit)
-            table.append({
-                "variant": number[j], "family": variant.family, "rows": count[j],
-                header("total_excess", unit): total[j], header(self.objective, unit): shown, **self._columns(variant),
-            })  # fmt: skip
+            table.append(
+                {
+                    "variant": number[j],
+                    "family": variant.family,
+                    "rows": count[j],
+                    header("total_excess", unit): total[j],
+                    header(self.objective, unit): shown,
+                    **self._columns(variant),
+                }
+            )
         return SizeRange(
-            objective=self.objective, unit=unit, sense=self.sense, variants=table, assignment=assignment,
+            objective=self.objective,
+            unit=unit,
+            sense=self.sense,
+            variants=table,
+            assignment=assignment,
             unserved=unserved,
             points=[{"variants": len(p.columns), "cost": p.cost * scale, "gap": p.gap} for p in points],
-            fewest=len(fewest[0]), fewest_proven=fewest[1] == len(fewest[0]), cost=choice.cost * scale, gap=choice.gap,
+            fewest=len(fewest[0]),
+            fewest_proven=fewest[1] == len(fewest[0]),
+            cost=choice.cost * scale,
+            gap=choice.gap,
             statistics=statistics,
             taken_from_row={family: sorted(names) for family, names in self.used.items() if names},
-        )  # fmt: skip
+        )
 
     def _serving(self, choice: Medians, costs: NDArray[Any]) -> dict[int, int]:
         """Return question -> column of the cheapest chosen variant; of equal ones the first."""
@@ -429,9 +458,12 @@ class _Batch:
         if k is not None:
             reason = self.reasons.get(row["key"]) or "no candidate serves it"
         return {
-            "line": row["line"], "row": (row["key"] or "")[:SHORT], "family": row["family"], "status": row["status"],
+            "line": row["line"],
+            "row": (row["key"] or "")[:SHORT],
+            "family": row["family"],
+            "status": row["status"],
             "reason": reason,
-        }  # fmt: skip
+        }
 
     def _columns(self, variant: Variant) -> dict[str, Any]:
         units = next(m for n, m in self.models.items() if self.structures[n].problem.name == variant.family).units

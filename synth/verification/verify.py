@@ -288,9 +288,13 @@ class VerificationRun:
         variables = np.array([design.values.get(v.name, math.nan) for v in self.model.variables], dtype=float)
         slots = {s.slot: s for s in selection.slots}
         data = inputs_of_design(
-            self.model, self.instance.requirements, self.instance.row_values, design.values, design.choices,
+            self.model,
+            self.instance.requirements,
+            self.instance.row_values,
+            design.values,
+            design.choices,
             lambda entry: float(slots[entry.name].columns[entry.column][rows[entry.name]]),
-        )  # fmt: skip
+        )
         return Point(variables, data, rows)
 
     def _limits(

@@ -52,9 +52,15 @@ def test_the_status_follows_from_designs_and_proof(
 ) -> None:
     certificate = replace(front.certificate, kind=kind)
     made = front_of(
-        front.question, front.frame, front.designs if any_design else [], certificate, front.statistics,
-        front.settings, complete=True, interrupted=interrupted,
-    )  # fmt: skip
+        front.question,
+        front.frame,
+        front.designs if any_design else [],
+        certificate,
+        front.statistics,
+        front.settings,
+        complete=True,
+        interrupted=interrupted,
+    )
     assert made.status.value == status
     assert made.complete == (not interrupted)
 

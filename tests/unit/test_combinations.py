@@ -34,11 +34,13 @@ class Picky(Strut):
 
 
 def instance(densities: list[float], **more: Any) -> Instance:
-    rods = pd.DataFrame({
-        "designation": [f"rod {k}" for k in range(len(densities))],
-        "density [kg/m3]": densities,
-        "source": ["test"] * len(densities),
-    })  # fmt: skip
+    rods = pd.DataFrame(
+        {
+            "designation": [f"rod {k}" for k in range(len(densities))],
+            "density [kg/m3]": densities,
+            "source": ["test"] * len(densities),
+        }
+    )
     problem = Picky()
     return instance_of(problem, NEEDED, catalogs_for(problem, {"rods": rods}), **more)
 

@@ -63,10 +63,13 @@ class Asked:
             sizes = {v.name: float(x) for v, x in zip(model.variables, self.variables[k], strict=True)}
             typed = {name: format_quantity(x, model.units[name], None) for name, x in sizes.items()}
             design = synth.evaluate(
-                self.problem, self.requirements, values={**typed, **counts, **choices},
+                self.problem,
+                self.requirements,
+                values={**typed, **counts, **choices},
                 parts={slot: table.designations[row] for slot, (table, row) in parts.items()},
-                catalogs=self.catalogs, limits=self.limits,
-            )  # fmt: skip
+                catalogs=self.catalogs,
+                limits=self.limits,
+            )
             yield k, design
 
 

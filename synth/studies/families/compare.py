@@ -362,9 +362,15 @@ class _Comparing:
             "sheet": {key: _plain(self.sheet[key]) for key in self.sheet},
         }
         return Comparison(
-            self.objectives, designs, owners, outcomes, certificate, settings, self.interrupted,
+            self.objectives,
+            designs,
+            owners,
+            outcomes,
+            certificate,
+            settings,
+            self.interrupted,
             time.monotonic() - self.started,
-        )  # fmt: skip
+        )
 
     def _certificate(self, any_design: bool) -> Certificate:
         own = [m.front.certificate for m in self.members]
@@ -376,9 +382,15 @@ class _Comparing:
         amounts = self._amounts() if gap is not None else {}
         units = {name: next(c.units[name] for c in own if name in c.units) for name in amounts}
         return Certificate(
-            kind, gap, sum(c.combinations for c in own), sum(c.excluded_by_bound for c in own),
-            sum(c.solved for c in own), sum(c.unresolved for c in own), resolution=amounts, units=units,
-        )  # fmt: skip
+            kind,
+            gap,
+            sum(c.combinations for c in own),
+            sum(c.excluded_by_bound for c in own),
+            sum(c.solved for c in own),
+            sum(c.unresolved for c in own),
+            resolution=amounts,
+            units=units,
+        )
 
     def _amounts(self) -> dict[str, float]:
         """Return in SI by how much a design must be better where that is no share of its value in every family."""

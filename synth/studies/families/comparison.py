@@ -134,11 +134,18 @@ class Comparison:
         rated = any(d.robust for d in self.designs)
         rows: list[list[Any]] = [
             [
-                d.rank, d.score, name, d.status.value, d.gap, d.note, "; ".join(d.alternatives), *map(own.get, every),
+                d.rank,
+                d.score,
+                name,
+                d.status.value,
+                d.gap,
+                d.note,
+                "; ".join(d.alternatives),
+                *map(own.get, every),
                 *(rating_row(d) if rated else ()),
             ]
             for d, name, own in zip(self.designs, self.families, known, strict=True)
-        ]  # fmt: skip
+        ]
         columns = ["rank", "score", "family", "status", "gap", "note", "alternatives", *every]
         return [*columns, *(COLUMNS if rated else ())], rows
 

@@ -146,8 +146,11 @@ class Explanation:
         if self.conflict:
             always = f" (beside {', '.join(self.guards)}, which always count)" if self.guards else ""
             names = ", ".join(self.conflict) + always
-            words.append(f"These limits cannot hold together: {names}." if len(self.conflict) > 1 else
-                         f"No design keeps {names}.")  # fmt: skip
+            words.append(
+                f"These limits cannot hold together: {names}."
+                if len(self.conflict) > 1
+                else f"No design keeps {names}."
+            )
         together = [way for way in (self.joint, self.physics) if way is not None]
         measured = [*self.single, *self.parts] or together
         if measured:
@@ -168,17 +171,19 @@ class Explanation:
         for way in self.ways:
             unit = parse_unit(way.unit)
             shown = not math.isnan(way.needed)
-            rows.append({
-                "kind": way.kind,
-                "name": way.name,
-                "unit": way.unit if shown else "",
-                "given": float(from_si(way.given, unit)) if shown else None,
-                "needed": float(from_si(way.needed, unit)) if shown else None,
-                "change [%]": None if math.isnan(way.amount) else 100 * way.amount,
-                "proven": "yes" if way.proven else "no",
-                **{f"part: {slot}": str(row) for slot, row in way.design.parts.items()},
-                "sentence": way.sentence,
-            })  # fmt: skip
+            rows.append(
+                {
+                    "kind": way.kind,
+                    "name": way.name,
+                    "unit": way.unit if shown else "",
+                    "given": float(from_si(way.given, unit)) if shown else None,
+                    "needed": float(from_si(way.needed, unit)) if shown else None,
+                    "change [%]": None if math.isnan(way.amount) else 100 * way.amount,
+                    "proven": "yes" if way.proven else "no",
+                    **{f"part: {slot}": str(row) for slot, row in way.design.parts.items()},
+                    "sentence": way.sentence,
+                }
+            )
         return pd.DataFrame(rows)
 
     def save(self, folder: str | Path) -> list[Path]:
@@ -589,9 +594,7 @@ class _Explaining:
         assert found.design is not None
         design, amount = self._as_asked(found.design), math.expm1(found.amount)
         sentence = f"all limits wider by {_percent(amount)}; that concerns {', '.join(design.violated) or 'none'}"
-        return Relaxation(
-            "physics", "all limits", "", math.nan, math.nan, "-", amount, design, found.closed, sentence
-        )  # fmt: skip
+        return Relaxation("physics", "all limits", "", math.nan, math.nan, "-", amount, design, found.closed, sentence)
 
     def single(self, kind: str, name: str, sign: float) -> Relaxation | str | None:
         """Return what one thing alone must become; a sentence where that is not settled."""
@@ -669,9 +672,7 @@ class _Explaining:
         design = found.design if patch is None else self._as_asked(found.design, patch)
         named = {REQUIREMENT: "requirement", LIMIT: "limit", COLUMN: "part"}[kind]
         sense = "at_least" if up else "at_most"
-        return Relaxation(
-            named, name, sense, given, given * factor, unit, amount, design, found.closed, words, patch
-        )  # fmt: skip
+        return Relaxation(named, name, sense, given, given * factor, unit, amount, design, found.closed, words, patch)
 
     def _repinned(self, pin: _Pin, found: _LeastAmount) -> Relaxation | None:
         """Return the way out by another value of what is pinned."""
@@ -687,9 +688,18 @@ class _Explaining:
             f"{pin.name} {format_quantity(value, pin.unit)} instead of {format_quantity(given, pin.unit)} ({change})"
         )
         return Relaxation(
-            "fix" if pin.key == "fix" else "limit", pin.name, "at_least" if value > given else "at_most", given, value,
-            pin.unit, amount, self._as_asked(found.design, patch), found.closed, words, patch,
-        )  # fmt: skip
+            "fix" if pin.key == "fix" else "limit",
+            pin.name,
+            "at_least" if value > given else "at_most",
+            given,
+            value,
+            pin.unit,
+            amount,
+            self._as_asked(found.design, patch),
+            found.closed,
+            words,
+            patch,
+        )
 
     def _chosen(self, name: str) -> Relaxation | str | None:
         """Return the way out by another part or word than those asked for."""
@@ -701,9 +711,7 @@ class _Explaining:
             return None
         words = f"{name} {self._choice(found.design, name)} in place of what was asked"
         design = self._as_asked(found.design, patch)
-        return Relaxation(
-            "choice", name, "", math.nan, math.nan, "-", math.nan, design, True, words, patch
-        )  # fmt: skip
+        return Relaxation("choice", name, "", math.nan, math.nan, "-", math.nan, design, True, words, patch)
 
     @staticmethod
     def _choice(design: Design, name: str) -> str:
@@ -742,7 +750,7 @@ class _Explaining:
         design = self._missing(found.design) if offered and not freed else self._as_asked(found.design, patch)
         return Relaxation(
             "joint", "all that was asked", "", math.nan, math.nan, "-", amount, design, found.closed, sentence, patch
-        )  # fmt: skip
+        )
 
     def _direction(self, name: str, single: Sequence[Relaxation], conflict: Sequence[str]) -> float:
         """Return which way a requirement asks less: as it helps alone, as a limit, or by the signs of all limits."""

@@ -45,8 +45,19 @@ class Price:
     sentence: str
 
 
-COLUMNS = ("design", "objective", "quantity", "kind", "elasticity", "up", "down", "status", "reason", "compared",
-           "sentence")  # fmt: skip
+COLUMNS = (
+    "design",
+    "objective",
+    "quantity",
+    "kind",
+    "elasticity",
+    "up",
+    "down",
+    "status",
+    "reason",
+    "compared",
+    "sentence",
+)
 
 
 @dataclass(frozen=True)

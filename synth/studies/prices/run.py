@@ -170,18 +170,18 @@ class _Pricing:
             "seconds": time.monotonic() - self.started,
         }
         asked, makeable = tuple(int(d.rank or 0) for d in designs), bool(self.again.form.gridded.any())
-        return Prices(
-            self.frame, asked, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted
-        )  # fmt: skip
+        return Prices(self.frame, asked, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted)
 
     def _say(self, number: int, of: int, share: float) -> None:
         if self.progress is not None:
-            self.progress({
-                "stage": f"design {number + 1} of {of}",
-                "done": (number + share) / of,
-                "combinations": self.instance.combinations.count,
-                "message": "",
-            })  # fmt: skip
+            self.progress(
+                {
+                    "stage": f"design {number + 1} of {of}",
+                    "done": (number + share) / of,
+                    "combinations": self.instance.combinations.count,
+                    "message": "",
+                }
+            )
         if time.monotonic() > self.deadline:
             raise Stopped("time limit")
 
@@ -255,9 +255,10 @@ class _Case:
             values, start, near = (np.concatenate(pair) for pair in zip((values, start, near), more, strict=True))
             self.others = np.concatenate([self.others, further])
         self.compared = (
-            f"over all {total} combinations tried" if whole
+            f"over all {total} combinations tried"
+            if whole
             else f"over the {len(self.others) + 1} combinations tried, of {total}"
-        )  # fmt: skip
+        )
         # Where a step leaves nothing of these parts, others may be far worse and still the best.
         refused = np.array([bool(m.refused) for m in self.again.moves])
         tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
@@ -359,12 +360,22 @@ class _Case:
             status = NOTHING
         else:
             status = FIXED if self.already else CONFIRMED
-        words = [up.reason] if up.reason == down.reason else [
-            f"{side}wards {x.reason}" for side, x in (("up", up), ("down", down)) if x.reason
-        ]  # fmt: skip
+        words = (
+            [up.reason]
+            if up.reason == down.reason
+            else [f"{side}wards {x.reason}" for side, x in (("up", up), ("down", down)) if x.reason]
+        )
         shares = (up.share, down.share)
-        return self._told(move, slope, up.price, down.price, status, "; ".join(w for w in words if w),
-                          (up.change, down.change), shares)  # fmt: skip
+        return self._told(
+            move,
+            slope,
+            up.price,
+            down.price,
+            status,
+            "; ".join(w for w in words if w),
+            (up.change, down.change),
+            shares,
+        )
 
     def _no_per_cent(self, move: Move) -> str:
         if move.kind == "requirement":
@@ -380,9 +391,12 @@ class _Case:
         return f"the limit {move.name} is 0 here: there is no per cent of it"
 
     def _side(
-        self, number: int, slope: float, own: tuple[Solutions, np.ndarray, np.ndarray],
+        self,
+        number: int,
+        slope: float,
+        own: tuple[Solutions, np.ndarray, np.ndarray],
         better: tuple[float, int] | None,
-    ) -> _Side:  # fmt: skip
+    ) -> _Side:
         move = self.again.moves[number]
         way = self._way(move)
         if move.refused:
@@ -467,9 +481,16 @@ class _Case:
         return self._told(move, None, None, None, WITHHELD, why, ("", ""))
 
     def _told(
-        self, move: Move, slope: float | None, up: float | None, down: float | None, status: str, reason: str,
-        changes: tuple[str, str], shares: tuple[float, float] = (1.0, 1.0),
-    ) -> Price:  # fmt: skip
+        self,
+        move: Move,
+        slope: float | None,
+        up: float | None,
+        down: float | None,
+        status: str,
+        reason: str,
+        changes: tuple[str, str],
+        shares: tuple[float, float] = (1.0, 1.0),
+    ) -> Price:
         sense = "min" if self.goal.sign > 0 else "max"
         shown, kind = move.name, "requirement" if move.kind == "requirement" else "limit"
         if move.kind == "requirement" and self.again.instance.model.declaration.requirements[move.name].unit == "degC":
@@ -478,6 +499,15 @@ class _Case:
         sentence = told(shown, kind, self.objective, sense, steps, up, down, changes)
         compared = self.compared if status != WITHHELD else ""
         return Price(
-            int(self.design.rank or 0), self.objective, move.name, kind, slope, up, down, status, reason, compared,
+            int(self.design.rank or 0),
+            self.objective,
+            move.name,
+            kind,
+            slope,
+            up,
+            down,
+            status,
+            reason,
+            compared,
             sentence,
-        )  # fmt: skip
+        )

@@ -95,9 +95,17 @@ def whatif(
     settings = SearchSettings(points=points, gap=gap, workers=workers, seed=seed, time_limit=time_limit)
     check_progress(progress)
     request = Request.of(
-        p, requirements, catalogs, robust, objectives=objectives, parts=parts, limits=limits, fix=fix, weights=weights,
+        p,
+        requirements,
+        catalogs,
+        robust,
+        objectives=objectives,
+        parts=parts,
+        limits=limits,
+        fix=fix,
+        weights=weights,
         grid=grid,
-    )  # fmt: skip
+    )
     return study_of(request, settings, vary, progress, breaks, None if folder is None else Path(folder))
 
 
@@ -175,9 +183,14 @@ class _Run:
         statistics = {"steps": len(self.steps), "answered": len(self.answered), "kept": self.kept, "breaks": len(found)}
         seconds = {"seconds": time.monotonic() - self.started}
         return Study(
-            tuple(self.steps.varied), (*self.answered, *rest), tuple(found), self._along(), stopped,
-            {**statistics, **seconds}, self.store,
-        )  # fmt: skip
+            tuple(self.steps.varied),
+            (*self.answered, *rest),
+            tuple(found),
+            self._along(),
+            stopped,
+            {**statistics, **seconds},
+            self.store,
+        )
 
     # -- steps ---------------------------------------------------------------------------------
 
@@ -289,9 +302,15 @@ class _Run:
             found += weight_breaks(self.steps, along, self.answered)
             return
         find_breaks(
-            self.steps, along, self.answered, found, self.store, self._left, self.workers,
+            self.steps,
+            along,
+            self.answered,
+            found,
+            self.store,
+            self._left,
+            self.workers,
             self._shown("break points", self.share_of_steps, 1.0 - self.share_of_steps),
-        )  # fmt: skip
+        )
 
 
 def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
