@@ -32,24 +32,15 @@ def sources(package: str) -> list[Path]:
     return found
 
 
-def imported(text: str, at_run_time: bool = False) -> set[str]:
-    """Return the full dotted names that a source text imports, wherever the import stands.
-
-    ``at_run_time`` leaves out what only type checkers read.
-    """
+def imported(text: str) -> set[str]:
+    """Return the full dotted names that a source text imports, wherever the import stands."""
     names: set[str] = set()
-    pending: list[ast.AST] = [ast.parse(text)]
-    while pending:
-        node = pending.pop()
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute here"
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
-        elif isinstance(node, ast.If) and at_run_time and ast.unparse(node.test) == "TYPE_CHECKING":
-            pending += node.orelse
-        else:
-            pending += ast.iter_child_nodes(node)
     return names
 
 
@@ -69,9 +60,8 @@ def test_imports_are_found_wherever_they_stand() -> None:
         "if TYPE_CHECKING:\n    from reports.table import x\nelse:\n    import problems.friction\n"
         "def f():\n    from synth import DesignProblem\n"
     )
-    always = {"numpy", "typing.TYPE_CHECKING", "problems.friction", "synth.DesignProblem"}
-    assert imported(text, at_run_time=True) == always
-    assert imported(text) == always | {"reports.table.x"}
+    found = {"numpy", "typing.TYPE_CHECKING", "reports.table.x", "problems.friction", "synth.DesignProblem"}
+    assert imported(text) == found
     assert strangers(imported(text), {"synth", "numpy"}) == ["problems.friction", "reports.table.x"]
     assert strangers({"synthetic.x", "synth.units.x"}, {"synth.units"}) == ["synthetic.x"]
 
@@ -122,10 +112,7 @@ def test_modules_of_the_engine_do_not_import_each_other_in_circles() -> None:
         steps = name.split(".")
         return next((m for k in range(len(steps), 0, -1) if (m := ".".join(steps[:k])) in modules), "")
 
-    graph = {
-        name: {module_of(other) for other in imported(path.read_text(), at_run_time=True)} - {""}
-        for name, path in modules.items()
-    }
+    graph = {name: {module_of(other) for other in imported(path.read_text())} - {""} for name, path in modules.items()}
     assert len(graph) > 10
     assert "synth.jobs.store" in graph["synth.jobs.batch"]
     assert circles(graph) == set()

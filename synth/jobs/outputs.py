@@ -11,7 +11,7 @@ from typing import Any, TextIO
 from synth.files import csv_writer, read_json
 from synth.jobs.store import DONE, Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
-from synth.results.front_record import installed_versions
+from synth.results.provenance import installed_versions
 
 FORMAT = 1
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
-from synth.results.front_record import digest_of, front_record, record_text
+from synth.results.front_record import FORMAT, design_record, digest_of, finite, plain, record_text
+from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
 from synth.results.statistics import SearchStatistics
 
@@ -149,3 +150,39 @@ class ParetoFront:
     def digest_of(content: Mapping[str, Any]) -> str:
         """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
         return digest_of(content)
+
+
+def front_record(front: ParetoFront) -> dict[str, Any]:
+    """Return the content of the front.json of a front."""
+    rows: dict[str, dict[str, Any]] = {}
+    for design in front.designs:
+        for row in design.parts.values():
+            rows.setdefault(f"{row['table']}/{row}", {k: finite(v) for k, v in row.items()})
+    frame = front.frame
+    content = {
+        "format": FORMAT,
+        "family": frame.family,
+        "title": frame.title,
+        "options": dict(frame.options),
+        "requirements": dict(frame.requirements),
+        "requirement_values_si": dict(frame.requirement_values),
+        "not_asked": list(frame.not_asked),
+        "objectives": dict(frame.objectives),
+        "units": dict(frame.units),
+        "kinds": dict(frame.kinds),
+        "limit_units": dict(frame.limit_units),
+        "limit_senses": dict(frame.limit_senses),
+        "restated": plain(frame.restated),
+        "settings": dict(front.settings),
+        "versions": installed_versions(),
+        "status": front.status.value,
+        "interrupted": front.interrupted,
+        "complete": front.complete,
+        "certificate": front.certificate.__dict__ | {"gap": finite(front.certificate.gap)},
+        "statistics": plain(front.statistics),
+        "explanation": plain(front.explanation),
+        "parts": rows,
+        "designs": [design_record(d) for d in front.designs],
+    }
+    content["digest"] = digest_of(content)
+    return content

@@ -1,4 +1,4 @@
-"""What front.json says of a front, with a checksum over it."""
+"""The text of front.json: records of designs, numbers as JSON knows them, and a checksum over all."""
 
 from __future__ import annotations
 
@@ -6,52 +6,12 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
-from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from synth.results.design import Design
-    from synth.results.front import ParetoFront
 
 FORMAT = 1
-RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
-
-
-def front_record(front: ParetoFront) -> dict[str, Any]:
-    """Return the content of the front.json of a front."""
-    rows: dict[str, dict[str, Any]] = {}
-    for design in front.designs:
-        for row in design.parts.values():
-            rows.setdefault(f"{row['table']}/{row}", {k: _finite(v) for k, v in row.items()})
-    frame = front.frame
-    content = {
-        "format": FORMAT,
-        "family": frame.family,
-        "title": frame.title,
-        "options": dict(frame.options),
-        "requirements": dict(frame.requirements),
-        "requirement_values_si": dict(frame.requirement_values),
-        "not_asked": list(frame.not_asked),
-        "objectives": dict(frame.objectives),
-        "units": dict(frame.units),
-        "kinds": dict(frame.kinds),
-        "limit_units": dict(frame.limit_units),
-        "limit_senses": dict(frame.limit_senses),
-        "restated": _plain(frame.restated),
-        "settings": dict(front.settings),
-        "versions": installed_versions(),
-        "status": front.status.value,
-        "interrupted": front.interrupted,
-        "complete": front.complete,
-        "certificate": front.certificate.__dict__ | {"gap": _finite(front.certificate.gap)},
-        "statistics": _plain(front.statistics),
-        "explanation": _plain(front.explanation),
-        "parts": rows,
-        "designs": [_design_record(d) for d in front.designs],
-    }
-    content["digest"] = digest_of(content)
-    return content
 
 
 def record_text(content: Mapping[str, Any]) -> str:
@@ -76,20 +36,8 @@ def changed(content: Mapping[str, Any]) -> str:
     return "" if fits else "front.json was changed after it was saved: its checksum does not fit"
 
 
-def installed_versions() -> dict[str, str]:
-    """Return the versions of the packages that decide the numbers."""
-    return {name: _installed(name) for name in RECORDED_PACKAGES}
-
-
-@cache
-def _installed(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"
-
-
-def _design_record(design: Design) -> dict[str, Any]:
+def design_record(design: Design) -> dict[str, Any]:
+    """Return what front.json says of a design."""
     return {
         "rank": design.rank,
         "score": design.score,
@@ -101,32 +49,34 @@ def _design_record(design: Design) -> dict[str, Any]:
         "values": _clean(design.values),
         "choices": dict(design.choices),
         "parts": {slot: f"{row['table']}/{row}" for slot, row in design.parts.items()},
-        "limits": {n: [_finite(v), _finite(x)] for n, (v, x) in design.limits.items()},
+        "limits": {n: [finite(v), finite(x)] for n, (v, x) in design.limits.items()},
         "residuals": _clean(design.residuals),
-        "utilisation": {n: None if u is None else _finite(u) for n, u in design.utilisation.items()},
+        "utilisation": {n: None if u is None else finite(u) for n, u in design.utilisation.items()},
         "elasticity": {o: _clean(e) for o, e in design.elasticity.items()},
         "off_grid": dict(design.off_grid),
         "advice": list(design.advice),
         "violated": list(design.violated),
         "not_checked": list(design.not_checked),
         **({"outside": dict(design.outside)} if design.outside else {}),
-        **({"robust": _plain(design.robust)} if design.robust else {}),
+        **({"robust": plain(design.robust)} if design.robust else {}),
     }
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
+    """Return a value as JSON knows it: infinities in words, nothing for what is no number."""
     if isinstance(value, float) and math.isinf(value):
         return "inf" if value > 0 else "-inf"  # JSON has no infinity; float() reads these words back
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def _clean(mapping: Mapping[str, Any]) -> dict[str, Any]:
-    return {k: _finite(float(v)) for k, v in mapping.items()}
+    return {k: finite(float(v)) for k, v in mapping.items()}
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return nested mappings and sequences with all numbers as JSON knows them."""
     if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
+        return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
-    return _finite(value)
+        return [plain(v) for v in value]
+    return finite(value)

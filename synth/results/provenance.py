@@ -10,14 +10,15 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from synth.native_switch import c_compiler, native_wanted
-from synth.results.front_record import installed_versions
 
 PACKAGE = "synth"
 SOURCES = (".py", ".c")
+RECORDED_PACKAGES = ("clutchsynth", "casadi", "numpy", "scipy", "moocore")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,3 +103,16 @@ def _add_sources(total: Any, place: Path) -> None:
     for path in [place] if place.is_file() else sorted(p for p in place.rglob("*") if p.suffix in SOURCES):
         name = path.name if place.is_file() else path.relative_to(place).as_posix()
         total.update(name.encode() + b"\0" + path.read_bytes() + b"\0")
+
+
+def installed_versions() -> dict[str, str]:
+    """Return the versions of the packages that decide the numbers."""
+    return {name: _installed(name) for name in RECORDED_PACKAGES}
+
+
+@cache
+def _installed(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"

@@ -20,7 +20,7 @@ from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import read_block
 from synth.results import ParetoFront
 from synth.results.assembly import ranked
-from synth.results.front_record import front_record
+from synth.results.front import front_record
 from synth.results.loading import front_of_record
 from synth.results.provenance import hash_of, joined
 from synth.robust.rating import Rater
