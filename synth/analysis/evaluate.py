@@ -19,6 +19,7 @@ from synth.question.objectives import chosen_objectives
 from synth.question.request import Request
 from synth.question.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
 from synth.results import Design
+from synth.results.design import DesignSteps
 from synth.special import expanded
 from synth.units import format_quantity, parse_quantity
 
@@ -101,7 +102,7 @@ def _evaluate(
     result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
     refuse_not_computable(model, result, found, variables, data)
-    steps = model.steps(variables, data)
+    steps = DesignSteps(model.steps(variables[None, :], data)[0])
     return make_design(
         instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found, steps=steps
     )

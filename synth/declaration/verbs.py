@@ -189,7 +189,7 @@ class Block:
     >>> class Duty(Block):
     ...     torque = Requirement("N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit")
     ...     peak_torque = Requirement("N*m", lambda duty: 2 * duty.torque, upper=1e7, text="Shock")
-    >>> from synth.tables.table import Catalogs
+    >>> from synth.tables.catalogs import Catalogs
     >>> d = Declaration("shaft", {}, frozenset(), Catalogs())
     >>> duty = d.block(Duty)
     >>> duty.torque, d.requirements["peak_torque"].default

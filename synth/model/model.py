@@ -155,26 +155,28 @@ class Model:
 
     # -- the trace -----------------------------------------------------------------------------
 
-    def steps(self, variables: np.ndarray, data: Sequence[Any]) -> dict[str, float]:
-        """Return the steps of one design in SI.
+    def steps(self, variables: np.ndarray, data: Sequence[Any]) -> list[dict[str, float]]:
+        """Return the unreported quantities of a batch of designs by name, in SI, for hooks to read.
 
         Parameters
         ----------
-        variables : array (variables,)
+        variables : array (batch, variables)
             SI values in the declared order.
-        data : list of numbers
+        data : list of numbers or arrays (batch,)
             One entry per data input.
         """
         steps = self.declaration.steps
         if not steps:
-            return {}
+            return [{} for _ in variables]
         # A program of its own: the search does not carry what only hooks read.
         if "steps" not in self._function_cache:
             program = Program(self.inputs, [s.sx for s in steps.values()], self.calls)
             self._function_cache["steps"] = program.compile()
+        given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (*np.asarray(variables, dtype=float).T, *data)]
         with np.errstate(all="ignore"):
-            found = self._function_cache["steps"]([np.array([x], dtype=float) for x in (*variables, *data)])
-        return {name: float(np.ravel(x)[0]) for name, x in zip(steps, found, strict=True)}
+            found = self._function_cache["steps"](given)
+        columns = [np.broadcast_to(np.ravel(x), len(variables)).tolist() for x in found]
+        return [dict(zip(steps, row, strict=True)) for row in zip(*columns, strict=True)]
 
     def _data_inputs(self, d: Declaration) -> list[DataInput]:
         inputs = [DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None]

@@ -1,8 +1,14 @@
-"""What is returned and saved: fronts, designs, certificates."""
+"""What is returned and saved: fronts, designs, certificates. What is asked for is imported on first use."""
 
-from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, PartRow, design_columns, design_row, shown_value
-from synth.results.front import ParetoFront
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from synth.results.certificate import Certificate
+    from synth.results.design import Design, Frame, PartRow, design_columns, design_row, shown_value
+    from synth.results.front import ParetoFront
 
 __all__ = [
     "Certificate",
@@ -14,3 +20,20 @@ __all__ = [
     "design_row",
     "shown_value",
 ]
+
+_HOME = {
+    "Certificate": "synth.results.certificate",
+    "Design": "synth.results.design",
+    "Frame": "synth.results.design",
+    "PartRow": "synth.results.design",
+    "design_columns": "synth.results.design",
+    "design_row": "synth.results.design",
+    "shown_value": "synth.results.design",
+    "ParetoFront": "synth.results.front",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import yaml_text
 from synth.units import format_quantity, from_si, header
@@ -58,16 +59,25 @@ class Frame:
     restated: Mapping[str, Any] = field(default_factory=dict)
 
 
+class DesignSteps(dict[str, float]):
+    """Quantities on the way to others, by name in SI."""
+
+    def __missing__(self, name: str) -> float:
+        """Say what to do about a design that was saved before its family named this quantity."""
+        right = "a design of synth.evaluate, or of a front that this version has found"
+        raise InputError(f"design: {name}", None, right)
+
+
 @dataclass(frozen=True)
 class Design:
     """One evaluated design.
 
-    ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not
-    exist), ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells
-    which values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds, for a
-    design that was just evaluated, quantities on the way to others by name in SI, which hooks read. ``robust`` tells,
-    where that was asked, how the design stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and
-    ``yield_high``, ``worst_limit``, and per limit its worst point.
+    ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not exist),
+    ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells which
+    values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds quantities
+    on the way to others by name in SI, which hooks read. ``robust`` tells, where that was asked, how the design
+    stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and ``yield_high``, ``worst_limit``,
+    and per limit its worst point.
     """
 
     frame: Frame
@@ -91,7 +101,7 @@ class Design:
     violated: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
     robust: Mapping[str, Any] = field(default_factory=dict)
-    steps: Mapping[str, float] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=DesignSteps)
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""

@@ -58,6 +58,7 @@ def design_record(design: Design) -> dict[str, Any]:
         "violated": list(design.violated),
         "not_checked": list(design.not_checked),
         **({"outside": dict(design.outside)} if design.outside else {}),
+        **({"steps": _clean(design.steps)} if design.steps else {}),
         **({"robust": plain(design.robust)} if design.robust else {}),
     }
 

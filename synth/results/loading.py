@@ -10,7 +10,7 @@ from synth.feasibility import Status
 from synth.files import read_json
 from synth.output_folder import settle
 from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, PartRow
+from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
 from synth.results.front_record import FORMAT, changed
 from synth.results.statistics import SearchStatistics
@@ -150,6 +150,7 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         violated=tuple(d["violated"]),
         not_checked=tuple(d["not_checked"]),
         robust=d.get("robust", {}),
+        steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
     )
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from synth.search.archive import Candidate
     from synth.search.formulation import Formulation
 from synth.analysis.designs import _design, _told, part_row
+from synth.results.design import DesignSteps
 
 
 def found_designs(
@@ -39,12 +40,14 @@ def found_designs(
     # Questions that are searched together have their model and limits in common.
     told = _told(form.instance, result, points, range(len(candidates)))
     known: dict[tuple[str, int], PartRow] = {}
+    data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
+    steps = form.model.steps(points, data)
     designs = []
-    for frame, candidate, own, details in zip(frames, candidates, told, more, strict=True):
+    for frame, candidate, own, passed, details in zip(frames, candidates, told, steps, more, strict=True):
         parts, _, choices = form.instance.combinations.describe(candidate.combination)
         for slot, (table, number) in parts.items():
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
         rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
-        designs.append(_design(frame, own, rows, choices, details))
+        designs.append(_design(frame, own, rows, choices, {"steps": DesignSteps(passed), **details}))
     return designs

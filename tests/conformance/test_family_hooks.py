@@ -53,6 +53,19 @@ def test_designs_are_simulated_and_the_second_opinion_agrees(answered):
                 assert opinion.loc[name, "relative_difference"] == pytest.approx(0, abs=1e-6), name
 
 
+def test_what_hooks_read_stands_in_designs_however_they_are_had(answered, tmp_path):
+    _, problem, requirements, front = answered
+    loaded = synth.load_front(front.save(tmp_path)).designs
+    for found, saved in zip(front.designs, loaded, strict=True):
+        evaluated = synth.evaluate(problem, requirements, found)
+        assert set(found.steps) == set(saved.steps) == set(evaluated.steps)
+        for name, value in evaluated.steps.items():
+            assert found.steps[name] == pytest.approx(value, rel=1e-12, nan_ok=True), name
+            assert saved.steps[name] == pytest.approx(found.steps[name], rel=0, nan_ok=True), name
+    with pytest.raises(synth.InputError, match=r"design: colour: is missing; expected a design of synth\.evaluate"):
+        loaded[0].steps["colour"]
+
+
 def test_curves_with_and_without_a_design(answered):
     family, problem, requirements, front = answered
     if not overrides(family, "curves"):
