@@ -16,12 +16,12 @@ from synth.model.problem import DesignProblem
 from synth.model.registry import load
 from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
+from synth.question.ranges import declared_ranges
 from synth.tables.catalogs import Catalogs
 from synth.units import from_si
 
 if TYPE_CHECKING:
     import pandas as pd
-from synth.question.ranges import declared_ranges
 
 COLUMNS = (
     "kind",

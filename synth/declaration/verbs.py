@@ -9,12 +9,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload
 import casadi as ca
 import numpy as np
 
-from synth.errors import InputError, UnknownOptionError
-from synth.feasibility import SMALLEST
-from synth.units import parse_unit, to_si
-
-if TYPE_CHECKING:
-    from synth.tables.catalogs import Catalogs
 from synth.declaration.grids import grid_values
 from synth.declaration.records import (
     Advice,
@@ -32,6 +26,12 @@ from synth.declaration.records import (
     Step,
     VariableRecord,
 )
+from synth.errors import InputError, UnknownOptionError
+from synth.feasibility import SMALLEST
+from synth.units import parse_unit, to_si
+
+if TYPE_CHECKING:
+    from synth.tables.catalogs import Catalogs
 
 # Formulas are plain NumPy functions; in this mode NumPy calls on symbols return plain symbols.
 ca.GlobalOptions.setNumpyMode(-1)

@@ -16,10 +16,12 @@ from synth.errors import InputError, RefusedError, at
 from synth.margins import within
 from synth.model.constraint import SIGNS, Constraint
 from synth.model.model import Evaluation, Model
+from synth.model.numbers import numeric
 from synth.model.slot_comparison import SlotComparison, comparisons_of
 from synth.question.combinations import Combinations, Selection, SlotRows
 from synth.question.count_domain import compares, entries, is_list, shown_set, values_of_set
 from synth.question.inputs import fixed_designation, fixed_row_values, inputs_of_combination, part_value
+from synth.question.names import known_requirements
 from synth.question.user_limits import check_number_of_limits, contradict, read_limits
 from synth.results.provenance import Fingerprint, code_digest, hash_of, joined, native_code, problem_digest, processor
 from synth.special import expanded
@@ -29,8 +31,6 @@ from synth.units import Quantity, format_quantity, from_si, parse_quantity, pars
 
 if TYPE_CHECKING:
     from synth.question.request import Request
-from synth.model.numbers import numeric
-from synth.question.names import known_requirements
 
 MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
+from synth.results.certificate import Certificate
+from synth.results.design import Design, Frame, design_columns, design_row
 from synth.results.front_record import FORMAT, design_record, digest_of, finite, plain, record_text
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -19,8 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.results.verification import Verification
-from synth.results.certificate import Certificate
-from synth.results.design import Design, Frame, design_columns, design_row
 
 
 @dataclass(frozen=True)

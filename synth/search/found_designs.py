@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from synth.analysis.designs import _design, _told, part_row
 from synth.model.model import Evaluation
 from synth.results import Design, Frame, PartRow
+from synth.results.design import DesignSteps
 
 if TYPE_CHECKING:
     from synth.search.archive import Candidate
     from synth.search.formulation import Formulation
-from synth.analysis.designs import _design, _told, part_row
-from synth.results.design import DesignSteps
 
 
 def found_designs(

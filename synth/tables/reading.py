@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.errors import InputError, at
+from synth.tables.csv_file import _read_csv
+from synth.tables.schema import _SCHEMA_SUFFIX, Column, Schema, load_schema
+from synth.tables.table import SHIPPED, FloatArray, Table
 from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
 
 if TYPE_CHECKING:
     import pandas as pd
-from synth.tables.csv_file import _read_csv
-from synth.tables.schema import _SCHEMA_SUFFIX, Column, Schema, load_schema
-from synth.tables.table import SHIPPED, FloatArray, Table
 
 CONFIDENCE = ("verified", "textbook", "typical", "computed", "synthetic")
 

@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 
 from synth.errors import InputError
 from synth.plain_text import as_meant
+from synth.tables.schema import Column
 from synth.units import from_si
 
 if TYPE_CHECKING:
     import pandas as pd
-from synth.tables.schema import Column
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

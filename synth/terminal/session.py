@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 from synth.errors import InputError
 from synth.files import frame_csv
 from synth.output_folder import ResultKind, check_kind, claimed
+from synth.results.drawings import report
 
 if TYPE_CHECKING:
     import pandas as pd
-from synth.results.drawings import report
 
 FOUND, INTERNAL, BAD_INPUT, INFEASIBLE, STOPPED, DOES_NOT_HOLD, NOT_PROVEN = 0, 1, 2, 3, 4, 5, 6
 INTERRUPTED = 130  # what the command line's library ends with after Ctrl-C

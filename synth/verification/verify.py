@@ -43,10 +43,10 @@ from synth.results.verification import Verification, percent
 from synth.special import expanded
 from synth.units import format_quantity
 from synth.verification.contradictions import contradiction
+from synth.verification.pareto_regions import uncovered
 
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
-from synth.verification.pareto_regions import uncovered
 
 SAME = 1e-9  # relative; numbers that agree so far are the same
 NOISE = 1e-15  # absolute; below it nothing is compared
