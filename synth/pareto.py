@@ -1,4 +1,4 @@
-"""Dominance, the zones in which a further Pareto point may lie, and the ranking of a front."""
+"""Dominance, and the ranking of a front."""
 
 from __future__ import annotations
 

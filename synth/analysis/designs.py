@@ -80,11 +80,11 @@ def make_design(
     **more
         Fields of Design that the search knows (gap, elasticity, ...).
     """
-    told = _told(instance, result, variables[None, :], [row])[0]
-    return _design(frame, told, parts, choices, more)
+    told = told_by(instance, result, variables[None, :], [row])[0]
+    return design_of(frame, told, parts, choices, more)
 
 
-def _design(
+def design_of(
     frame: Frame,
     told: Mapping[str, Any],
     parts: Mapping[str, PartRow],
@@ -98,7 +98,7 @@ def _design(
     return Design(frame=frame, parts=dict(parts), choices=dict(choices), objectives=objectives, **known)
 
 
-def _told(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
+def told_by(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
     """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
     model, own = instance.model, np.asarray(rows, dtype=np.int64)
     count = len(own)

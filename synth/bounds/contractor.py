@@ -32,7 +32,7 @@ from synth.bounds.statements import (
     SweepStatements,
     special_range,
 )
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
 
 ROOT_SWEEPS = 4

@@ -16,7 +16,7 @@ from synth.bounds.clusters import Cells, ClusterTree, Factor
 from synth.bounds.compiled_boxes import BoxCode, CompiledQuestion, Packed, Prepared, compiled
 from synth.bounds.compiled_subtrees import CapTables, Grown, Halves
 from synth.bounds.contractor import INNER, Code, Contractor, MovingInputs
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SPECIAL
 from synth.question.instance import Instance
 from synth.special import SpecialCall, expanded

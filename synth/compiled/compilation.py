@@ -19,8 +19,8 @@ from contextvars import ContextVar
 from pathlib import Path
 
 from synth import deadline
-from synth.effort import CompilingEffort
 from synth.native_switch import native_wanted
+from synth.tuning import CompilingEffort
 
 EFFORT = CompilingEffort()
 TURN = 0.02  # s between looks at the compiler

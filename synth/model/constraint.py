@@ -1,4 +1,4 @@
-"""A limit as everything reads it: one record, whoever states it, and what designs make of it.
+"""A limit as everything reads it: one record, whoever states it, what designs make of it, and its row in the program.
 
 Search, check, ratings and explanations take their sides, senses and scales from here. Verification alone reads the
 declaration itself (``synth.verification.verify``, ``synth.proof.tree``), so that a mistake made here would show.
@@ -86,3 +86,30 @@ class Constraint:
         return Limit(
             self.name, self.sense, self.unit, "", "", value, ca.SX(self.bound), self.guard, self.scale, self.origin
         )
+
+
+@dataclass(frozen=True)
+class NodeConstraint:
+    """A limit as the propagation sees it: nodes of both sides (or a constant right side) and its sense."""
+
+    sense: str
+    value: int
+    limit: int | None
+    scale: float
+    bound: float = 0.0
+    guard: bool = False
+
+    @staticmethod
+    def of(constraint: Constraint) -> NodeConstraint:
+        """Return the row of a constraint."""
+        x = constraint
+        node, bound = (x.bound, 0.0) if isinstance(x.bound, int) else (None, x.bound)
+        return NodeConstraint(x.sense, x.value, node, x.scale, bound, x.guard)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """An objective as the propagation sees it: its node, and +1 to make it small or -1 to make it large."""
+
+    node: int
+    sign: int = 1

@@ -1,4 +1,4 @@
-"""Numbers as users give them, with or without unit."""
+"""Expressions evaluated: as a number, or as the function that gives it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The base class of all design problems, and the registry that finds them."""
+"""The base class of all design problems."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.model.constraints import NodeConstraint
+from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SELECT, Program
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks, worth_of
 from synth.nlp.rows import Rows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 
 # A guard holds only strictly, by so much: beyond it the other formulas do not exist.
 GUARD_MARGIN = 1e-6

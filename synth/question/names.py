@@ -1,4 +1,4 @@
-"""Names of requirements, and near misses of them."""
+"""What users give by name: mappings, and requirements by their public names."""
 
 from __future__ import annotations
 

@@ -64,7 +64,8 @@ def with_ties(model: Model, chosen: Mapping[str, str]) -> dict[str, str]:
     return result
 
 
-def _weights(instance: Instance, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
+def weights_of(instance: Instance, chosen: Mapping[str, str], asked: Mapping[str, float]) -> list[float]:
+    """Return the weights of the chosen objectives, 1 where none is asked; refuse what is no weight."""
     values = dict.fromkeys(chosen, 1.0)
     for name, weight in instance.model.by_name(asked, "weights", list(chosen), "a chosen objective").items():
         number = weight if isinstance(weight, (int, float)) and not isinstance(weight, bool) else math.nan

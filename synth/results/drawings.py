@@ -1,4 +1,4 @@
-"""Drawings that reports draw of a result."""
+"""Reports of results that are installed, by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results: designs and fronts, immutable, and the tables that are made of them."""
+"""Fronts: immutable, with the tables and files that are made of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Designs that stand what scatters around them: rated, or made so that their limits hold over a whole range."""
+"""Fronts whose limits hold over the whole range of what scatters, checked design by design."""
 
 from __future__ import annotations
 

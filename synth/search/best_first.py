@@ -13,13 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.effort import SearchEffort
 from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, further
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule, TabledPruningRule, reaches_beyond
+from synth.tuning import SearchEffort
 
 
 @dataclass(frozen=True, kw_only=True)

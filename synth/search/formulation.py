@@ -16,7 +16,7 @@ from synth.bounds.propagation import Propagation
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.margins import above, below
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.model import Evaluation
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides

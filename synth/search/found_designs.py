@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from synth.analysis.designs import _design, _told, part_row
+from synth.analysis.designs import design_of, part_row, told_by
 from synth.model.model import Evaluation
 from synth.results import Design, Frame, PartRow
 from synth.results.design import DesignSteps
@@ -38,7 +38,7 @@ def found_designs(
     """
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     # Questions that are searched together have their model and limits in common.
-    told = _told(form.instance, result, points, range(len(candidates)))
+    told = told_by(form.instance, result, points, range(len(candidates)))
     known: dict[tuple[str, int], PartRow] = {}
     data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
     steps = form.model.steps(points, data)
@@ -49,5 +49,5 @@ def found_designs(
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
         rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
-        designs.append(_design(frame, own, rows, choices, {"steps": DesignSteps(passed), **details}))
+        designs.append(design_of(frame, own, rows, choices, {"steps": DesignSteps(passed), **details}))
     return designs

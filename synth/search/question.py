@@ -10,7 +10,7 @@ from synth.bounds.propagation import Lessons
 from synth.model.problem import DesignProblem
 from synth.question.count_domain import stated
 from synth.question.instance import Instance
-from synth.question.objectives import _weights, chosen_objectives
+from synth.question.objectives import chosen_objectives, weights_of
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings
 from synth.results import Design, ParetoFront
@@ -117,7 +117,7 @@ def pose(
         problem = robust_counterpart(request.problem, request.robust, request.limits)
     instance = Instance(replace(request, problem=problem))
     chosen = chosen_objectives(instance.model, request.objectives)
-    weights = dict(zip(chosen, _weights(instance, chosen, request.weights), strict=True))
+    weights = dict(zip(chosen, weights_of(instance, chosen, request.weights), strict=True))
     return Question(
         request=request, settings=settings, instance=instance, chosen=chosen, weights=weights, tuning=tuning
     )

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError, at
-from synth.tables.reading import _is_frame, load_table, table_from_frame
-from synth.tables.schema import _SCHEMA_SUFFIX, Schema, load_schema
-from synth.tables.table import Table, _close
+from synth.tables.reading import is_frame, load_table, table_from_frame
+from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema
+from synth.tables.table import Table, perhaps_meant
 
 ENTRY_POINTS = "clutchsynth.catalogs"
 
@@ -62,7 +62,7 @@ def _shipped_schema(path: Path, stamp: int) -> Schema:
 
 
 def _csv_files(folder: Path) -> dict[str, Path]:
-    return {p.name.removesuffix(".csv"): p for p in sorted(folder.glob("*.csv")) if not p.name.endswith(_SCHEMA_SUFFIX)}
+    return {p.name.removesuffix(".csv"): p for p in sorted(folder.glob("*.csv")) if not p.name.endswith(SCHEMA_SUFFIX)}
 
 
 class Catalogs:
@@ -139,12 +139,14 @@ class Catalogs:
                     if len(value) < 2 or value[0] != "+":
                         raise InputError(where, value, "a list such as ['+', 'more.csv'] to extend the shipped table")
                     if name not in self._shipped:
-                        raise InputError(where, name, f"a shipped table to extend, {_close(name, self._shipped)}")
+                        raise InputError(
+                            where, name, f"a shipped table to extend, {perhaps_meant(name, self._shipped)}"
+                        )
                     found[name] = (True, list(value[1:]))
                 else:
                     found[name] = (False, [value])
                 for source in found[name][1]:
-                    if not isinstance(source, (str, Path)) and not _is_frame(source):
+                    if not isinstance(source, (str, Path)) and not is_frame(source):
                         raise InputError(where, source, "a CSV path, a DataFrame or ['+', more]")
         return found
 
@@ -176,7 +178,7 @@ class Catalogs:
         """SHA-256 of everything in these tables: shipped files byte by byte, a user's own row by row."""
         total = hashlib.sha256()
         for name, path in sorted(self._shipped.items()):
-            schema = path.with_name(name + _SCHEMA_SUFFIX)
+            schema = path.with_name(name + SCHEMA_SUFFIX)
             for file in (path, schema):
                 total.update(file.name.encode() + b"\0" + (file.read_bytes() if file.is_file() else b"") + b"\0")
         for name in sorted(self._spec):
@@ -192,7 +194,7 @@ class Catalogs:
         path = self._shipped.get(name)
         if path is None:
             return None
-        beside = path.with_name(name + _SCHEMA_SUFFIX)
+        beside = path.with_name(name + SCHEMA_SUFFIX)
         return _shipped_schema(beside, _stamp(beside))
 
     def table(self, name: str) -> Table:
@@ -223,14 +225,14 @@ class Catalogs:
                 right = f"a known table, one of {', '.join(self.names())}"
                 raise InputError("table", name, right, ("catalogs", name))
             path = self._shipped[name]
-            return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
+            return _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
         extend, sources = self._spec[name]
         with at("catalogs", name):
             tables = [self._user_table(name, source) for source in sources]
         if not extend:
             return tables[0]
         path = self._shipped[name]
-        table = _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + _SCHEMA_SUFFIX))))
+        table = _shipped_table(path, (_stamp(path), _stamp(path.with_name(name + SCHEMA_SUFFIX))))
         with at("catalogs", name):
             for more in tables:
                 table = table.extended(more)
@@ -240,7 +242,7 @@ class Catalogs:
         schema = self.schema(name)
         if isinstance(source, (str, Path)):
             path = self._path(source)
-            own = path.with_name(path.name.removesuffix(".csv") + _SCHEMA_SUFFIX)
+            own = path.with_name(path.name.removesuffix(".csv") + SCHEMA_SUFFIX)
             if own.is_file():
                 described = load_schema(own)
                 schema = described if schema is None else schema.extended(described)

@@ -12,7 +12,7 @@ from synth.files import read_bytes
 # ---- reading --------------------------------------------------------------------------------------------------------
 
 
-def _read_csv(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+def read_csv_file(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows with their line numbers."""
     name = path.name
     raw = read_bytes(path, "catalogue file", "a CSV file")

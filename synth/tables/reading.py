@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.errors import InputError, at
-from synth.tables.csv_file import _read_csv
-from synth.tables.schema import _SCHEMA_SUFFIX, Column, Schema, load_schema
+from synth.tables.csv_file import read_csv_file
+from synth.tables.schema import SCHEMA_SUFFIX, Column, Schema, load_schema
 from synth.tables.table import SHIPPED, FloatArray, Table
 from synth.units import Unit, check_number, number_to_si, parse_unit, split_header
 
@@ -225,12 +225,12 @@ def load_table(
     path = Path(path)
     name = path.name.removesuffix(".csv") if name is None else name
     if schema is None:
-        beside = path.with_name(path.name.removesuffix(".csv") + _SCHEMA_SUFFIX)
+        beside = path.with_name(path.name.removesuffix(".csv") + SCHEMA_SUFFIX)
         if shipped or beside.is_file():
             schema = beside
     if schema is not None and not isinstance(schema, Schema):
         schema = load_schema(schema)
-    head, body = _read_csv(path)
+    head, body = read_csv_file(path)
     if shipped and schema is not None:
         for title in head:
             if head.count(title) > 1:
@@ -293,7 +293,7 @@ def table_from_frame(frame: pd.DataFrame, schema: Schema | None = None, *, name:
     return _build(name, fields, rows, range(len(rows)), "DataFrame", strict=False, catalogue=catalogue)
 
 
-def _is_frame(value: object) -> bool:
-    # whoever holds a DataFrame has imported pandas; importing it only to look would cost its second
+def is_frame(value: object) -> bool:
+    """Tell whether something is a pandas frame: whoever holds one has imported pandas, and looking must not."""
     pandas = sys.modules.get("pandas")
     return pandas is not None and isinstance(value, pandas.DataFrame)

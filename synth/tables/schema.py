@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.errors import InputError
-from synth.tables.csv_file import _read_csv
+from synth.tables.csv_file import read_csv_file
 from synth.units import Unit, check_number, header, parse_unit
 
 _SCHEMA_HEADER = ["column", "type", "unit", "minimum", "maximum", "required", "symbol", "description"]
 _TYPES = ("text", "number", "integer", "flag")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_SCHEMA_SUFFIX = ".schema.csv"
+SCHEMA_SUFFIX = ".schema.csv"
 _UNIT_IN_COLUMN = "column:"
 
 
@@ -106,7 +106,7 @@ def load_schema(path: str | Path) -> Schema:
         A line of the schema is not right.
     """
     path = Path(path)
-    head, rows = _read_csv(path)
+    head, rows = read_csv_file(path)
     if head != _SCHEMA_HEADER:
         raise InputError(f"{path.name}, line 1", ",".join(head), ",".join(_SCHEMA_HEADER))
     columns: list[Column] = []

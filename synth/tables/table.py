@@ -1,4 +1,4 @@
-"""Catalogue tables: a CSV file, its schema, and what a user puts in their place.
+"""A catalogue table: rows with designations, columns of numbers in SI or of text.
 
 A shipped table is read strictly against ``NAME.schema.csv``; every row names its source. A user's own table is met with
 defaults: other units of the same kind are converted, further columns are kept, columns and cells that are missing stay
@@ -133,7 +133,7 @@ class Table:
         """
         found = self._find(name)
         if found is None:
-            raise InputError(f"table {self.name}", name, f"a column of this table, {_close(name, self.columns)}")
+            raise InputError(f"table {self.name}", name, f"a column of this table, {perhaps_meant(name, self.columns)}")
         return self.columns[found]
 
     def number(self, column: str) -> FloatArray:
@@ -220,7 +220,7 @@ class Table:
         if designation not in self._rows:
             designation = as_meant(designation)  # as a table that we have written shows it
         if designation not in self._rows:
-            known = f"a designation of this table, {_close(str(designation), self.designations)}"
+            known = f"a designation of this table, {perhaps_meant(str(designation), self.designations)}"
             raise InputError(
                 f"table {self.name}", designation, known if self.designations else "a table with designations"
             )
@@ -354,7 +354,7 @@ def text_code(text: str) -> float:
     return float(int.from_bytes(hashlib.sha256(text.encode()).digest()[:6], "big"))
 
 
-def _close(name: str, known: Iterable[str]) -> str:
+def perhaps_meant(name: str, known: Iterable[str]) -> str:
     """Tell which known names are meant, perhaps."""
     names = list(known)
     folded = {n.casefold(): n for n in names}

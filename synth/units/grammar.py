@@ -10,10 +10,10 @@ from functools import lru_cache
 from synth.errors import InputError
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
-_ABSOLUTE_ZERO = Fraction("273.15")
+ABSOLUTE_ZERO = Fraction("273.15")
 _KP = Fraction("9.80665")
 _TINY = Fraction(1, 10**100)
-_LONGEST = 100
+LONGEST = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,13 +217,13 @@ _BY_FLAVOUR: dict[_Dimension, tuple[str, str]] = {
 
 _SUPERSCRIPTS = str.maketrans("²³⁴⁵⁶⁷⁸⁹", "23456789")
 _TOKEN = re.compile(r"([^\W\d_]+|°)(\^?)([2-9])?\Z")
-_SPACES = dict.fromkeys((0x00A0, 0x2007, 0x2009, 0x202F), " ")
+SPACES = dict.fromkeys((0x00A0, 0x2007, 0x2009, 0x202F), " ")
 _GRAMMAR = (
     "a unit such as N*m, J/(mm2 h) or 1/min: tokens joined by a space, * or /, exponent as a digit after the token"
 )
 
 
-class _RefusedUnit(Exception):
+class RefusedUnit(Exception):
     """A sentence on its way to the place that knows the field."""
 
     def __init__(self, expected: str) -> None:
@@ -236,18 +236,18 @@ def _factor(text: str, whole: str) -> tuple[str, int]:
     plain = text.translate(_SUPERSCRIPTS)
     if plain in ("degC", "°C", "%", "-"):
         if plain in ("degC", "°C"):
-            raise _RefusedUnit("K inside a compound unit, where a temperature is a difference")
-        raise _RefusedUnit(f"{plain!r} to stand alone as a unit")
+            raise RefusedUnit("K inside a compound unit, where a temperature is a difference")
+        raise RefusedUnit(f"{plain!r} to stand alone as a unit")
     match = _TOKEN.match(plain)
     if match is None:
         if "^-" in plain or "⁻" in text:
-            raise _RefusedUnit("a fraction instead of a negative exponent, for example 1/min")
-        raise _RefusedUnit(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
+            raise RefusedUnit("a fraction instead of a negative exponent, for example 1/min")
+        raise RefusedUnit(_GRAMMAR if text else f"a token on both sides of every joint of {whole!r}; {_GRAMMAR}")
     name = _ALIASES.get(match[1], match[1])
     if match[2] and not match[3]:
-        raise _RefusedUnit("an exponent 2 to 9 after ^")
+        raise RefusedUnit("an exponent 2 to 9 after ^")
     if name not in _TOKENS:
-        raise _RefusedUnit(_unknown(name))
+        raise RefusedUnit(_unknown(name))
     return name, int(match[3] or 1)
 
 
@@ -265,9 +265,9 @@ def _unknown(name: str) -> str:
 def _read(text: str) -> _UnitText:
     """Read a unit text; the kind is not settled yet."""
     if not text:
-        raise _RefusedUnit("a unit; - where there is none")
-    if len(text) > _LONGEST:
-        raise _RefusedUnit(f"a unit of at most {_LONGEST} characters")
+        raise RefusedUnit("a unit; - where there is none")
+    if len(text) > LONGEST:
+        raise RefusedUnit(f"a unit of at most {LONGEST} characters")
     if text == "-":
         return _UnitText(Fraction(1), _NONE, 0, {"-": 1})
     if text == "%":
@@ -275,22 +275,22 @@ def _read(text: str) -> _UnitText:
     if text in ("degC", "°C"):
         return _UnitText(Fraction(1), _KELVIN, 0, {"degC": 1})
     if "**" in text:
-        raise _RefusedUnit("an exponent as a digit after the token, for example mm2")
+        raise RefusedUnit("an exponent as a digit after the token, for example mm2")
     if text[0] == "/":
-        raise _RefusedUnit(f"1 as an empty numerator: 1{text}")
+        raise RefusedUnit(f"1 as an empty numerator: 1{text}")
     powers: dict[str, int] = {}
     rest = _tight(text)
     sign, first = 1, True
     while True:
         if rest.startswith("("):
             if sign > 0:
-                raise _RefusedUnit("brackets in a denominator only, for example J/(mm2 h)")
+                raise RefusedUnit("brackets in a denominator only, for example J/(mm2 h)")
             inside, closed, rest = rest[1:].partition(")")
             if not closed:
-                raise _RefusedUnit("a closing bracket")
+                raise RefusedUnit("a closing bracket")
             factors = re.split(r"[ *·]", inside)
             if "/" in inside or "(" in inside:
-                raise _RefusedUnit("a product of tokens in the bracket, for example J/(mm2 h)")
+                raise RefusedUnit("a product of tokens in the bracket, for example J/(mm2 h)")
         else:
             match = re.match(r"[^ *·/()]*", rest)
             one = match[0] if match else ""
@@ -306,7 +306,7 @@ def _read(text: str) -> _UnitText:
         if not rest:
             break
         if rest[0] not in " *·/":
-            raise _RefusedUnit(_GRAMMAR)
+            raise RefusedUnit(_GRAMMAR)
         sign = -1 if rest[0] == "/" else 1
         rest = rest[1:]
     return _combine(powers)
@@ -314,7 +314,7 @@ def _read(text: str) -> _UnitText:
 
 def _tight(text: str) -> str:
     """Drop the spaces that mean nothing: around a joint and inside a bracket."""
-    return re.sub(r" *([*·/]) *", lambda m: m[1], re.sub(r"\( *", "(", re.sub(r" *\)", ")", text.translate(_SPACES))))
+    return re.sub(r" *([*·/]) *", lambda m: m[1], re.sub(r"\( *", "(", re.sub(r" *\)", ")", text.translate(SPACES))))
 
 
 def _combine(powers: dict[str, int]) -> _UnitText:
@@ -328,7 +328,7 @@ def _combine(powers: dict[str, int]) -> _UnitText:
             dimension[i] += exponent * power
     kg, m, s, kelvin, ampere = dimension
     if not _TINY < ratio < 1 / _TINY:
-        raise _RefusedUnit("a unit that is neither this large nor this small")
+        raise RefusedUnit("a unit that is neither this large nor this small")
     return _UnitText(ratio, (kg, m, s, kelvin, ampere), angle, powers)
 
 
@@ -350,7 +350,7 @@ def _kinds(reading: _UnitText) -> dict[str, tuple[Fraction, Fraction]]:
     tokens, dimension, ratio = reading.tokens, reading.dimension, reading.ratio
     plain = (ratio, Fraction(0))
     if tokens == {"degC": 1}:
-        return {"temperature": (ratio, _ABSOLUTE_ZERO)}
+        return {"temperature": (ratio, ABSOLUTE_ZERO)}
     if tokens == {"K": 1}:
         return {"temperature_rise": plain, "temperature": plain}
     if tokens == {"min": -1}:
@@ -406,12 +406,13 @@ def _wrong_kind(text: str, kind: str, found: str) -> str:
 
 
 @lru_cache(maxsize=4096)
-def _resolve(text: str, kind: str | None) -> Unit:
+def resolve(text: str, kind: str | None) -> Unit:
+    """Return the unit that a text names, of a kind where one is asked; raise RefusedUnit where it names none."""
     reading = _read(text)
     kinds = _kinds(reading)
     chosen = next(iter(kinds)) if kind is None else kind
     if chosen not in kinds:
-        raise _RefusedUnit(_wrong_kind(text, chosen, next(iter(kinds))))
+        raise RefusedUnit(_wrong_kind(text, chosen, next(iter(kinds))))
     ratio, offset = kinds[chosen]
     return Unit(text, float(ratio), float(offset), chosen, reading.dimension, ratio)
 
@@ -450,14 +451,15 @@ def _unit(text: object, kind: str | None, name: str) -> Unit:
     if not isinstance(text, str):
         raise InputError(name, text, "a unit as text, for example 'N*m'")
     try:
-        return _resolve(text, kind)
-    except _RefusedUnit as refusal:
+        return resolve(text, kind)
+    except RefusedUnit as refusal:
         raise InputError(name, text, refusal.expected) from None
 
 
-def _is_unit(text: str) -> bool:
+def is_unit(text: str) -> bool:
+    """Tell whether a text names a unit."""
     try:
-        _resolve(text, None)
-    except _RefusedUnit:
+        resolve(text, None)
+    except RefusedUnit:
         return False
     return True

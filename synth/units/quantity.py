@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.units.grammar import _ABSOLUTE_ZERO, _LONGEST, _SPACES, Unit, _is_unit, _RefusedUnit, _resolve, parse_unit
+from synth.units.grammar import ABSOLUTE_ZERO, LONGEST, SPACES, RefusedUnit, Unit, is_unit, parse_unit, resolve
 
 FloatArray = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def _converter(ratio: Fraction, offset: float) -> Callable[[str], float]:
     power = _power_of_ten(ratio)
     if power is not None and offset == 0.0:
         return lambda number: _shifted(number, power)
-    shift = _ABSOLUTE_ZERO if offset else Fraction(0)
+    shift = ABSOLUTE_ZERO if offset else Fraction(0)
 
     def exact(number: str) -> float:
         # a fraction of 1e999999999 would fill the memory before it could be called too large
@@ -123,7 +123,7 @@ def check_number(text: str, name: str) -> str:
 
 def _split_number(text: str, value: object, name: str, declared: str = "-") -> tuple[str, str]:
     """Split a quantity written as text into its number and the rest; the declared unit serves as an example."""
-    plain = text.translate(_SPACES).strip()
+    plain = text.translate(SPACES).strip()
     if not plain:
         raise InputError(name, value, "a number, not an empty text")
     if any(sign in plain for sign in _MINUS) and re.search(rf"(?:^|[eE])[{_MINUS}]\s*[0-9.]", plain):
@@ -136,7 +136,7 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
             raise InputError(name, value, "a decimal point instead of a decimal comma, for example 0.5")
         if re.match(r"[+-] +[0-9.]", plain):
             raise InputError(name, value, "no blank between the sign and the number")
-        if _is_unit(plain):
+        if is_unit(plain):
             raise InputError(name, value, f"a number before the unit, for example 1 {plain}")
         if declared == "-":
             raise InputError(name, value, "a number, for example 30")
@@ -144,8 +144,8 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
             name, value, f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
         )
     number, rest = match[0], plain[match.end() :]
-    if len(number) > _LONGEST:
-        raise InputError(name, value, f"a number of at most {_LONGEST} characters")
+    if len(number) > LONGEST:
+        raise InputError(name, value, f"a number of at most {LONGEST} characters")
     if re.match(r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])", rest):
         raise InputError(
             name,
@@ -221,8 +221,8 @@ def parse_quantity(value: object, declared_unit: str | Unit, field: str) -> floa
         number, rest = _split_number(value, value, field, unit.text)
         if rest:
             try:
-                unit = _resolve(rest, unit.kind)
-            except _RefusedUnit as refusal:
+                unit = resolve(rest, unit.kind)
+            except RefusedUnit as refusal:
                 raise InputError(field, value, refusal.expected) from None
     elif isinstance(value, Quantity):
         number = ""
@@ -386,7 +386,7 @@ def format_quantity(si: float, unit: str | Unit, digits: int | None = 6) -> str:
 
 def _in_unit(si: float, unit: Unit) -> Decimal:
     """Convert an SI value to a unit, to 60 digits."""
-    exact = (Fraction(si) - (_ABSOLUTE_ZERO if unit.offset else 0)) / unit.ratio
+    exact = (Fraction(si) - (ABSOLUTE_ZERO if unit.offset else 0)) / unit.ratio
     return _WIDE.divide(Decimal(exact.numerator), Decimal(exact.denominator))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import synth
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.rows import Rows

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import synth
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.model import Evaluation
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import Rows

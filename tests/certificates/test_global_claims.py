@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 import synth
-from synth.effort import SearchEffort
 from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_question import alike
 from synth.search import front_search as search
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.tables.catalogs import Catalogs
+from synth.tuning import SearchEffort
 from tests.asking import pose
 from tests.certificates.__main__ import tried
 from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference

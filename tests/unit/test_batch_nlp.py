@@ -15,7 +15,7 @@ import pytest
 
 import synth
 from synth.compiled import compiler
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp import interior_point_c as native
 from synth.nlp import interior_point_c_interpreted as native_general

@@ -9,7 +9,6 @@ import pytest
 
 import synth
 from synth.deadline import Stopped
-from synth.effort import SearchEffort
 from synth.question.catalogs import catalogs_for
 from synth.search.best_first import OpenBoxes, Progress, best_first
 from synth.search.boxes import Boxes
@@ -18,7 +17,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.proven_gap import Bound, least_gap
 from synth.search.pruning import EpsilonCover
-from synth.tuning import TUNING
+from synth.tuning import TUNING, SearchEffort
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 from tests.unit.spring import OPTIMUM, TensionSpring

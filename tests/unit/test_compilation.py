@@ -14,10 +14,10 @@ from synth import deadline
 from synth.compiled import compilation, compiler
 from synth.compiled.compilation import compile_shared, meanwhile, switched_off, switched_on
 from synth.deadline import Stopped
-from synth.effort import CompilingEffort
 from synth.nlp import interior_point_c as native
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.search import front_search as search
+from synth.tuning import CompilingEffort
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut, strut_form
 

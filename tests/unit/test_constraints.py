@@ -9,8 +9,7 @@ import pytest
 import synth
 from synth.declaration import Origin
 from synth.feasibility import SMALLEST, holds
-from synth.model.constraint import SIGNS, Constraint
-from synth.model.constraints import NodeConstraint
+from synth.model.constraint import SIGNS, Constraint, NodeConstraint
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
 from synth.proof.questions import Point

@@ -15,7 +15,7 @@ from problems.mechanics.guide_friction import sum_geometric
 from synth.bounds.clusters import ClusterTree, Factor
 from synth.bounds.contractor import Contractor, MovingInputs
 from synth.compiled import compiler
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.search.formulation import Formulation

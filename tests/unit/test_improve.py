@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import synth
-from synth.effort import SearchEffort
 from synth.question.catalogs import catalogs_for
 from synth.results.loading import load_front
 from synth.search.improvement import go_on
-from synth.tuning import TUNING, PartSampling
+from synth.tuning import TUNING, PartSampling, SearchEffort
 from tests.asking import pose
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut

@@ -17,7 +17,7 @@ from synth.bounds.intervals import BACKWARD, FORWARD
 from synth.compiled import compiler
 from synth.compiled.c_text import template
 from synth.margins import above
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SELECT, Program
 from synth.nlp import interior_point_c as native
 from synth.question.catalogs import as_catalogs

@@ -8,7 +8,6 @@ import pytest
 
 import synth.question.instance
 from synth.deadline import Stopped
-from synth.effort import SearchEffort
 from synth.file_locks import alone
 from synth.question.catalogs import catalogs_for
 from synth.search import part_sampling as outer
@@ -17,7 +16,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
 from synth.search.pruning import EpsilonCover
-from synth.tuning import PartSampling
+from synth.tuning import PartSampling, SearchEffort
 from tests.asking import instance_of
 from tests.tuned import synthesize, tuned
 from tests.unit.strut import NEEDED, RODS, Strut

@@ -14,7 +14,7 @@ import yaml
 
 import synth
 from synth.feasibility import residual
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task

@@ -6,7 +6,7 @@ import pytest
 
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
 from synth.bounds.contractor import Contractor, MovingInputs
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.special import TABLE, recorded, special
 from tests.unit.test_contractor import contraction

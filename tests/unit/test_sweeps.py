@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from synth.model.constraints import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.nlp.row_functions import RowFunctions
 from synth.nlp.rows import Rows
