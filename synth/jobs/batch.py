@@ -18,6 +18,7 @@ from sqlalchemy import URL
 from synth.errors import InputError, whole_number
 from synth.input_limits import INPUT_LIMITS
 from synth.jobs.executors import Cluster, Inline, Processes
+from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.outputs import write_outputs
 from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
@@ -40,10 +41,6 @@ if TYPE_CHECKING:
     from synth.model.problem import DesignProblem
 
 DATABASE = "jobs.sqlite"  # beside the results, unless another one is named
-# A unit of work should take 0.2 to 2 s: less and the database costs too much, more and an interruption does.
-ROWS_PER_UNIT = 4  # one objective
-FRONTS_PER_UNIT = 1
-SHOWN_FAULTS = 20
 
 
 @dataclass(frozen=True)
@@ -160,11 +157,7 @@ def batch(
         settings,
         {"parts": parts, "limits": limits, "fix": fix, "objectives": objectives, "grid": grid},
     )
-    with closing(job), claimed(job.folder, job.id):
-        job.plan()
-        stopped = job.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
-        counts = job.write()
-    return BatchResult(job.place, job.id, stopped, counts, job.address, catalogs, job.questioner.own, keep)
+    return job.result(workers, scheduler, progress, keep)
 
 
 class _TemporaryFolder:
@@ -188,6 +181,7 @@ class BatchJob:
         Of every row.
     common : mapping
         What is asked in all rows: ``parts``, ``limits``, ``fix``, ``objectives``, ``grid``.
+    numbers : JobSettings, optional
 
     Raises
     ------
@@ -205,7 +199,9 @@ class BatchJob:
         database: str | None,
         settings: SearchSettings,
         common: Mapping[str, Any],
+        numbers: JobSettings = JOBS,
     ) -> None:
+        self.numbers = numbers
         check_grid(common["grid"])
         if folder.exists() and not folder.is_dir():
             raise InputError("--output", str(folder), "a folder; this is a file")
@@ -259,7 +255,7 @@ class BatchJob:
     def store(self) -> Store:
         """The database; made when it is first needed."""
         if self._store is None:
-            self._store = Store(self.address)
+            self._store = Store(self.address, settings=self.numbers.store)
         return self._store
 
     def close(self) -> None:
@@ -299,12 +295,12 @@ class BatchJob:
             return True
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
-            asked, first, school = 0, list[ReadRow](), WarmStarts()
+            asked, first, school = 0, list[ReadRow](), WarmStarts(self.numbers.warm_starts)
             for count, row in enumerate(self.questioner.rows(), start=1):
                 if row.key is not None and row.question is not None:
                     asked += 1
                     school.show(row.structure, row.key, row.place, row.question)
-                if count <= SHOWN_FAULTS and not asked:
+                if count <= self.numbers.shown_faults and not asked:
                     first.append(row)
                 pickle.dump((self._recorded(row), row.place), checked)
             if not asked:
@@ -319,7 +315,7 @@ class BatchJob:
                     "content": self._content(),
                 },
                 (_taught(school, *pickle.load(checked)) for _ in range(count)),
-                ROWS_PER_UNIT if self._is_single() else FRONTS_PER_UNIT,
+                self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit,
             )
 
     def _is_planned(self) -> bool:
@@ -378,7 +374,7 @@ class BatchJob:
             self.bad += 1
             for fault in row.faults:
                 kind = (fault.column, fault.value, fault.expected)
-                if kind in self.faults or len(self.faults) < SHOWN_FAULTS:
+                if kind in self.faults or len(self.faults) < self.numbers.shown_faults:
                     self.faults.setdefault(kind, []).append(fault.line)
         if row.unused:
             self.unused.setdefault(row.family, set()).update(row.unused)
@@ -405,6 +401,21 @@ class BatchJob:
 
     # -- work and results ----------------------------------------------------------------------
 
+    def result(
+        self,
+        workers: int,
+        scheduler: str | None,
+        progress: Callable[[Mapping[str, Any]], None] | None,
+        keep: Any = None,
+    ) -> BatchResult:
+        """Plan, work off and write the job, as ``batch`` does; ``keep`` lives as long as the result."""
+        with closing(self), claimed(self.folder, self.id):
+            self.plan()
+            stopped = self.work(None if workers == 1 and scheduler is None else workers, scheduler, progress)
+            counts = self.write()
+        own = self.questioner.own
+        return BatchResult(self.place, self.id, stopped, counts, self.address, self.catalog_spec, own, keep)
+
     def work(
         self,
         workers: int | None,
@@ -414,7 +425,7 @@ class BatchJob:
     ) -> str:
         """Work the job off; return why it was stopped, or an empty text."""
         shares = Shares(self.settings, self.catalog_spec, self.questioner.own)
-        return work_off(self.store, self.id, shares, workers, scheduler, progress, say)
+        return work_off(self.store, self.id, shares, workers, scheduler, progress, say, self.numbers)
 
     def write(self) -> dict[str, int]:
         """Write the results that there are to ``place``; return the rows by status."""
@@ -430,6 +441,7 @@ def work_off(
     scheduler: str | None,
     progress: Callable[[Mapping[str, Any]], None] | None,
     say: Callable[[str], None],
+    numbers: JobSettings = JOBS,
 ) -> str:
     """Work a job off.
 
@@ -443,6 +455,7 @@ def work_off(
         Of a Dask cluster, instead of processes.
     say : callable
         Told in a sentence what happens to the cluster.
+    numbers : JobSettings, optional
 
     Returns
     -------
@@ -454,10 +467,10 @@ def work_off(
     if sum(store.open_units(job)):
         executor: Any
         if scheduler is not None:
-            executor = Cluster(scheduler, say)
+            executor = Cluster(scheduler, say, numbers.cluster)
         else:
             executor = Inline() if workers is None else Processes(workers)
-        stopped = Runner(store, job, shares, executor, progress).run()
+        stopped = Runner(store, job, shares, executor, progress, numbers.runner).run()
     else:
         stopped = ""
     if stopped == "cancelled":

@@ -18,9 +18,8 @@ from queue import SimpleQueue
 from typing import Any
 
 from synth.errors import InputError
+from synth.jobs.job_settings import JOBS, ClusterSettings
 
-ANSWER = 5.0  # seconds that a scheduler has to answer
-PATIENCE = 600.0  # seconds to wait for a scheduler that has gone
 LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -124,6 +123,7 @@ class Cluster(Executor):
         ``tcp://host:port`` of the scheduler.
     say : callable
         Told in a sentence when the scheduler is lost or found again.
+    settings : ClusterSettings, optional
 
     Raises
     ------
@@ -131,14 +131,14 @@ class Cluster(Executor):
         When nothing answers there, or the extra is not installed.
     """
 
-    def __init__(self, address: str, say: Callable[[str], None]) -> None:
+    def __init__(self, address: str, say: Callable[[str], None], settings: ClusterSettings = JOBS.cluster) -> None:
         try:
             import distributed  # an extra: only for those who outgrow one machine
         except ImportError:
             wanted = "the extra for clusters: pip install 'clutchsynth[cluster]'"
             raise InputError("--scheduler", address, wanted) from None
         self._distributed = distributed
-        self._address, self._say = address, say
+        self._address, self._say, self._settings = address, say, settings
         try:
             self._connect()
         except (OSError, ValueError) as error:
@@ -146,14 +146,14 @@ class Cluster(Executor):
             raise InputError("--scheduler", address, wanted) from error
 
     def _connect(self) -> None:
-        self._client = self._distributed.Client(self._address, timeout=ANSWER, set_as_default=False)
+        self._client = self._distributed.Client(self._address, timeout=self._settings.answer, set_as_default=False)
         self._executor = self._client.get_executor(pure=False)
         self._threads, self._counted = 0, float("-inf")
 
     @property
     def slots(self) -> int:
         """Units to have under way: some more than the cluster has threads, so that none waits for the next."""
-        if time.monotonic() - self._counted > ANSWER:
+        if time.monotonic() - self._counted > self._settings.recount:
             try:
                 self._threads = sum(int(count) for count in self._client.nthreads().values())
             except LOST:
@@ -186,12 +186,12 @@ class Cluster(Executor):
         """
         self._say(f"the scheduler at {self._address} does not answer; nothing is lost, waiting for it")
         self._close()
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + self._settings.patience
         while time.monotonic() < deadline and not stopped():
             try:
                 self._connect()
             except (OSError, ValueError):
-                time.sleep(0.5)
+                time.sleep(self._settings.retry)
                 continue
             self._say("the scheduler is back; what it had not finished is asked for again")
             return True

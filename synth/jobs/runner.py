@@ -14,14 +14,10 @@ from sqlalchemy.exc import OperationalError
 
 from synth.errors import InputError
 from synth.jobs.executors import Cluster, is_lost
+from synth.jobs.job_settings import JOBS, RunnerSettings
 from synth.jobs.solve import OtherCodeError, solve_unit
-from synth.jobs.store import CANCELLED, LEASE, Account, Claim, Outcome, Store, new_owner
+from synth.jobs.store import CANCELLED, Account, Claim, Outcome, Store, new_owner
 from synth.results.provenance import code_digest
-
-ATTEMPTS = 3  # of a question that fails, before it is answered by its error
-TICK = 0.5  # seconds between looks at what is going on
-PAUSE = 1.0  # seconds between two reports of progress, at least
-OUTAGE = 60.0  # seconds to wait for a database that does not answer
 
 T = TypeVar("T")
 
@@ -47,6 +43,7 @@ class Runner:
         With ``slots``.
     progress : callable, optional
         Called with a mapping: rows, done, failed, infeasible, rate (rows per second), left (seconds; None = unknown).
+    settings : RunnerSettings, optional
     """
 
     def __init__(
@@ -56,13 +53,15 @@ class Runner:
         shares: Shares,
         executor: Any,
         progress: Callable[[Mapping[str, Any]], None] | None = None,
+        settings: RunnerSettings = JOBS.runner,
     ) -> None:
+        self.settings = settings
         self.store, self.job, self.shares, self.executor, self.progress = store, job, shares, executor, progress
         self.owner = new_owner()
         self.started = time.monotonic()
         self.first: Account | None = None
         self.said = 0.0
-        self.pause = PAUSE
+        self.pause = settings.pause
         self.cancelled = threading.Event()
         self.over = threading.Event()
         self.waiting: deque[Claim] = deque()
@@ -89,7 +88,7 @@ class Runner:
             executor: Executor = self.executor
             executor.shutdown(wait=False, cancel_futures=True)
             self.store.release(self.owner)
-            heart.join(timeout=TICK)
+            heart.join(timeout=self.settings.tick)
 
     def _work(self) -> str:
         while True:
@@ -104,7 +103,7 @@ class Runner:
                     return "the scheduler did not come back"
             self._fill()
             if self.under_way:
-                done, _ = wait(self.under_way, timeout=TICK, return_when=FIRST_COMPLETED)
+                done, _ = wait(self.under_way, timeout=self.settings.tick, return_when=FIRST_COMPLETED)
                 for future in done:
                     self._take(future, self.under_way.pop(future))
             elif not self.waiting and not self._others_work():
@@ -118,7 +117,7 @@ class Runner:
         if wanted > 0:
             # Some more than there are slots for: asking the database costs more than what it gives.
             ahead = wanted + self.executor.slots
-            self.waiting.extend(_patiently(lambda: self.store.claim(self.job, self.owner, ahead)))
+            self.waiting.extend(self._patiently(lambda: self.store.claim(self.job, self.owner, ahead)))
         while free > 0 and self.waiting:
             claim = self.waiting.popleft()
             work = {
@@ -150,27 +149,40 @@ class Runner:
                     errors[key] = found["error"]
                 else:
                     outcomes[key] = Outcome(found["status"], found["seconds"], found["layout"], found["content"])
-        _patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, ATTEMPTS))
+        self._patiently(
+            lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, self.settings.attempts)
+        )
 
     def _others_work(self) -> bool:
         """Tell whether units are left that other processes have; wait a little for them."""
-        left = sum(_patiently(lambda: self.store.open_units(self.job)))
+        left = sum(self._patiently(lambda: self.store.open_units(self.job)))
         if left:
             self.store.release_dead(self.job)
-            self.cancelled.wait(TICK)
+            self.cancelled.wait(self.settings.tick)
         return left > 0
+
+    def _patiently(self, call: Callable[[], T]) -> T:
+        """Call the database, again and again while it does not answer, for some time."""
+        deadline = time.monotonic() + self.settings.outage
+        while True:
+            try:
+                return call()
+            except OperationalError:
+                if time.monotonic() > deadline:
+                    raise
+                time.sleep(self.settings.tick)
 
     # -- signs of life -------------------------------------------------------------------------
 
     def _beat(self) -> None:
         """Renew the leases, and see whether the job is still wanted; a thread of its own."""
         renewed = time.monotonic()
-        while not self.over.wait(TICK):
+        while not self.over.wait(self.settings.tick):
             try:
                 job = self.store.job(self.job)
                 if job is None or job.state == CANCELLED:
                     self.cancelled.set()
-                if time.monotonic() - renewed > LEASE / 4:
+                if time.monotonic() - renewed > self.store.settings.lease / 4:
                     self.store.renew(self.owner)
                     renewed = time.monotonic()
             except (OperationalError, OSError, InputError):
@@ -183,7 +195,9 @@ class Runner:
         begin = time.monotonic()
         account = self.store.account(self.job)
         self.said = time.monotonic()
-        self.pause = max(PAUSE, 20 * (self.said - begin))  # counting must not cost what it counts
+        self.pause = max(
+            self.settings.pause, (self.said - begin) / self.settings.report_share
+        )  # counting must not cost what it counts
         if self.first is None:
             self.first = account
         elapsed, fresh = self.said - self.started, account.done - self.first.done
@@ -199,15 +213,3 @@ class Runner:
                 "left": (account.rows - account.done) / rate if rate > 0 else None,
             }
         )
-
-
-def _patiently(call: Callable[[], T]) -> T:
-    """Call the database, again and again while it does not answer, for a minute."""
-    deadline = time.monotonic() + OUTAGE
-    while True:
-        try:
-            return call()
-        except OperationalError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(TICK)

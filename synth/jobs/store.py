@@ -27,12 +27,10 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, IntegrityError, NoSuchModu
 from sqlalchemy.orm import Session
 
 from synth.errors import InputError
+from synth.jobs.job_settings import JOBS, StoreSettings
 from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
 
 HEAD = "1"  # the last of the migrations
-PATIENCE = 60.0  # seconds that whoever opens or writes waits for others
-LEASE = 60.0  # seconds that a claim lasts without a sign of life
-CHUNK = 500  # rows written or read at a time
 WHOLE = "a job database that is whole"
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
 OPEN, RUNNING, DONE, CANCELLED = "open", "running", "done", "cancelled"
@@ -101,13 +99,15 @@ class Answered:
 # ---- opening --------------------------------------------------------------------------------------------------------
 
 
-def engine_for(url: str | sa.URL) -> sa.Engine:
+def engine_for(url: str | sa.URL, patience: float) -> sa.Engine:
     """Return the engine of a database.
 
     Parameters
     ----------
     url : str
         ``sqlite:///path`` or ``postgresql://user@host/name``.
+    patience : float
+        Of :class:`StoreSettings`, for SQLite; PostgreSQL waits by itself.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def engine_for(url: str | sa.URL) -> sa.Engine:
     try:
         engine = sa.create_engine(
             address,
-            connect_args={"timeout": PATIENCE} if kind == "sqlite" else {},
+            connect_args={"timeout": patience} if kind == "sqlite" else {},
             pool_pre_ping=True,
             json_deserializer=lambda text: _read_back(text, shown),
         )
@@ -138,7 +138,7 @@ def engine_for(url: str | sa.URL) -> sa.Engine:
         wanted = "an installed driver: pip install 'clutchsynth[postgres]'"
         raise InputError("--database", shown, wanted) from error
     if kind == "sqlite":
-        sa.event.listen(engine, "connect", _prepare_sqlite)
+        sa.event.listen(engine, "connect", lambda connection, _: _prepare_sqlite(connection, patience))
         sa.event.listen(engine, "handle_error", _tell_fault)
     return engine
 
@@ -172,20 +172,20 @@ def _tell_fault(context: sa.engine.ExceptionContext) -> None:
         raise InputError("--database", file, f"{WHOLE} ({reason})") from error
 
 
-def _prepare_sqlite(connection: Any, _: Any) -> None:
+def _prepare_sqlite(connection: Any, patience: float) -> None:
     cursor = connection.cursor()
-    for pragma in (f"busy_timeout={1000 * PATIENCE:.0f}", "synchronous=NORMAL", "foreign_keys=ON"):
+    for pragma in (f"busy_timeout={1000 * patience:.0f}", "synchronous=NORMAL", "foreign_keys=ON"):
         cursor.execute(f"PRAGMA {pragma}")
-    _write_ahead(cursor)
+    _write_ahead(cursor, patience)
     cursor.close()
 
 
-def _write_ahead(cursor: Any) -> None:
+def _write_ahead(cursor: Any, patience: float) -> None:
     """Let there be readers and one writer at a time; a killed process loses nothing that was committed.
 
     While another process writes into a file that is new, SQLite refuses to change it so without waiting at all.
     """
-    deadline, pause = time.monotonic() + PATIENCE, 0.005
+    deadline, pause = time.monotonic() + patience, 0.005
     while True:
         try:
             cursor.execute("PRAGMA journal_mode=WAL")
@@ -312,6 +312,7 @@ class Store:
         ``sqlite:///path`` or ``postgresql://user@host/name``.
     create : bool
         Whether a SQLite file may be made; PostgreSQL databases must be there.
+    settings : StoreSettings, optional
 
     Raises
     ------
@@ -319,8 +320,9 @@ class Store:
         The database cannot be opened.
     """
 
-    def __init__(self, url: str | sa.URL, create: bool = True) -> None:
-        self.engine = engine_for(url)
+    def __init__(self, url: str | sa.URL, create: bool = True, settings: StoreSettings = JOBS.store) -> None:
+        self.settings = settings
+        self.engine = engine_for(url, settings.patience)
         self.url = self.engine.url.render_as_string(hide_password=True)
         try:
             if self.engine.dialect.name == "sqlite":
@@ -393,7 +395,7 @@ class Store:
 
     def _write_rows(self, connection: sa.Connection, job: str, rows: Iterable[Mapping[str, Any]]) -> int:
         count = 0
-        for some in _chunks(rows):
+        for some in _chunks(rows, self.settings.chunk):
             asked = [{"job": job, "unit": None, **row["question"]} for row in some if row["question"] is not None]
             if asked:
                 connection.execute(self._insert_once(RowQuestion), asked)
@@ -435,7 +437,7 @@ class Store:
             for _, same in itertools.groupby(asked, key=lambda question: str(question[0]))
             for some in _chunks(same, rows_per_unit)
         ]
-        for some in _chunks(units):
+        for some in _chunks(units, self.settings.chunk):
             self._add_units(connection, job, some, 0)
         return len(units)
 
@@ -471,8 +473,8 @@ class Store:
 
     # -- work ----------------------------------------------------------------------------------
 
-    def claim(self, job: str, owner: str, most: int, lease: float = LEASE) -> list[Claim]:
-        """Take units that are open, or whose owner has not renewed its lease."""
+    def claim(self, job: str, owner: str, most: int, lease: float | None = None) -> list[Claim]:
+        """Take units that are open, or whose owner has not renewed its lease; for so many seconds, or as set."""
         free = sa.or_(WorkUnit.state == OPEN, sa.and_(WorkUnit.state == RUNNING, WorkUnit.lease < moment()))
         # PostgreSQL passes over what others are just taking; SQLite has one writer at a time and ignores the clause.
         wanted = (
@@ -486,7 +488,7 @@ class Store:
         take = (
             sa.update(WorkUnit)
             .where(WorkUnit.id.in_(sa.select(wanted.c.id)))
-            .values(state=RUNNING, owner=owner, lease=moment() + lease, token=WorkUnit.token + 1)
+            .values(state=RUNNING, owner=owner, lease=self._until(lease), token=WorkUnit.token + 1)
             .returning(WorkUnit.id, WorkUnit.token, WorkUnit.attempts)
             .execution_options(synchronize_session=False)
         )
@@ -504,13 +506,16 @@ class Store:
             for unit, token, attempts in taken
         ]
 
-    def renew(self, owner: str, lease: float = LEASE) -> None:
+    def _until(self, lease: float | None) -> sa.ColumnElement[float]:
+        return moment() + (self.settings.lease if lease is None else lease)
+
+    def renew(self, owner: str, lease: float | None = None) -> None:
         """Give a sign of life: everything that an owner works on stays its own."""
         with self.engine.begin() as connection:
             connection.execute(
                 sa.update(WorkUnit)
                 .where(WorkUnit.owner == owner, WorkUnit.state == RUNNING)
-                .values(lease=moment() + lease)
+                .values(lease=self._until(lease))
             )
 
     def release(self, owner: str) -> None:
@@ -648,7 +653,7 @@ class Store:
             .where(Row.job == job)
             .order_by(*((Row.position, Row.line) if canonical else (Row.line,)))
         )
-        with self.engine.connect().execution_options(stream_results=True, yield_per=CHUNK) as connection:
+        with self.engine.connect().execution_options(stream_results=True, yield_per=self.settings.chunk) as connection:
             for row in connection.execute(asked):
                 yield Answered(*row)
 
@@ -659,7 +664,7 @@ class Store:
             .where(RowQuestion.job == job)
             .order_by(RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         )
-        with self.engine.connect().execution_options(stream_results=True, yield_per=CHUNK) as connection:
+        with self.engine.connect().execution_options(stream_results=True, yield_per=self.settings.chunk) as connection:
             for row in connection.execute(asked):
                 yield row[0], row[1], row[2]
 
@@ -699,7 +704,7 @@ def _tell(connection: sa.Connection, job: str, kind: str, text: str) -> None:
     connection.execute(sa.insert(Event).values(job=job, time=moment(), kind=kind, text=text))
 
 
-def _chunks(items: Iterable[Any], size: int = CHUNK) -> Iterator[list[Any]]:
+def _chunks(items: Iterable[Any], size: int) -> Iterator[list[Any]]:
     remaining = iter(items)
     while some := list(itertools.islice(remaining, size)):
         yield some

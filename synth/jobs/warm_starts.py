@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from synth.jobs.job_settings import JOBS, WarmStartSettings
 from synth.jobs.solve import LIKE
 from synth.jobs.store import digest
 
-ONE_IN = 100
 SMALL = 1e-6  # SI; above it requirements are compared by their ratio
 
 
@@ -34,13 +34,14 @@ def place(values: Sequence[float]) -> tuple[float, ...]:
 class WarmStarts:
     """The teachers of a job. All its questions are shown first; then each may ask who teaches it."""
 
-    def __init__(self) -> None:
+    def __init__(self, settings: WarmStartSettings = JOBS.warm_starts) -> None:
+        self._settings = settings
         self._teachers: dict[str, dict[str, tuple[tuple[float, ...], Mapping[str, Any]]]] = {}
         self._nearest: dict[str, tuple[list[str], Any]] = {}
 
     def show(self, structure: str, key: str, where: tuple[float, ...], question: Mapping[str, Any]) -> None:
         """Show one question: its structure, key, place and content."""
-        if int(key[:12], 16) % ONE_IN == 0:
+        if int(key[:12], 16) % self._settings.one_in == 0:
             self._teachers.setdefault(structure, {})[key] = (where, question)
 
     def taught(

@@ -21,6 +21,7 @@ from synth.errors import InputError
 from synth.jobs import runner
 from synth.jobs.batch import BatchJob, resume, work_off
 from synth.jobs.executors import Inline, Processes
+from synth.jobs.job_settings import JOBS
 from synth.jobs.runner import Shares
 from synth.jobs.store import CANCELLED, Store, file_url
 from synth.question.settings import SearchSettings
@@ -257,7 +258,7 @@ def test_cancelling_stops_and_resuming_goes_on(tmp_path: Path) -> None:
         states.append(state)
         if len(states) == 1:
             job.store.set_state(job.id, CANCELLED, "cancelled")
-            time.sleep(2 * runner.TICK + 0.3)  # until the heart has beaten
+            time.sleep(2 * JOBS.runner.tick + 0.3)  # until the heart has beaten
 
     assert job.work(None, None, look) == "cancelled"
     assert job.write() == {"not_solved": 9}

@@ -16,8 +16,9 @@ import pytest
 
 import synth
 from synth.errors import InputError
-from synth.jobs import runner
 from synth.jobs.executors import Cluster
+from synth.jobs.job_settings import ClusterSettings, JobSettings, RunnerSettings
+from tests.batch.asked import batch
 from tests.batch.rod import Rod
 
 ROOT = Path(__file__).parents[2]
@@ -77,9 +78,9 @@ def parts(tmp_path: Path) -> Iterator[Parts]:
 
 
 def test_workers_and_the_scheduler_may_die_on_the_way(
-    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(runner, "PAUSE", 0.0)  # rows are solved in milliseconds: every one is to be seen
+    numbers = JobSettings(runner=RunnerSettings(pause=0.0))  # rows are solved in milliseconds: every one is to be seen
     alone = synth.batch(Rod, rows(60), tmp_path / "alone", objectives=["mass"], points=1)
     scheduler = parts.scheduler()
     first, _ = parts.worker(), parts.worker()
@@ -97,8 +98,15 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
             parts.scheduler()
             parts.worker()
 
-    result = synth.batch(
-        Rod, rows(60), tmp_path / "cluster", objectives=["mass"], points=1, scheduler=parts.address, progress=disturb
+    result = batch(
+        numbers,
+        Rod,
+        rows(60),
+        tmp_path / "cluster",
+        objectives=["mass"],
+        points=1,
+        scheduler=parts.address,
+        progress=disturb,
     )
     assert len(parts.processes) == 6, "everything was solved before anything was killed"
     assert result.counts == {"optimal": 60}
@@ -110,11 +118,11 @@ def test_workers_and_the_scheduler_may_die_on_the_way(
         assert "failed" not in [kind for _, kind, _ in store.events(result.job)]
 
 
-def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts) -> None:
     scheduler = parts.scheduler()
     parts.ready(0)
     said: list[str] = []
-    cluster = Cluster(parts.address, said.append)
+    cluster = Cluster(parts.address, said.append, ClusterSettings(patience=0.5))
     assert cluster.alive()
     assert cluster.slots == 2
     scheduler.kill()
@@ -123,7 +131,6 @@ def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts, monkeypatch: pytes
     while cluster.alive() and time.monotonic() < deadline:
         time.sleep(0.1)
     assert not cluster.alive()
-    monkeypatch.setattr("synth.jobs.executors.PATIENCE", 0.5)
     assert not cluster.reconnect(lambda: False)
     assert "does not answer; nothing is lost" in said[0]
     cluster.shutdown()

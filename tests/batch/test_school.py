@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 import synth
-from synth.jobs import warm_starts as school
+from synth.jobs.job_settings import JobSettings, WarmStartSettings
 from synth.jobs.solve import LIKE
 from synth.jobs.store import Store, digest
 from synth.jobs.warm_starts import WarmStarts, place
+from tests.batch.asked import batch
 from tests.batch.rod import Rod
 
 Question = tuple[str, tuple[float, ...], dict[str, int]]
@@ -23,10 +24,10 @@ def questions(count: int) -> list[Question]:
 
 
 def taught(
-    asked: list[Question], structure: Callable[[int], str] = lambda k: "rods"
+    asked: list[Question], structure: Callable[[int], str] = lambda k: "rods", one_in: int = 10
 ) -> dict[int, tuple[str, int | None]]:
     """Return, per question, its key and whose experience it has."""
-    own = WarmStarts()
+    own = WarmStarts(WarmStartSettings(one_in=one_in))
     for key, where, question in asked:
         own.show(structure(question["force"]), key, where, question)
     result = {}
@@ -36,16 +37,14 @@ def taught(
     return result
 
 
-def test_teachers_do_not_depend_on_the_order_of_rows(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 10)
+def test_teachers_do_not_depend_on_the_order_of_rows() -> None:
     asked = questions(200)
     shuffled = list(asked)
     random.Random(0).shuffle(shuffled)
     assert taught(asked) == taught(shuffled)
 
 
-def test_the_nearest_teacher_is_asked_and_asks_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 10)
+def test_the_nearest_teacher_is_asked_and_asks_nobody() -> None:
     found = taught(questions(200))
     teachers = {k for k, (_, teacher) in found.items() if teacher is None}
     assert 5 < len(teachers) < 60
@@ -58,22 +57,21 @@ def test_the_nearest_teacher_is_asked_and_asks_nobody(monkeypatch: pytest.Monkey
             assert key == digest({"force": k, LIKE: {"force": teacher}})
 
 
-def test_only_questions_of_one_structure_teach_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 10)
+def test_only_questions_of_one_structure_teach_each_other() -> None:
     found = taught(questions(200), lambda k: "even" if k % 2 == 0 else "odd")
     assert all(teacher is None or (teacher - k) % 2 == 0 for k, (_, teacher) in found.items())
 
 
-def test_without_a_teacher_a_question_stays_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 1 << 60)
-    assert all(key == digest({"force": k}) and teacher is None for k, (key, teacher) in taught(questions(20)).items())
+def test_without_a_teacher_a_question_stays_as_it_is() -> None:
+    found = taught(questions(20), one_in=1 << 60)
+    assert all(key == digest({"force": k}) and teacher is None for k, (key, teacher) in found.items())
 
 
 @pytest.mark.parametrize("points", [1, 5])
 def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_alone_to_the_gap(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, points: int
+    tmp_path: Path, points: int
 ) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 4)
+    numbers = JobSettings(warm_starts=WarmStartSettings(one_in=4))
     table = [
         {"id": f"R{k}", "force [kN]": 10 + k, "diameter_limit [mm]": 30 + k % 3}
         for k in range(24 if points == 1 else 12)
@@ -82,8 +80,8 @@ def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_
     random.Random(1).shuffle(shuffled)
     objectives = ["mass"] if points == 1 else ["mass", "diameter"]
     settings = {"objectives": objectives, "points": points}
-    first = synth.batch(Rod, table, tmp_path / "first", **settings)
-    other = synth.batch(Rod, shuffled, tmp_path / "other", workers=2, **settings)
+    first = batch(numbers, Rod, table, tmp_path / "first", **settings)
+    other = batch(numbers, Rod, shuffled, tmp_path / "other", workers=2, **settings)
     assert (first.folder / "designs.csv").read_bytes() == (other.folder / "designs.csv").read_bytes()
     with Store(f"sqlite:///{first.folder / 'jobs.sqlite'}") as store:
         contents = [content for _, _, content in store.questions(first.job)]
@@ -96,8 +94,8 @@ def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_
         assert set(designs.loc[[f"R{k}"], "status"]) == {"optimal"}
 
 
-def test_a_teacher_that_has_no_design_teaches_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(school, "ONE_IN", 3)
+def test_a_teacher_that_has_no_design_teaches_nothing() -> None:
+    numbers = JobSettings(warm_starts=WarmStartSettings(one_in=3))
     table = [{"force [kN]": 10 + k, "diameter_limit [mm]": 1 if k % 2 else 40} for k in range(20)]
-    counts = synth.batch(Rod, table, objectives=["mass"], points=1).counts
+    counts = batch(numbers, Rod, table, objectives=["mass"], points=1).counts
     assert counts == {"optimal": 10, "infeasible": 10}

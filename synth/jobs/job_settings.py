@@ -1,0 +1,121 @@
+"""The numbers that batches go by: how long is waited, how often is tried again, and how much goes at a time.
+
+None of them is part of an answer, apart from ``WarmStartSettings``: it decides which row is answered with the
+experience of another, and so which of two designs that are equal to the gap is found first. ``JOBS`` are those that
+everybody gets; whoever wants others makes a record of them and hands it to ``BatchJob``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoreSettings:
+    """How the job database is used.
+
+    Parameters
+    ----------
+    patience : float
+        In s, that whoever opens or writes waits for others: a checkpoint of SQLite may take seconds, nothing a minute.
+    lease : float
+        In s, that a claim lasts without a sign of life: so long a unit is idle whose worker died on another machine.
+    chunk : int
+        Rows that are written or read at a time: enough that statements cost little, and little memory.
+    """
+
+    patience: float = 60.0
+    lease: float = 60.0
+    chunk: int = 500
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunnerSettings:
+    """How a process works off a job.
+
+    Parameters
+    ----------
+    attempts : int
+        At a question that fails, before it is answered by its error: what kills a worker may have been something else.
+    tick : float
+        In s, between looks at what is going on: as long as Ctrl-C or a cancelled job may go unnoticed.
+    pause : float
+        In s, between two reports of progress, at least.
+    report_share : float
+        Of the time, that counting the rows for reports may take, as reports get rarer in a large job.
+    outage : float
+        In s, for which a database that does not answer is asked again: a restart of its server.
+    """
+
+    attempts: int = 3
+    tick: float = 0.5
+    pause: float = 1.0
+    report_share: float = 0.05
+    outage: float = 60.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClusterSettings:
+    """How long a Dask scheduler is waited for.
+
+    Parameters
+    ----------
+    answer : float
+        In s, that a scheduler has to answer.
+    recount : float
+        In s, after which the threads of the cluster are counted again: workers come and go.
+    retry : float
+        In s, between two tries to reach a scheduler that has gone.
+    patience : float
+        In s, for which a scheduler that has gone is waited for: whoever restarts it may have to be called first.
+    """
+
+    answer: float = 5.0
+    recount: float = 5.0
+    retry: float = 0.5
+    patience: float = 600.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class WarmStartSettings:
+    """Which questions of a job teach others.
+
+    Parameters
+    ----------
+    one_in : int
+        Of so many questions one is a teacher: few enough that what they cost is little, in a job that is large enough.
+    """
+
+    one_in: int = 100
+
+
+@dataclass(frozen=True, kw_only=True)
+class JobSettings:
+    """All numbers that batches go by.
+
+    A unit of work should take 0.2 to 2 s: less and the database costs too much, more and an interruption does.
+
+    Parameters
+    ----------
+    store : StoreSettings
+    runner : RunnerSettings
+    cluster : ClusterSettings
+    warm_starts : WarmStartSettings
+    rows_per_unit : int
+        Rows of one best design that are solved together.
+    fronts_per_unit : int
+        Rows of a whole front that are.
+    shown_faults : int
+        Kinds of faults in a table, and its first rows, that are remembered for the screen.
+    """
+
+    store: StoreSettings = field(default_factory=StoreSettings)
+    runner: RunnerSettings = field(default_factory=RunnerSettings)
+    cluster: ClusterSettings = field(default_factory=ClusterSettings)
+    warm_starts: WarmStartSettings = field(default_factory=WarmStartSettings)
+    rows_per_unit: int = 4
+    fronts_per_unit: int = 1
+    shown_faults: int = 20
+
+
+JOBS = JobSettings()
