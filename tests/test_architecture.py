@@ -151,6 +151,31 @@ def test_the_engine_names_no_family() -> None:
         assert not named, f"{path.name} names {named}"
 
 
+# Folders of tests/ beside those named like a package of the engine, and what their tests have in common.
+KINDS = {
+    "ground": "single files of the engine",
+    "problems": "the shipped families, in folders as those of problems/",
+    "catalogs": "the shipped tables",
+    "reports": "figures and tables of results",
+    "conformance": "what every family must keep",
+    "certificates": "claims on random problems against an independent reference",
+    "endtoend": "what people meet, across packages",
+    "docs": "what the documentation shows",
+    "benchmarks": "run by hand",
+    "sample_problems": "small problems for tests of the engine",
+}
+
+
+def test_tests_stand_in_folders_named_like_what_they_test() -> None:
+    def folders(place: str) -> set[str]:
+        return {path.name for path in (ROOT / place).iterdir() if any(path.rglob("*.py"))}
+
+    packages = {path.name for path in (ROOT / "synth").iterdir() if path.is_dir() and any(path.rglob("*.py"))}
+    assert folders("tests") == packages | set(KINDS)
+    assert folders("tests/problems") <= folders("problems")
+    assert {path.name for path in (ROOT / "tests").glob("test_*.py")} == {"test_architecture.py", "test_layers.py"}
+
+
 def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_path: Path) -> None:
     source, wheels = tmp_path / "source", tmp_path / "wheels"
     source.mkdir()  # a copy: building leaves folders beside what it builds

@@ -5,7 +5,6 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
-from cases import CASES, known_design, question
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -19,6 +18,7 @@ from synth.model.model import Model
 from synth.model.program import OP_SELECT, OP_SPECIAL
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
+from tests.conformance.cases import CASES, known_design, question
 
 pytestmark = pytest.mark.slow
 

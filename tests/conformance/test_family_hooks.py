@@ -6,11 +6,11 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from cases import CASES
 
 import synth
 from reports.figure import figure_svg
 from synth.units import parse_unit, split_header, to_si
+from tests.conformance.cases import CASES
 
 
 def overrides(family, hook):

@@ -31,7 +31,7 @@ from synth.analysis.describe import describe
 from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
-from tests.endtoend.entry import at_once
+from tests.terminal.entry import at_once
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]

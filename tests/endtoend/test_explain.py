@@ -9,7 +9,7 @@ from synth.search.synthesize import synthesize
 from synth.studies.infeasibility.explain import _rounded
 from synth.units import parse_quantity
 from tests.conformance.cases import CASES
-from tests.endtoend.entry import at_once
+from tests.terminal.entry import at_once
 
 pytestmark = pytest.mark.slow
 

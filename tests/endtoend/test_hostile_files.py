@@ -15,9 +15,9 @@ import pytest
 
 from synth.plain_text import UNSAFE
 from synth.results import ParetoFront
-from tests.endtoend.entry import at_once
-from tests.endtoend.test_cli import SMALL, refused
 from tests.endtoend.test_kept_results import BATCH, rows
+from tests.terminal.entry import at_once
+from tests.terminal.test_cli import SMALL, refused
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="pipes and devices of POSIX")
 HUGE = 3_000_000_000  # bytes, of which none is on the disk

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.endtoend.entry import COMMAND, at_once, clutchsynth
-from tests.endtoend.test_batch_cli import clutchsynth as in_process
-from tests.endtoend.test_choice_cli import SEVERAL
-from tests.endtoend.test_cli import HOIST, SMALL, refused
-from tests.unit.test_output_folder import small_disk
+from tests.ground.test_output_folder import small_disk
+from tests.terminal.entry import COMMAND, at_once, clutchsynth
+from tests.terminal.test_batch_commands import clutchsynth as in_process
+from tests.terminal.test_choice_commands import SEVERAL
+from tests.terminal.test_cli import HOIST, SMALL, refused
 
 pytestmark = [
     pytest.mark.slow,

@@ -13,7 +13,7 @@ import pytest
 
 import synth
 from synth.errors import InputError
-from tests.batch.rod import Rod
+from tests.sample_problems.rod import Rod
 
 PARTS = "steel = S185, 42CrMo4"
 

@@ -1,0 +1,149 @@
+"""Batches on a real Dask cluster whose parts are killed on the way."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import synth
+from synth.errors import InputError
+from synth.jobs.executors import Cluster
+from synth.jobs.job_settings import ClusterSettings, JobSettings, RunnerSettings
+from tests.jobs.asked import batch
+from tests.sample_problems.rod import Rod
+
+ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.slow
+
+
+def rows(count: int) -> list[dict[str, Any]]:
+    return [{"force [kN]": 10 + k, "parts": "steel = S185, 42CrMo4", "length [mm]": 100} for k in range(count)]
+
+
+class Parts:
+    """The processes of a cluster."""
+
+    def __init__(self, folder: Path) -> None:
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+        self.folder = folder
+        self.processes: list[subprocess.Popen[bytes]] = []
+
+    def start(self, module: str, *words: str) -> subprocess.Popen[bytes]:
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "ignore"}
+        with (self.folder / f"{module}.log").open("ab") as log:
+            process = subprocess.Popen(
+                [sys.executable, "-m", f"distributed.cli.{module}", *words, "--no-dashboard"],
+                stdout=log,
+                stderr=log,
+                env=environment,
+                cwd=self.folder,
+            )
+        self.processes.append(process)
+        return process
+
+    def scheduler(self) -> subprocess.Popen[bytes]:
+        host, port = self.address.removeprefix("tcp://").split(":")
+        return self.start("dask_scheduler", "--host", host, "--port", port)
+
+    def worker(self) -> subprocess.Popen[bytes]:
+        return self.start("dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--death-timeout", "60")
+
+    def ready(self, workers: int) -> None:
+        from distributed import Client
+
+        with Client(self.address, timeout=60, set_as_default=False) as client:
+            if workers:
+                client.wait_for_workers(workers, timeout=60)
+
+
+@pytest.fixture
+def parts(tmp_path: Path) -> Iterator[Parts]:
+    started = Parts(tmp_path)
+    yield started
+    for process in started.processes:
+        with contextlib.suppress(OSError):
+            process.kill()
+        process.wait()
+
+
+def test_workers_and_the_scheduler_may_die_on_the_way(
+    parts: Parts, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    numbers = JobSettings(runner=RunnerSettings(pause=0.0))  # rows are solved in milliseconds: every one is to be seen
+    alone = synth.batch(Rod, rows(60), tmp_path / "alone", objectives=["mass"], points=1)
+    scheduler = parts.scheduler()
+    first, _ = parts.worker(), parts.worker()
+    parts.ready(2)
+    seen: list[int] = []
+
+    def disturb(state: Any) -> None:
+        seen.append(state["done"])
+        if state["done"] and len(parts.processes) == 3:
+            first.kill()  # one of two workers, with work in its hands
+            parts.worker()
+        elif state["done"] > 6 and len(parts.processes) == 4:
+            scheduler.kill()  # all futures are cancelled; the workers leave by themselves
+            scheduler.wait()
+            parts.scheduler()
+            parts.worker()
+
+    result = batch(
+        numbers,
+        Rod,
+        rows(60),
+        tmp_path / "cluster",
+        objectives=["mass"],
+        points=1,
+        scheduler=parts.address,
+        progress=disturb,
+    )
+    assert len(parts.processes) == 6, "everything was solved before anything was killed"
+    assert result.counts == {"optimal": 60}
+    written = [(r.folder / "designs.csv").read_bytes() for r in (alone, result)]
+    assert written[0] == written[1]
+    from synth.jobs.store import Store
+
+    with Store(result.database) as store:
+        assert "failed" not in [kind for _, kind, _ in store.events(result.job)]
+
+
+def test_a_scheduler_that_is_waited_for_in_vain(parts: Parts) -> None:
+    scheduler = parts.scheduler()
+    parts.ready(0)
+    said: list[str] = []
+    cluster = Cluster(parts.address, said.append, ClusterSettings(patience=0.5))
+    assert cluster.alive()
+    assert cluster.slots == 2
+    scheduler.kill()
+    scheduler.wait()
+    deadline = time.monotonic() + 30
+    while cluster.alive() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not cluster.alive()
+    assert not cluster.reconnect(lambda: False)
+    assert "does not answer; nothing is lost" in said[0]
+    cluster.shutdown()
+
+
+def test_a_worker_with_another_version_is_noticed() -> None:
+    from synth.jobs.solve import OtherCodeError, solve_unit
+
+    with pytest.raises(OtherCodeError):
+        solve_unit({"code": "another", "job": "j", "questions": {}, "settings": {}, "catalogs": None, "own": None})
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"clutchsynth\[cluster\]"):
+        Cluster("tcp://127.0.0.1:1", print)

@@ -1,0 +1,134 @@
+"""Killed at any moment, the same command goes on and ends with the same bytes."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import sqlalchemy as sa
+
+from synth.jobs.batch import DATABASE
+from synth.jobs.store import Store, file_url
+
+ROOT = Path(__file__).parents[2]
+COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
+ROWS = """id,family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits
+{}"""
+ROW = "{},multi_plate_clutch,{},254,30,cz,2,friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2,friction_surfaces == 10"  # noqa: E501
+
+
+def small_table(folder: Path, count: int) -> Path:
+    path = folder / "rows.csv"
+    lines = [
+        ROW.format(f"A{k}", 400 + 10 * k).replace("friction_pair", '"friction_pair').replace("core 2,", 'core 2",')
+        for k in range(count)
+    ]
+    path.write_text(ROWS.format("\n".join(lines)) + "\n")
+    return path
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes of POSIX")
+def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:
+    kills = 14 if database.startswith("sqlite") else 8
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.jobs.stages", str(tmp_path), database, str(kills), "7"],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+    )
+    assert done.returncode == 0, done.stderr
+    words = done.stdout.split("\n")
+    assert words.count("killed") >= 3
+    assert not [word for word in words if word.startswith("ended") and word != "ended 0"]
+    first, killed = tmp_path / "first" / "designs.csv", tmp_path / "killed" / "designs.csv"
+    assert len(first.read_bytes().splitlines()) == 15
+    assert killed.read_bytes() == first.read_bytes()
+    assert not list((tmp_path / "killed").glob(".*.tmp"))
+    with Store(database) as store:
+        (job,) = store.jobs()
+        assert job.state == "done"
+        kinds = [kind for _, kind, _ in store.events(job.id)]
+        assert kinds[0] == "created"
+        assert kinds[-1] == "done"
+        assert "failed" not in kinds  # an interruption is no attempt
+
+
+def children_of(process: int) -> set[int]:
+    found = set()
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            continue
+        if int(fields[1]) == process:
+            found.add(int(path.parent.name))
+    return found
+
+
+def exists(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes of Linux")
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, number: signal.Signals) -> None:
+    table = small_table(tmp_path, 3)
+    command = [*COMMAND, "batch", str(table), "-o", str(tmp_path / "out"), "--points", "1", "--objective", "mass", "-q"]
+    process = subprocess.Popen([*command, "--workers", "1"], stderr=subprocess.PIPE, text=True)
+    try:
+        file = tmp_path / "out" / DATABASE
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and not at_work(file):
+            time.sleep(0.05)
+        time.sleep(random.Random(int(number)).uniform(0.0, 0.5))
+        workers = children_of(process.pid)
+        assert workers
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert process.returncode == (-9 if number == signal.SIGKILL else 4), errors
+    deadline = time.monotonic() + 20
+    while time.monotonic() < deadline and any(exists(worker) for worker in workers):
+        time.sleep(0.1)
+    assert not [worker for worker in workers if exists(worker)]
+    if number == signal.SIGKILL:
+        assert not (tmp_path / "out" / "designs.csv").exists()
+        again = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        assert again.returncode == 0, again.stderr
+        assert len((tmp_path / "out" / "designs.csv").read_text().splitlines()) == 4
+    else:
+        text = (tmp_path / "out" / "rows.csv").read_text()
+        assert "not_solved" in text
+        with Store(file_url(file)) as store:
+            (job,) = store.jobs()
+            assert store.open_units(job.id)[1] == 0
+            assert "interrupted" in [kind for _, kind, _ in store.events(job.id)]
+
+
+def at_work(file: Path) -> bool:
+    """Tell whether some unit is claimed."""
+    if not file.exists():
+        return False
+    engine = sa.create_engine(file_url(file))
+    try:
+        with engine.connect() as connection:
+            return bool(connection.execute(sa.text("SELECT count(*) FROM batch_unit WHERE state = 'running'")).scalar())
+    except sa.exc.OperationalError:
+        return False  # the tables are just being made
+    finally:
+        engine.dispose()

@@ -1,0 +1,111 @@
+"""How fronts are put together: rank, status, and statistics that are typed and read like a dictionary."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from dataclasses import fields, replace
+from typing import Any
+
+import pytest
+
+import synth
+from synth.pareto import rank
+from synth.results import ParetoFront
+from synth.results.assembly import front_of, ranked
+from synth.results.statistics import SearchStatistics
+from synth.results.told import UNTOLD
+from tests.sample_problems.strut import NEEDED, RODS, Strut
+
+
+@pytest.fixture(scope="module")
+def front() -> ParetoFront:
+    return synth.synthesize(Strut(), NEEDED, catalogs={"rods": RODS}, points=5)
+
+
+def test_designs_are_ranked_as_the_search_has_ranked_them(front: ParetoFront) -> None:
+    chosen, mixed = dict(front.frame.objectives), front.designs[::-1]
+    blank = [replace(d, rank=None, score=None, note="") for d in mixed]
+    order, designs = ranked(blank, chosen, [1.0] * len(chosen), front.complete)
+    assert designs == front.designs
+    assert [mixed[k] for k in order] == front.designs
+    assert ranked([], chosen, [1.0, 1.0]) == ([], [])
+    heavy = ranked(front.designs, chosen, [0.0, 1.0])[1]
+    by_hand = rank(chosen, [[d.values[n] for n in chosen] for d in front.designs], [0.0, 1.0])  # type: ignore[arg-type]
+    assert [d.score for d in heavy] == [by_hand.scores[k] for k in by_hand.order]
+
+
+@pytest.mark.parametrize(
+    ("kind", "any_design", "interrupted", "status"),
+    [
+        ("global", True, "", "optimal"),
+        ("exhaustive", True, "", "feasible"),
+        ("heuristic", True, "time limit", "feasible"),
+        ("global", False, "", "infeasible"),
+        ("heuristic", False, "", "infeasible"),
+        ("heuristic", False, "time limit", "not_solved"),
+    ],
+)
+def test_the_status_follows_from_designs_and_proof(
+    front: ParetoFront, kind: str, any_design: bool, interrupted: str, status: str
+) -> None:
+    certificate = replace(front.certificate, kind=kind)
+    made = front_of(
+        front.question,
+        front.frame,
+        front.designs if any_design else [],
+        certificate,
+        front.statistics,
+        front.settings,
+        complete=True,
+        interrupted=interrupted,
+    )
+    assert made.status.value == status
+    assert made.complete == (not interrupted)
+
+
+def test_statistics_have_names_and_keys(front: ParetoFront) -> None:
+    told = front.statistics
+    assert told.combinations == told["combinations"] == front.certificate.combinations
+    assert told.robust is UNTOLD
+    assert "robust" not in told
+    assert told.get("robust", "none") == "none"
+    assert list(told) == [f.name for f in fields(told) if f.name in told]
+    assert told == dict(told)
+    assert {**told, "mine": 1}["mine"] == (told | {"mine": 1})["mine"] == 1
+    more = replace(told, robust={"searches": 1}, nlp_solves_to_find=None)
+    assert (more["robust"], more["nlp_solves_to_find"]) == ({"searches": 1}, None)
+    assert {**told, "robust": more.robust, "nlp_solves_to_find": None} == more
+
+
+def test_statistics_go_through_files_and_processes(front: ParetoFront) -> None:
+    told = front.statistics
+    assert json.loads(json.dumps(told)) == json.loads(json.dumps(told.to_json()))
+    for again in (pickle.loads(pickle.dumps(told)), copy.copy(told), copy.deepcopy(told)):
+        assert type(again) is SearchStatistics
+        assert again == told
+        assert again.boxes == told.boxes
+    foreign = SearchStatistics.from_json({"boxes": 3, "of another version": [1], "solved": None})
+    assert foreign == {"boxes": 3, "of another version": [1], "solved": None}
+    assert (foreign.boxes, foreign.solved, foreign.combinations) == (3, None, UNTOLD)
+    assert replace(foreign, boxes=4)["of another version"] == [1]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda x: x.update(boxes=1),
+        lambda x: x.pop("boxes"),
+        lambda x: x.clear(),
+        lambda x: x.setdefault("mine", 1),
+        lambda x: x.__setitem__("boxes", 1),
+        lambda x: x.__delitem__("boxes"),
+        lambda x: setattr(x, "boxes", 1),
+    ],
+)
+def test_statistics_cannot_be_changed(front: ParetoFront, change: Any) -> None:
+    before = dict(front.statistics)
+    with pytest.raises((TypeError, AttributeError)):
+        change(front.statistics)
+    assert front.statistics == before

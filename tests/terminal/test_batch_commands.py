@@ -1,0 +1,207 @@
+"""batch, size-range and jobs as a user meets them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+from pathlib import Path
+from subprocess import CompletedProcess
+from typing import Any
+
+import pytest
+
+import synth
+from synth.terminal import batch_commands as commands
+from tests.terminal.entry import at_once
+
+RULES = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
+GOOD = {
+    "id": "A1",
+    "family": "multi_plate_clutch",
+    "load_torque [N*m]": "600",
+    "driver_speed [1/min]": "254",
+    "driven_inertia [kg*m2]": "30",
+    "guide_model": "cz",
+    "ramp_time [s]": "2",
+    "parts": RULES,
+    "limits": "friction_surfaces == 10",
+    "offset [mm]": "3",
+}
+
+
+def clutchsynth(*words: str | Path, folder: Path) -> CompletedProcess[str]:
+    """Run the entry point in this process, its workers too: imports would cost most."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(commands, "_processes", lambda workers: None)
+        return at_once(*words, folder=folder)
+
+
+def write(folder: Path, *rows: dict[str, Any], name: str = "rows.csv") -> Path:
+    path = folder / name
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    return path
+
+
+FLAGS = ("--points", "1", "--objective", "mass")
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, CompletedProcess[str]]:
+    folder = tmp_path_factory.mktemp("batch")
+    rows = [GOOD, {**GOOD, "id": "A2", "load_torque [N*m]": "450"}, {**GOOD, "id": "A3", "load_torque [N*m]": "6,5"}]
+    rows.append({**GOOD, "id": "A4", "limits": "friction_surfaces == 10; outer_diameter <= 150 mm"})
+    rows.append({**GOOD, "id": "A5", "family": "magnet"})
+    rows.append({**GOOD, "id": "A6", "family": "magnet"})
+    write(folder, *rows)
+    return folder, clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, folder=folder)
+
+
+def test_a_batch_says_what_it_reads_and_what_came_out(done: tuple[Path, CompletedProcess[str]]) -> None:
+    folder, said = done
+    assert said.returncode == 0
+    assert said.stdout.splitlines() == [
+        "6 rows: 2 with proven designs, 1 without a feasible design, 3 with bad input",
+        "written to out: designs.csv, rows.csv, batch.json",
+    ]
+    for words in (
+        "clutchsynth: carried along unread: id\n",
+        "clutchsynth: not used by multi_plate_clutch: offset [mm]\n",
+        "clutchsynth: line 4, column load_torque [N*m]: got '6,5'; expected a decimal point",
+        f"clutchsynth: line 6, column family: got 'magnet'; expected a registered family: {synth.families()[0]}",
+        " (also in line 7)\n",
+        "clutchsynth: 3 rows cannot be asked; rows.csv lists them all, the others run\n",
+    ):
+        assert words in said.stderr
+    with (folder / "out" / "rows.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["status"] for row in rows] == [
+        "optimal",
+        "optimal",
+        "bad_input",
+        "infeasible",
+        "bad_input",
+        "bad_input",
+    ]
+    assert "outer_diameter <= 150 mm" in rows[3]["explanation"]
+    assert [row["id"] for row in rows] == ["A1", "A2", "A3", "A4", "A5", "A6"]
+    with (folder / "out" / "designs.csv").open(newline="") as file:
+        assert [row["id"] for row in csv.DictReader(file)] == ["A1", "A2"]
+
+
+def test_jobs_are_listed_shown_cancelled_and_resumed(done: tuple[Path, CompletedProcess[str]]) -> None:
+    folder, _ = done
+    job = json.loads((folder / "out" / "batch.json").read_text())["job"]
+    listed = clutchsynth("jobs", "list", folder=folder).stdout
+    assert re.search(rf"{job} +done +6 +6 .*rows.csv", listed)
+    assert clutchsynth("jobs", "list", "out", folder=folder).stdout == listed
+    url = f"sqlite:///{folder}/out/jobs.sqlite"
+    assert clutchsynth("jobs", "list", "--database", url, folder=folder).stdout == listed
+    shown = clutchsynth("jobs", "show", "out", folder=folder).stdout
+    assert shown == clutchsynth("jobs", "show", job[:6], folder=folder).stdout
+    assert "6 rows: 2 with proven designs, 1 without a feasible design, 3 with bad input\n" in shown
+    assert "units: 0 open, 0 at work\n" in shown
+    assert "created: 6 rows in" in shown
+    refused = clutchsynth("jobs", "cancel", "out", folder=folder)
+    assert (refused.returncode, "not done yet" in refused.stderr) == (2, True)
+    before = (folder / "out" / "designs.csv").read_bytes()
+    (folder / "out" / "designs.csv").unlink()
+    resumed = clutchsynth("jobs", "resume", "out", folder=folder)
+    assert resumed.returncode == 0
+    assert (folder / "out" / "designs.csv").read_bytes() == before
+    for words in (["show", "nothing"], ["list", "nowhere"], ["show", "out", "--database", "sqlite:///none"]):
+        assert clutchsynth("jobs", *words, folder=folder).returncode == 2
+    assert clutchsynth("jobs", "list", folder=folder / "out" / "..").returncode == 0
+
+
+def test_an_empty_folder_has_no_jobs(tmp_path: Path) -> None:
+    assert clutchsynth("jobs", "list", folder=tmp_path).stdout == "no jobs\n"
+
+
+def test_a_job_that_is_cancelled_is_resumed_without_its_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from synth.jobs import batch as run
+
+    write(tmp_path, GOOD)
+    with monkeypatch.context() as patch:
+        patch.setattr(run, "work_off", lambda *words: "interrupted")
+        stopped = clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, folder=tmp_path)
+    assert stopped.returncode == 4
+    assert "stopped: interrupted; what was found is saved, the same command goes on" in stopped.stdout
+    assert "1 row: 1 not solved yet" in stopped.stdout
+    cancelled = clutchsynth("jobs", "cancel", "out", folder=tmp_path)
+    assert cancelled.stdout.endswith("cancelled; clutchsynth jobs resume goes on\n")
+    (tmp_path / "rows.csv").unlink()
+    resumed = clutchsynth("jobs", "resume", "out", "-q", folder=tmp_path)
+    assert (resumed.returncode, resumed.stdout) == (0, "")
+    with (tmp_path / "out" / "rows.csv").open(newline="") as file:
+        assert [row["status"] for row in csv.DictReader(file)] == ["optimal"]
+
+
+def test_nothing_feasible_has_its_code(tmp_path: Path) -> None:
+    write(tmp_path, {**GOOD, "limits": "outer_diameter <= 150 mm; friction_surfaces == 10"})
+    assert clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, "-q", folder=tmp_path).returncode == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["none.csv", "-o", "out"], "rows: got 'none.csv'"),
+        (["rows.csv", "-o", "rows.csv"], "is a file"),
+        (["rows.csv", "-o", "out", "--mapping", "none.yaml"], "--mapping"),
+        (["rows.csv", "-o", "out", "--points", "0"], "points: got 0"),
+        (["rows.csv", "-o", "out", "--objective", "weight"], "weight"),
+        (["rows.csv", "-o", "out", "--catalogs", "nowhere"], "catalogs"),
+        (["rows.csv", "-o", "out", "--database", "here"], "--database"),
+        (["rows.csv", "-o", "out", "--time-limit", "soon"], "--time-limit"),
+        (["wrong.csv", "-o", "out"], "wrong.csv, line 1: got 'lod_torque'; expected load_torque"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_nothing_written(tmp_path: Path, words: list[str], expected: str) -> None:
+    write(tmp_path, GOOD)
+    write(tmp_path, {"family": "multi_plate_clutch", "lod_torque": "3"}, name="wrong.csv")
+    refused = clutchsynth("batch", *words, folder=tmp_path)
+    assert refused.returncode == 2
+    assert expected in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["rows.csv", "wrong.csv"]
+
+
+def test_a_size_range_from_a_table_and_again_from_its_folder(tmp_path: Path) -> None:
+    write(tmp_path, *({**GOOD, "load_torque [N*m]": torque} for torque in ("500", "550", "600")))
+    refused = clutchsynth("size-range", "rows.csv", folder=tmp_path)
+    assert (refused.returncode, "--output" in refused.stderr) == (2, True)
+    found = clutchsynth("size-range", "rows.csv", "-o", "out", *FLAGS, folder=tmp_path)
+    assert found.returncode == 0, found.stderr
+    assert "1 variant for 3 rows" in found.stdout
+    assert "ramp_time is each row's own, no part of a variant" in found.stdout
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"variants.csv", "assignment.csv", "curve.csv", "curve.svg", "unserved.csv", "size_range.json"} <= written
+    again = clutchsynth("size-range", "out", "--variants", "3", "-o", "three", folder=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert "total excess of mass over each row's own best: 0 kg, proven to 0 %" in again.stdout
+    assert len((tmp_path / "three" / "variants.csv").read_text().splitlines()) == 4
+    assert clutchsynth("size-range", "three", folder=tmp_path).returncode == 2
+
+
+def test_progress_is_told_in_words() -> None:
+    from synth.terminal.batch_console import figures
+
+    state = {"rows": 200, "done": 50, "failed": 2, "infeasible": 0, "bad": 0, "rate": 0.5, "left": 300.0}
+    assert figures(state) == "50 of 200 rows, 0.5 rows/s, 5 min left, 2 failed"
+    assert figures({**state, "rate": 0.0, "left": None, "failed": 0}) == "50 of 200 rows"
+    assert figures({**state, "left": 42.0}).split(", ")[2] == "42 s left"
+    assert figures({**state, "left": 36000.0}).split(", ")[2] == "10.0 h left"
+
+
+def test_the_database_may_be_named_by_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(commands.DATABASE_VARIABLE, f"sqlite:///{tmp_path}/all.sqlite")
+    write(tmp_path, {**GOOD, "limits": "outer_diameter <= 150 mm; friction_surfaces == 10"})
+    clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, "-q", folder=tmp_path)
+    assert (tmp_path / "all.sqlite").is_file()
+    assert not (tmp_path / "out" / "jobs.sqlite").exists()
+    assert "rows.csv" in clutchsynth("jobs", "list", folder=tmp_path).stdout
+    assert os.fspath(tmp_path / "out") in clutchsynth("jobs", "show", "", folder=tmp_path).stdout
