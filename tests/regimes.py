@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from synth.model.constraint import void_limits
 from synth.nlp.ipopt import ParametricNlp, Solution, Task
 from synth.search.formulation import Formulation
 
 
 def referee(form: Formulation) -> ParametricNlp:
     """Return the problem of a question for IPOPT; built once per model and set of rows."""
-    rows = form.rows()
+    rows = form.continuous.rows
     made: ParametricNlp = form.model.function(
         ("referee", rows), lambda: ParametricNlp(form.model.program, form.n, rows)
     )
@@ -25,7 +26,7 @@ def refereed(
 ) -> Solution | None:
     """Return what IPOPT finds for one combination inside a box (SI), from one start; None where it finds nothing."""
     data = [float(np.asarray(x).ravel()[0]) for x in form.instance.data(np.array([combination]))]
-    return referee(form).solve(task, data, start, low, high, form.bounds, form.void(data, 1)[0])
+    return referee(form).solve(task, data, start, low, high, form.bounds, void_limits(form.constraints, data, 1)[0])
 
 
 def best_in_any_regime(

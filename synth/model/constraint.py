@@ -88,6 +88,24 @@ class Constraint:
         )
 
 
+def void_limits(constraints: Sequence[Constraint], data: Sequence[Any], count: int) -> np.ndarray:
+    """Return which limits do not count for which designs (designs, limits): an optional column has no value.
+
+    Parameters
+    ----------
+    constraints : list of Constraint
+    data : list of numbers or arrays (designs,)
+        The data inputs of the model.
+    count : int
+        Designs.
+    """
+    void = np.zeros((count, len(constraints)), dtype=bool)
+    for j, limit in enumerate(constraints):
+        if limit.void_without:
+            void[:, j] = limit.void(data, (count,))
+    return void
+
+
 @dataclass(frozen=True)
 class NodeConstraint:
     """A limit as the propagation sees it: nodes of both sides (or a constant right side) and its sense."""

@@ -91,7 +91,7 @@ class JointFrontSearch:
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
         first, every = self.first, np.arange(len(self.questions))
-        if not first.form.log_goals[:2].all():
+        if not first.form.objectives.log[:2].all():
             # The gap of what may be zero is measured against the range of a front, which is not known before.
             return [None] * len(self.questions)
         second = self._search(every, self.reverse)
@@ -105,7 +105,7 @@ class JointFrontSearch:
                 question = numbers[codec.question(c.combination) // self.between]
                 found[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
         solves = self._work_counted()
-        fronts = [distinct(first.form.as_they_are(own), 2, self.tuning) for own in found.values()]
+        fronts = [distinct(first.form.points.as_they_are(own), 2, self.tuning) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
     def _search(self, positions: np.ndarray, wider: SharedBounds, **more: Any) -> JointSearch:
@@ -117,17 +117,19 @@ class JointFrontSearch:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
         form, codec = self.first.form, self.first.together.combinations
         for search, positions in self.others:
-            form.contracted += search.form.contracted
-            form.nlp_solves += search.form.nlp_solves
-            solved = np.array(list(search.form.solved_combinations), dtype=np.int64)
-            form.solved_combinations.update(codec.joined(positions[codec.question(solved)], codec.own(solved)).tolist())
-        return form.nlp_solves
+            form.counters.contracted += search.form.counters.contracted
+            form.counters.nlp_solves += search.form.counters.nlp_solves
+            solved = np.array(list(search.form.counters.solved_combinations), dtype=np.int64)
+            form.counters.solved_combinations.update(
+                codec.joined(positions[codec.question(solved)], codec.own(solved)).tolist()
+            )
+        return form.counters.nlp_solves
 
     # -- the ends ------------------------------------------------------------------------------
 
     def _turned(self, designs: Sequence[Candidate]) -> list[Candidate]:
         """Return designs of the search for the second objective as that for the first one has them."""
-        return self.first.form.as_they_are(designs)
+        return self.first.form.points.as_they_are(designs)
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
         """Return the designs that are best in the first and in the second objective, where they differ."""
@@ -151,7 +153,7 @@ class JointFrontSearch:
             Where to look first.
         """
         positions = np.repeat(numbers, levels.shape[1])
-        caps = {0: self.first.form.signed(0, levels.ravel())}
+        caps = {0: self.first.form.objectives.signed(0, levels.ravel())}
         search = self._search(positions, self.wider, sought=1, caps=caps)
         self.others.append((search, positions))
         search.look.starts = {self.first.together.combinations.own(c.combination): c.variables for c in known}

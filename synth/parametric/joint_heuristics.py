@@ -10,6 +10,7 @@ from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.refused_cells import not_refused
 from synth.tuning import JointHeuristicLimits
 
 
@@ -67,7 +68,7 @@ class JointHeuristics:
         questions, count = np.flatnonzero(rule.asked), self.limits.anywhere
         every = questions[np.arange(count) % len(questions)]
         every = np.unique(self.codec.joined(every, self.rng.integers(self.codec.size, size=count)))
-        self.tried(rule, every, rule.form.inside(rule.form.leaves(every), 0.5))
+        self.tried(rule, every, rule.form.boxes.inside(rule.form.boxes.leaves(every), 0.5))
 
     def improve(self, rule: BestPerScenario) -> None:
         """Look for better designs beside the best of each question, and with what is good in any other, in rounds."""
@@ -131,7 +132,7 @@ class JointHeuristics:
         """
         form, k, known = rule.form, rule.columns[0], rule.known
         seeker = PrimalHeuristics(form, rule, self.rng, False)
-        keep = form.not_refused(combinations)
+        keep = not_refused(form.instance, combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
         held = form.gridded & as_made
@@ -142,9 +143,9 @@ class JointHeuristics:
         weights[:, k] = 1.0
         questions = self.codec.question(combinations)
         caps = known.plain[questions]
-        tasks = Tasks(weights, np.zeros_like(weights), caps, form.goal_scales, 0.0)
-        found = form.solve_many(tasks, combinations, start, low, high)
-        form.learn(tasks, found, np.ones(len(combinations)))
+        tasks = Tasks(weights, np.zeros_like(weights), caps, form.objectives.scales, 0.0)
+        found = form.continuous.solve_many(tasks, combinations, start, low, high)
+        form.continuous.learn(tasks, found, np.ones(len(combinations)))
         better = found.phi[:, k] < rule.needed()[questions]
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & better)
         order = good[np.lexsort((found.phi[good, k], questions[good]))]
@@ -153,7 +154,7 @@ class JointHeuristics:
         if not len(best):
             return 0
         if form.gridded.any() and not as_made:
-            new = seeker.round_off(form.leaves(combinations[best]), found.variables[best], tasks.take(best))
+            new = seeker.round_off(form.boxes.leaves(combinations[best]), found.variables[best], tasks.take(best))
         else:
             new = seeker.offer(found.variables[best], combinations[best])
         seeker.settle_best(k, range(k + 1))
@@ -163,7 +164,7 @@ class JointHeuristics:
             if len(left):
                 branch_and_bound(
                     form,
-                    form.leaves(combinations[left]),
+                    form.boxes.leaves(combinations[left]),
                     rule,
                     self.clock,
                     self.rng,

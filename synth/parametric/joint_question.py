@@ -190,7 +190,7 @@ class BestPerScenario:
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie
         self.tolerance = slack(np.zeros(1))
         self.fixed_cutoffs = np.full(len(form.goals), np.inf)
-        self._tree = form.cells.trees[0]
+        self._tree = form.boxes.cells.trees[0]
         self._plain = self._tree.hull(known.plain)[1]
         self._ends: tuple[np.ndarray, np.ndarray] | None = None
         self._polished = np.full(len(asked), np.inf)
@@ -228,7 +228,7 @@ class BestPerScenario:
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many were of use."""
-        new = int((self.possible_gain(phi, self.form.cell_of(combinations)) > 0).sum())
+        new = int((self.possible_gain(phi, self.form.boxes.cell_of(combinations)) > 0).sum())
         self.known.add(combinations, variables, phi)
         return new
 
@@ -246,14 +246,14 @@ class BestPerScenario:
         caps = self._plain[:, : form.bounded] + self.tie
         clusters = np.arange(len(caps))[:, None]
         caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(clusters))
-        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.values_of(caps))
+        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(caps))
 
     def open_questions(self, left: Boxes) -> np.ndarray:
         """Tell of which questions boxes that were left open may hold something of use."""
         needed, result = self.needed(), np.zeros(len(self.asked), dtype=bool)
         if not len(left):
             return result
-        lower, clusters = self.form.phi_of(left.bounds)[:, self.columns[0]], left.cell[:, 0]
+        lower, clusters = self.form.objectives.phi_of(left.bounds)[:, self.columns[0]], left.cell[:, 0]
         for cluster in np.unique(clusters):
             least = np.nan_to_num(lower[clusters == cluster], nan=-np.inf).min()
             rows = self._tree.rows(int(cluster))

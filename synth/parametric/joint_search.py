@@ -21,6 +21,7 @@ from synth.search.archive import Candidate, rows_of
 from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
+from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
 from synth.search.polishing import break_ties
@@ -50,11 +51,11 @@ class SharedBounds:
         self.goals = with_ties(self._together.model, in_order)
         self._forms: dict[bool, Formulation] = {}
 
-    def among(self, together: JointInstance, conflict: bool) -> Formulation | None:
+    def among(self, together: JointInstance, conflict: bool, workers: int = 1) -> Formulation | None:
         """Return questions prepared for a search; None where their numbers are not among those of these."""
         if conflict not in self._forms:
             self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict, tuning=self._tuning)
-        return self._forms[conflict].among(together)
+        return self._forms[conflict].among(together, workers)
 
 
 class _Attempt:
@@ -73,7 +74,7 @@ class _Attempt:
             # Designs of other questions would only seem to say that those of these are found.
             rows = asked[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
-        before = form.contracted, form.nlp_solves
+        before = form.counters.contracted, form.counters.nlp_solves
         rule = BestPerScenario(form, self.known, search._slack(search.sought), asked)
         for _ in range(2):
             self.left = branch_and_bound(
@@ -83,8 +84,8 @@ class _Attempt:
                 break
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
-            search.form.contracted += form.contracted - before[0]
-            search.form.nlp_solves += form.nlp_solves - before[1]
+            search.form.counters.contracted += form.counters.contracted - before[0]
+            search.form.counters.nlp_solves += form.counters.nlp_solves - before[1]
         return rule.open_questions(self.left)
 
 
@@ -131,12 +132,12 @@ class JointSearch:
         self.form = self._prepared()
         self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
         for k, values in (caps or {}).items():
-            self.plain[:, k] = self.form.phi_of(np.tile(values[:, None], k + 1))[:, k]
+            self.plain[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
         self.known = self._none_known()
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.rng = np.random.default_rng(first.settings.seed)
-        self.pool = self.form.nothing()
+        self.pool = self.form.boxes.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
         self.look = JointHeuristics(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
         self.look.starts = self._starts(ideas)
@@ -144,7 +145,7 @@ class JointSearch:
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has no design: better asked alone."""
         chosen = self.optima(self.told_apart())
-        return self.fronts(chosen, 1, self.form.nlp_solves)
+        return self.fronts(chosen, 1, self.form.counters.nlp_solves)
 
     def optima(self, asked: np.ndarray) -> list[Candidate]:
         """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
@@ -158,7 +159,7 @@ class JointSearch:
 
     def glimpse(self) -> list[Candidate]:
         """Return good designs of the questions, of which nothing is proven."""
-        self.pool, self.look.thorough = self.form.root(), False
+        self.pool, self.look.thorough = self.form.boxes.root(), False
         if len(self.pool):
             rule = BestPerScenario(self.form, self.known, self._slack(self.sought), self.told_apart())
             self.look.recalled(rule)
@@ -183,7 +184,7 @@ class JointSearch:
 
         ``excluded``: also where no question has a design that is easily found; then it is proven that there is none.
         """
-        self.pool = self.form.root()
+        self.pool = self.form.boxes.root()
         if not len(self.pool) or not asked.any():
             return asked
         self.look.first(BestPerScenario(self.form, self.known, self._slack(self.sought), asked), self.pool)
@@ -238,7 +239,7 @@ class JointSearch:
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
         self.look.tried(rule, combinations, self._points([design for _, _, design in rows]))
         outcome = branch_and_bound(
-            form, form.leaves(combinations), rule, self.clock, self.rng, self.joint.given_parts * len(rows)
+            form, form.boxes.leaves(combinations), rule, self.clock, self.rng, self.joint.given_parts * len(rows)
         )
         left = rule.open_questions(outcome.open)
         designs = self._designs([(c, ()) for c in known], 0)
@@ -250,11 +251,11 @@ class JointSearch:
     def _in_conflict(self) -> _Attempt:
         """Return what tries with boxes that carry what limits share, which helps where limits leave little."""
         form = self._prepared(conflict=True)
-        form.work = self.form.work
-        form.solved_combinations = self.form.solved_combinations
+        form.counters.work = self.form.counters.work
+        form.counters.solved_combinations = self.form.counters.solved_combinations
         form.propagation.taught_by(self.form.propagation.lessons())
         form.archive = known = self._none_known()
-        return _Attempt(self, form, known, form.root())
+        return _Attempt(self, form, known, form.boxes.root())
 
     def _none_known(self) -> IncumbentPerScenario:
         return IncumbentPerScenario(
@@ -262,15 +263,14 @@ class JointSearch:
         )
 
     def _prepared(self, conflict: bool = False) -> Formulation:
-        form = None if self.wider is None else self.wider.among(self.together, conflict)
+        form = None if self.wider is None else self.wider.among(self.together, conflict, self.workers)
         if form is None:
-            form = Formulation(self.together, self.goals, 1, conflict, tuning=self.tuning)
-        form.workers = self.workers
+            form = Formulation(self.together, self.goals, 1, conflict, Execution(workers=self.workers), self.tuning)
         return form
 
     def told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
-        tree = self.form.cells.trees[0]
+        tree = self.form.boxes.cells.trees[0]
         result = np.zeros(len(self.questions), dtype=bool)
         result[tree.first[tree.leaf]] = True
         return result
@@ -278,7 +278,7 @@ class JointSearch:
     def _slack(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
         """Return the gap as a distance in phi of an objective, per design."""
         form = self.form
-        own = (form.log_goals[k], form.finest[k])
+        own = (form.objectives.log[k], form.objectives.finest[k])
         return lambda phi: slack(self.gap, *own, np.abs(phi))
 
     def _working(self, open_boxes: int) -> None:
@@ -323,7 +323,7 @@ class JointSearch:
         form, together = self.form, self.together
         fronts: list[ParetoFront | None] = [None] * len(together.each)
         found = break_ties(form, self.pool, chosen, traded) if chosen else []
-        every = np.array(sorted(form.solved_combinations), dtype=np.int64)
+        every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
         solved = np.bincount(together.combinations.question(every), minlength=len(together.each))
         for number, designs in self._designs(found, traded).items():
             question = self.questions[number]
@@ -333,8 +333,8 @@ class JointSearch:
                 excluded_by_bound=total - own,
                 solved=own,
                 searched_together=len(self.questions),
-                boxes=form.contracted,
-                nlp_solves=form.nlp_solves,
+                boxes=form.counters.contracted,
+                nlp_solves=form.counters.nlp_solves,
                 nlp_solves_to_find=solves,
                 seconds={"total": time.monotonic() - self.started},
             )
@@ -355,9 +355,11 @@ class JointSearch:
         form, units = self.form, designs[0].frame.units
         amounts = {}
         for k, name in enumerate(list(designs[0].frame.objectives)[:traded]):
-            if not form.log_goals[k]:
-                size = abs(designs[0].values[name]) / form.goal_scales[k]
-                amounts[name] = rounded_up(max(self.gap * size, form.finest[k]) * form.goal_scales[k], units[name])
+            if not form.objectives.log[k]:
+                size = abs(designs[0].values[name]) / form.objectives.scales[k]
+                amounts[name] = rounded_up(
+                    max(self.gap * size, form.objectives.finest[k]) * form.objectives.scales[k], units[name]
+                )
         return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
 
     def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
@@ -371,7 +373,7 @@ class JointSearch:
         candidates = [c for c, _ in found]
         costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
         combinations, points, _ = rows_of(candidates)
-        result = form.evaluate(points.reshape(len(candidates), form.n), combinations)
+        result = form.points.evaluate(points.reshape(len(candidates), form.n), combinations)
         numbers = together.combinations.question(combinations).tolist()
         made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
         more = [
@@ -387,7 +389,7 @@ class JointSearch:
 
     def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
         """Return the elasticities of each design, as its question alone would tell them."""
-        if self.form.log_goals[:traded].all():
+        if self.form.objectives.log[:traded].all():
             return elasticities(self.form, designs, traded)
         # The objective may be positive in some questions although it is not in all.
         result = []
@@ -397,7 +399,7 @@ class JointSearch:
                 Formulation(self.together.of(c.combination), self.goals, 1, tuning=self.tuning),
                 np.array([own]),
             )
-            _, phi = form.feasible_rows(c.variables[None, :], number)
+            _, phi = form.points.feasible_rows(c.variables[None, :], number)
             result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
 

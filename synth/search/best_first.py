@@ -76,7 +76,7 @@ class OpenBoxes:
 
     def add(self, boxes: Boxes) -> None:
         """Take boxes; those of no use are dropped."""
-        room = self.rule.possible_gain(self.form.phi_of(boxes.bounds), boxes.cell)
+        room = self.rule.possible_gain(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
         useful = room > 0
         boxes, room = boxes.take(useful), room[useful]
         with np.errstate(all="ignore"):
@@ -117,7 +117,7 @@ class OpenBoxes:
 
     def progress(self) -> Progress:
         """Return how much is open."""
-        extent = sum(self.form.extent(b) for b in self.batches)
+        extent = sum(self.form.boxes.extent(b) for b in self.batches)
         return Progress(highest=self.highest, waiting=len(self), extent=extent)
 
     @property
@@ -153,9 +153,9 @@ def best_first(
     end = time.monotonic() + effort.seconds
     over = (lambda: time.monotonic() > end) if over is None else over
     every = reaches_beyond(rule, form.bounded)
-    form.focus()
+    form.boxes.focus(form.archive)
     seeker, looked, spent = PrimalHeuristics(form, rule, rng, every), 0, False
-    boxes = boxes if every else form.lean(boxes)
+    boxes = boxes if every else form.boxes.lean(boxes)
     waiting, stuck = OpenBoxes(form, rule, effort.most_waiting), boxes.take(slice(0, 0))
     waiting.add(boxes)
     least, idle, mark = waiting.progress(), 0, effort.spell
@@ -175,4 +175,6 @@ def best_first(
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck
     left = Boxes.joined([stuck, *waiting.batches])
-    return TreeOutcome(left.take(rule.possible_gain(form.phi_of(left.bounds), left.cell) > 0), looked, spent=spent)
+    return TreeOutcome(
+        left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0), looked, spent=spent
+    )

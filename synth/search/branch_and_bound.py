@@ -68,9 +68,9 @@ def branch_and_bound(
     Covered
     """
     tree, every = form.tuning.tree, reaches_beyond(rule, form.bounded)
-    form.focus()
+    form.boxes.focus(form.archive)
     seeker, looked = PrimalHeuristics(form, rule, rng, every), 0
-    boxes = boxes if every else form.lean(boxes)
+    boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck = nothing, [boxes], nothing
     while (len(queue) or fresh) and looked <= effort:
@@ -89,7 +89,7 @@ def branch_and_bound(
         if len(children):
             fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
-    return TreeOutcome(left.take(rule.possible_gain(form.phi_of(left.bounds), left.cell) > 0), looked)
+    return TreeOutcome(left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0), looked)
 
 
 def further(
@@ -114,15 +114,15 @@ def further(
         What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
     """
     looked, none = len(batch), batch.take(slice(0, 0))
-    batch = form.contract(batch, rule.cutoffs(form.phi_of(batch.bounds), batch.cell), every_goal=every)
-    batch = batch.take(rule.possible_gain(form.phi_of(batch.bounds), batch.cell) > 0)
+    batch = form.boxes.contract(batch, rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell), every_goal=every)
+    batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
     if not len(batch):
         return none, none, looked
     seeker.look(batch)
     stuck = []
     for _ in range(2 if len(batch) < form.tuning.tree.small_batch else 1):
         # A small batch costs as much as a larger one, so that it is split twice at once.
-        batch, small = form.split(batch)
+        batch, small = form.boxes.split(batch)
         if len(small):
             stuck.append(seeker.settle(small))
     grown = _grown(form, batch, rule, seeker, effort - looked) if not every else None
@@ -142,7 +142,7 @@ def _grown(
     if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
         return None
     tables = rule.tables(form)
-    return None if tables is None else form.grow(boxes, tables, levels)
+    return None if tables is None else form.boxes.grow(boxes, tables, levels)
 
 
 def best(
@@ -184,7 +184,7 @@ def _latest(fresh: list[Boxes], generation: int) -> Boxes:
 
 def _most_open(form: Formulation, waiting: Boxes, rule: PruningRule) -> Boxes:
     """Return boxes with most room first; covered ones are dropped."""
-    lower = form.phi_of(waiting.bounds)
+    lower = form.objectives.phi_of(waiting.bounds)
     space = rule.possible_gain(lower, waiting.cell)
     keep = np.flatnonzero(space > 0)
     # While no design is known, all room is infinite; then low bounds promise most.

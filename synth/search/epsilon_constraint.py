@@ -51,20 +51,20 @@ def cover_by_epsilon_constraint(
     proof = tree.step_proof * rule.tolerance[SOUGHT]
     choice = rule.tolerance[SOUGHT] - proof
     plain = np.full(len(form.goals), np.inf)
-    corner = [form.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
+    corner = [form.objectives.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
     clock.beyond = [np.array(corner)]
     # The other end first: good designs there are often not far from good in both.
     first, end = best(form, pool, CAPPED, plain, rule.tolerance[CAPPED], clock, rng, effort=effort)
-    looked, left, narrow = end.looked, [form.lean(form.nothing())], first is not None and end.closed
+    looked, left, narrow = end.looked, [form.boxes.lean(form.boxes.nothing())], first is not None and end.closed
     PrimalHeuristics(form, rule, rng, False).beside(clock)
     if end.closed and first is not None:
         corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - rule.tolerance[CAPPED])
     while True:
         # What is better in the capped objective than all steps so far is open, and as bad in the other as the last one.
-        clock.beyond = [np.array(corner), *(form.phi_of(b.bounds)[:, : len(corner)] for b in left)]
+        clock.beyond = [np.array(corner), *(form.objectives.phi_of(b.bounds)[:, : len(corner)] for b in left)]
         found, outcome = best(form, pool, SOUGHT, plain.copy(), proof, clock, rng, effort=effort)
         looked += outcome.looked
-        left.append(form.lean(outcome.open))
+        left.append(form.boxes.lean(outcome.open))
         if found is None:
             break
         if outcome.closed:
@@ -83,7 +83,7 @@ def cover_by_epsilon_constraint(
                 break
             narrow = False
     still = Boxes.joined(left)
-    return TreeOutcome(still.take(rule.possible_gain(form.phi_of(still.bounds)) > 0), looked)
+    return TreeOutcome(still.take(rule.possible_gain(form.objectives.phi_of(still.bounds)) > 0), looked)
 
 
 def prove_by_epsilon_constraint(
@@ -105,13 +105,13 @@ def prove_by_epsilon_constraint(
     Covered
         What was left open.
     """
-    nowhere, looked, left = np.full(len(form.goals), np.inf), 0, [form.lean(form.nothing())]
+    nowhere, looked, left = np.full(len(form.goals), np.inf), 0, [form.boxes.lean(form.boxes.nothing())]
 
     def least(k: int, plain: np.ndarray, phi: float) -> float:
         nonlocal looked
         found, outcome = best(form, pool, k, plain, stairs.tolerance[k], clock, rng, _bar(form, k, phi), effort)
         looked += outcome.looked
-        left.append(form.lean(outcome.open))
+        left.append(form.boxes.lean(outcome.open))
         if found is None or found.combination < 0:
             return phi
         stairs.take(np.array([found.combination]), found.variables[None, :], found.phi[None, :])
@@ -139,5 +139,5 @@ def _stretch(form: Formulation, found: Candidate, room: float) -> None:
     loose = Candidate(found.combination, found.variables, found.phi + given)
     points = polish_variables(form, [loose], 2, [CAPPED])[0].variables[None, :]
     combination = np.array([found.combination])
-    rows, phi = form.feasible_rows(points, combination)
+    rows, phi = form.points.feasible_rows(points, combination)
     form.archive.add(combination[rows], points[rows], phi[rows])

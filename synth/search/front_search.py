@@ -27,7 +27,9 @@ from synth.search.best_first import best_first
 from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
 from synth.search.budget import Clock
+from synth.search.counters import SearchCounters
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint, prove_by_epsilon_constraint
+from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
 from synth.search.large_neighbourhood import large_neighbourhood_search
@@ -99,7 +101,7 @@ class FrontSearch:
         self.meanwhile: list[Candidate] = []
         self.bounded_meanwhile: list[Bound] = []
         self.found_meanwhile: ParetoFront | None = None
-        self.pool: Boxes = self.form.nothing()  # the boxes that may hold a feasible design
+        self.pool: Boxes = self.form.boxes.nothing()  # the boxes that may hold a feasible design
         self.front: list[Candidate] = []
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.complete = False
@@ -122,16 +124,15 @@ class FrontSearch:
         self.given_amounts = np.full(self.m, math.inf)  # in SI: of its claim, where that is no share of the value
         self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
 
-    def _formulation(self, conflict: bool) -> Formulation:
+    def _formulation(self, conflict: bool, counters: SearchCounters | None = None) -> Formulation:
         goals = with_ties(self.instance.model, self.chosen)
-        form = Formulation(self.instance, goals, self.m, conflict, self.thorough, self.alike, self.tuning)
-        form.workers = self.workers
-        return form
+        execution = Execution(self.thorough, self.alike, self.workers)
+        return Formulation(self.instance, goals, self.m, conflict, execution, self.tuning, counters)
 
     def _rule(self, ranges: np.ndarray | None, least: np.ndarray | float = 0.0) -> EpsilonCover:
         """Return the search for the front; ``ranges`` of the objectives are needed where they may be zero."""
         form = self.form
-        slack = np.maximum(form.slack(self.gap, ranges)[: self.m], least)
+        slack = np.maximum(form.objectives.tolerance(self.gap, ranges)[: self.m], least)
         return EpsilonCover(range(self.m), slack, np.full(len(form.goals), np.inf), form.archive)
 
     def begin_from(self, front: ParetoFront) -> None:
@@ -140,8 +141,8 @@ class FrontSearch:
         points = np.array([[d.values[v.name] for v in form.model.variables] for d in front.designs])
         points = points.reshape(len(front.designs), form.n)
         combinations = np.array([self.instance.combinations.number(d) for d in front.designs], dtype=np.int64)
-        closely, phi = form.feasible_rows(points, combinations)
-        edge, _ = form.edge_rows(points, combinations)
+        closely, phi = form.points.feasible_rows(points, combinations)
+        edge, _ = form.points.edge_rows(points, combinations)
         phi[edge] += self.tuning.tolerances.edge_worth
         rows = np.concatenate([closely, edge])
         form.archive.add(combinations[rows], points[rows], phi[rows])
@@ -167,13 +168,13 @@ class FrontSearch:
         """
         if self.given_gap is None or not len(self.given) or not self.front:
             return
-        gap, logs = self._proven_gap(), self.form.log_goals[: self.m]
+        gap, logs = self._proven_gap(), self.form.objectives.log[: self.m]
         if (gap is not None and gap <= self.given_gap) or (logs.any() and self.given_gap >= 1.0):
             return
         phi = np.array([c.phi[: self.m] for c in self.front])
         self.front = [self.front[k] for k in sorted(self._in_place_of_given(phi))]
         share = -math.log1p(-self.given_gap) if logs.any() else 0.0
-        slack = np.where(logs, share, self.given_amounts / self.form.goal_scales[: self.m])
+        slack = np.where(logs, share, self.given_amounts / self.form.objectives.scales[: self.m])
         self.bounds.append(Bound(slack, np.empty((0, self.m))))
 
     # -- the run -------------------------------------------------------------------------------
@@ -193,13 +194,13 @@ class FrontSearch:
                         self._timed("front", self._choose)
                     if not self.closed:
                         self._claim_no_less()
-                    self.solves_to_find, self.reporting = self.form.nlp_solves, True
+                    self.solves_to_find, self.reporting = self.form.counters.nlp_solves, True
                     designs = self._timed("report", lambda: self._designs(frame, weights, settle=True))
                 elif explained:
-                    searched = set(self.form.solved_combinations)
+                    searched = set(self.form.counters.solved_combinations)
                     explanation = self._timed("explanation", lambda: explain_infeasible(self.form, self.rng))
                     # What was solved only to explain does not change how the combinations were excluded.
-                    self.form.solved_combinations = searched
+                    self.form.counters.solved_combinations = searched
         except Stopped as stop:
             interrupted = stop.reason
         except KeyboardInterrupt:
@@ -217,7 +218,7 @@ class FrontSearch:
         if len(self.pool):
             self._timed("coarse", self._coarse)
         if len(self.pool):
-            if self.m == 1 or not self.form.log_goals[: self.m].all():
+            if self.m == 1 or not self.form.objectives.log[: self.m].all():
                 self._timed("extremes", self._extremes)
             if self.m > 1:
                 self._timed("front", self._cover)
@@ -265,7 +266,7 @@ class FrontSearch:
         slack, m = self.under_way, self.m
         if slack is None or (not self.clock.open and not self.clock.beyond):
             return
-        boxes = [self.form.phi_of(b.bounds)[:, :m] for b in self.clock.open]
+        boxes = [self.form.objectives.phi_of(b.bounds)[:, :m] for b in self.clock.open]
         corners = list(self.clock.beyond) or boxes
         self.bounds.append(Bound(slack, np.concatenate([c.reshape(-1, m) for c in corners])))
 
@@ -274,13 +275,13 @@ class FrontSearch:
         if not self.front or not self.bounds:
             return None
         phi = np.array([c.phi[: self.m] for c in self.front])
-        least = least_gap(self.bounds, phi, self.form.log_goals[: self.m], self._sizes())
+        least = least_gap(self.bounds, phi, self.form.objectives.log[: self.m], self._sizes())
         return None if least is None else max(least, self.gap)
 
     def _sizes(self) -> np.ndarray:
         """Return what the gap of objectives that may be zero is a share of on this front, in phi."""
         phi = np.array([c.phi[: self.m] for c in self.front])
-        sizes: np.ndarray = np.maximum(ranges(phi), self.form.finest[: self.m] / self.gap)
+        sizes: np.ndarray = np.maximum(ranges(phi), self.form.objectives.finest[: self.m] / self.gap)
         return sizes
 
     def _amounts(self, gap: float) -> dict[str, float]:
@@ -290,11 +291,11 @@ class FrontSearch:
         if self.m > 1:
             # The range of a few designs may be less than that of the front they were chosen from.
             least = np.maximum(least, self.rule.tolerance + ROOM)
-        amounts = least * form.goal_scales[: self.m]
+        amounts = least * form.objectives.scales[: self.m]
         return {
             name: rounded_up(float(amounts[k]), self.instance.model.units[name])
             for k, name in enumerate(self.chosen)
-            if not form.log_goals[k]
+            if not form.objectives.log[k]
         }
 
     def _timed(self, stage: str, work: Callable[[], Any]) -> Any:
@@ -332,8 +333,8 @@ class FrontSearch:
 
     def _set_pool(self) -> None:
         """Begin with the box of everything; what it allows is the first that is proven."""
-        self.pool = self.form.root()
-        corners = self.form.phi_of(self.pool.bounds)[:, : self.m]
+        self.pool = self.form.boxes.root()
+        corners = self.form.objectives.phi_of(self.pool.bounds)[:, : self.m]
         self.bounds.append(Bound(np.zeros(self.m), corners))
 
     # -- one best design -----------------------------------------------------------------------
@@ -378,7 +379,7 @@ class FrontSearch:
     ) -> tuple[Candidate | None, TreeOutcome, float]:
         """Return the best design found with so much effort, how the search ended, and the slack it had."""
         form = self.form
-        slack = float(form.slack(self.gap, None if start is None else np.abs(start.phi))[k])
+        slack = float(form.objectives.tolerance(self.gap, None if start is None else np.abs(start.phi))[k])
         found, outcome = self._tree_for_best(k, plain, slack, start, effort)
         while found is not None and outcome.closed:
             # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
@@ -399,9 +400,9 @@ class FrontSearch:
 
     def _finer(self, k: int, slack: float, known: Archive | Sequence[Candidate]) -> float | None:
         """Return the slack that the gap means at the best value known; None where the slack is as fine as that."""
-        if self.m > 1 or not len(known) or self.form.log_goals[k]:
+        if self.m > 1 or not len(known) or self.form.objectives.log[k]:
             return None
-        finer = float(self.form.slack(self.gap, np.abs(known[0].phi))[k])
+        finer = float(self.form.objectives.tolerance(self.gap, np.abs(known[0].phi))[k])
         return finer if finer < slack else None
 
     def _begin_tree(self, slack: np.ndarray | None) -> None:
@@ -431,12 +432,12 @@ class FrontSearch:
             self.exhausted = False
         self.exhausted = self.exhausted and self.thorough
         if len(rule.columns) == self.m:
-            self.bounds.append(Bound(rule.tolerance, self.form.phi_of(left.bounds)[:, : self.m]))
+            self.bounds.append(Bound(rule.tolerance, self.form.objectives.phi_of(left.bounds)[:, : self.m]))
         return left
 
     def _solve_few(self, boxes: Boxes, rule: PruningRule) -> bool:
         """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
-        combinations = self.form.cells.all_members(boxes.cell, self.limits.few_combinations + 1)
+        combinations = self.form.boxes.cells.all_members(boxes.cell, self.limits.few_combinations + 1)
         few = len(combinations) <= self.limits.few_combinations
         if few:
             solve_everywhere(self.form, combinations, rule, self.clock, self.rng)
@@ -481,10 +482,7 @@ class FrontSearch:
     def _begin_again(self, conflict: bool) -> None:
         """Begin again with boxes that also carry what limits share (conflict) or do not, and keep what is known."""
         known, self.in_conflict = self.form, conflict
-        self.form = self._formulation(conflict)
-        self.form.contracted, self.form.nlp_solves = known.contracted, known.nlp_solves
-        self.form.work = known.work
-        self.form.solved_combinations = known.solved_combinations
+        self.form = self._formulation(conflict, known.counters)
         if conflict:
             self.form.propagation.taught_by(known.propagation.lessons())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
@@ -500,7 +498,7 @@ class FrontSearch:
         if len(self.form.archive):
             self._seek(self._fine())
         elif outcome.closed:
-            self.pool, self.open_combinations = self.form.nothing(), 0.0
+            self.pool, self.open_combinations = self.form.boxes.nothing(), 0.0
         return bool(len(self.form.archive))
 
     def _cover(self) -> None:
@@ -520,7 +518,7 @@ class FrontSearch:
             self.covering = fine
             self.bounds.append(Bound(fine.tolerance, np.empty((0, self.m))))
         form = self.form
-        self.open_combinations = float(form.cells.size(left.cell).sum())
+        self.open_combinations = float(form.boxes.cells.size(left.cell).sum())
 
     def _dive(self) -> bool:
         """Look for more where few designs are known; tell whether they are still few, but not none."""
@@ -618,7 +616,7 @@ class FrontSearch:
 
     def _distinct(self, designs: Sequence[Candidate]) -> list[Candidate]:
         """Return designs that still differ when ties are settled, which gives away some of what may be zero."""
-        return distinct(designs, self.m, self.tuning, np.where(self.form.log_goals[: self.m], 0.0, ROOM))
+        return distinct(designs, self.m, self.tuning, np.where(self.form.objectives.log[: self.m], 0.0, ROOM))
 
     def _stand_for_all(self) -> bool:
         """Tell whether the designs of the front cover all that are known."""
@@ -630,7 +628,7 @@ class FrontSearch:
     def _rescale(self) -> None:
         """Measure the gap of objectives that can be zero against their range on this front."""
         phi = np.array([c.phi for c in self.front])
-        needed = self.form.slack(self.gap, ranges(phi))[: self.m]
+        needed = self.form.objectives.tolerance(self.gap, ranges(phi))[: self.m]
         too_wide = needed < self.rule.tolerance
         if np.any(too_wide):
             # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
@@ -706,7 +704,7 @@ class FrontSearch:
         form, m = self.form, self.m
         self.stage, self.done = "against the others", 0.0
         phi = np.zeros((len(listed), len(form.goals)))
-        phi[:, :m] = form.phi_of(listed)
+        phi[:, :m] = form.objectives.phi_of(listed)
         every = np.concatenate([phi[:, :m], *(c.phi[None, :m] for c in self.front)])
         sizes = np.ones(len(form.goals))
         sizes[:m] = ranges(every)
@@ -714,8 +712,8 @@ class FrontSearch:
         designs = [*(Candidate(-1, nowhere, row) for row in phi), *self.front]
         own = {c.phi.tobytes() for c in self.front}
         nothing = form.new_archive(range(m))
-        slack = form.slack(self.gap, sizes)[:m]
-        self.against = np.maximum(self.against, (slack + ROOM) * form.goal_scales[:m])
+        slack = form.objectives.tolerance(self.gap, sizes)[:m]
+        self.against = np.maximum(self.against, (slack + ROOM) * form.objectives.scales[:m])
         stairs = NonImprovement(designs, range(m), slack, nothing, own)
         stairs.take(form.archive.combination, form.archive.variables, form.archive.phi)
         outcome = branch_and_bound(form, self.pool, stairs, Clock(deadline, self._working), self.rng, self.limits.boxes)
@@ -732,14 +730,14 @@ class FrontSearch:
     # -- the report ----------------------------------------------------------------------------
 
     def _designs(self, frame: Frame, weights: Sequence[float], settle: bool) -> list[Design]:
-        settled = distinct(self.form.as_they_are(self.front), self.m, self.tuning)
+        settled = distinct(self.form.points.as_they_are(self.front), self.m, self.tuning)
         alternatives: list[tuple[str, ...]] = [()] * len(settled)
         if settle:
             settled, alternatives = self._settled()
             self._say("report", 0.5)
         costs = elasticities(self.form, settled if settle else [], self.m) or [{}] * len(settled)
         points = np.array([c.variables for c in settled]).reshape(len(settled), self.form.n)
-        result = self.form.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
+        result = self.form.points.evaluate(points, np.array([c.combination for c in settled], dtype=np.int64))
         proven = self.closed and settle
         more = [
             {
@@ -765,7 +763,7 @@ class FrontSearch:
         pairs: list[tuple[Candidate, tuple[str, ...]]] = []
         while chosen:
             settled = break_ties(form, self.pool, chosen, self.m)
-            listed = form.as_they_are([c for c, _ in settled])
+            listed = form.points.as_they_are([c for c, _ in settled])
             pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
             stay = {id(c) for c in distinct([c for c, _ in pairs], self.m, self.tuning)}
             pairs = [pair for pair in pairs if id(pair[0]) in stay]
@@ -785,7 +783,7 @@ class FrontSearch:
         total = self.instance.combinations.count
         kind = "global" if self.closed else "exhaustive" if self.exhausted and not interrupted else "heuristic"
         gap = (self.gap if designs else None) if kind == "global" else self._proven_gap()
-        solved = len(self.form.solved_combinations)
+        solved = len(self.form.counters.solved_combinations)
         excluded = int(max(total - max(self.open_combinations if kind != "global" else 0.0, solved), 0))
         spent = self.limits.further.seconds if self.budget_spent and kind != "global" else None
         amounts = self._amounts(gap) if designs and gap is not None else {}
@@ -795,10 +793,10 @@ class FrontSearch:
             offered(self.instance),
             excluded_by_bound=excluded,
             solved=solved,
-            boxes=self.form.contracted,
+            boxes=self.form.counters.contracted,
             scalar_problems=self.scalar_problems,
             designs_known=len(self.form.archive),
-            nlp_solves=self.form.nlp_solves,
+            nlp_solves=self.form.counters.nlp_solves,
             nlp_solves_to_find=self.solves_to_find,
             outer_trials=self.outer_trials,
             seconds={**self.stage_seconds, "total": time.monotonic() - self.started},

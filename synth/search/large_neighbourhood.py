@@ -15,6 +15,7 @@ from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.pruning import EpsilonCover
+from synth.search.refused_cells import not_refused
 
 
 def large_neighbourhood_search(
@@ -45,7 +46,7 @@ def large_neighbourhood_search(
             nothing_capped = np.full(len(form.goals), np.inf)
             rule = EpsilonCover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
             rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
-            branch_and_bound(form, form.leaves(combinations), rule, clock, rng, limits.boxes)
+            branch_and_bound(form, form.boxes.leaves(combinations), rule, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
         if failures >= limits.patience * len(columns):
             return
@@ -62,8 +63,8 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
     weights[:, list(columns)] = limits.tie_weight
     weights[:, k] = 1.0
     free = np.full(weights.shape, np.inf)
-    tasks = Tasks(weights, np.zeros_like(weights), free, form.goal_scales, 0.0)
-    found = form.solve_many(tasks, combinations, start, rough=True)
+    tasks = Tasks(weights, np.zeros_like(weights), free, form.objectives.scales, 0.0)
+    found = form.continuous.solve_many(tasks, combinations, start, rough=True)
     reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
     good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
     if not len(good):
@@ -83,5 +84,5 @@ def _two_parts_away(form: Formulation, rng: np.random.Generator, solved: int) ->
         digits[np.arange(solved), part] = rng.integers(radix[part])
     numbers = form.instance.combinations.composed(list(digits.T), solved)
     combinations, first = np.unique(numbers, return_index=True)
-    keep = form.not_refused(combinations)
+    keep = not_refused(form.instance, combinations)
     return combinations[keep], archive.variables[parents[first[keep]]]

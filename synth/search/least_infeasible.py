@@ -50,9 +50,9 @@ def _least_missed(
     number = np.repeat(np.arange(len(combinations)), np.clip(limits.tries // len(combinations), 1, limits.starts))
     every, goals = combinations[number], len(form.goals)
     nothing = np.zeros((len(every), goals))
-    tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.goal_scales, elastic=1.0)
-    start = form.inside(form.leaves(every), rng.random((len(every), form.n)))
-    points = form.solve_many(tasks, every, start).variables if form.n else start
+    tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.objectives.scales, elastic=1.0)
+    start = form.boxes.inside(form.boxes.leaves(every), rng.random((len(every), form.n)))
+    points = form.continuous.solve_many(tasks, every, start).variables if form.n else start
     misses, before = _misses(form, points, every), _misses(form, start, every)
     # Far from everything feasible a solver may end where nothing makes sense: there the place it began at is better.
     worse = ~(misses <= before)
@@ -64,7 +64,7 @@ def _least_missed(
 
 def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
     """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
-    result = form.evaluate(variables, combinations)
+    result = form.points.evaluate(variables, combinations)
     rows, never = [], form.tuning.heuristics.conflicts.never
     for limit in form.constraints:
         missed = np.nan_to_num(result.residuals[limit.name], nan=never) + (never if limit.guard else 0.0)
@@ -74,7 +74,7 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
 
 
 def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping[str, Any]:
-    result = form.evaluate(variables[None, :], np.array([combination]))
+    result = form.points.evaluate(variables[None, :], np.array([combination]))
     conflicts = []
     for limit in form.constraints:
         value, bound = (float(x[0]) for x in result.limits[limit.name])

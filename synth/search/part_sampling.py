@@ -133,7 +133,7 @@ def passed_over(journal: Path | None) -> bool:
 def _offered(form: Formulation, left: Boxes) -> list[np.ndarray]:
     """Return, per factor, the rows that some open box holds, neighbours in the cluster tree side by side."""
     result = []
-    for f, tree in enumerate(form.cells.trees):
+    for f, tree in enumerate(form.boxes.cells.trees):
         held = np.zeros(len(tree.order), dtype=bool)
         for cluster in np.unique(left.cell[:, f]):
             held[tree.start[cluster] : tree.stop[cluster]] = True
@@ -152,11 +152,13 @@ def _inner(
     for position, k in enumerate(columns):
         even = (share + position / len(columns)) % 1.0
         weights[:, k] = 1.0 if len(columns) == 1 else 0.02 + even
-    tasks = Tasks(weights, np.zeros((count, goals)), np.tile(rule.fixed_cutoffs, (count, 1)), form.goal_scales, 0.0)
-    start = np.tile(form.inside(form.leaves(combinations[:1]), 0.5), (count, 1))
-    answer = form.solve_many(tasks, combinations, start)
+    tasks = Tasks(
+        weights, np.zeros((count, goals)), np.tile(rule.fixed_cutoffs, (count, 1)), form.objectives.scales, 0.0
+    )
+    start = np.tile(form.boxes.inside(form.boxes.leaves(combinations[:1]), 0.5), (count, 1))
+    answer = form.continuous.solve_many(tasks, combinations, start)
     points, owner = _makeable(form, combinations, answer.variables)
-    rows, phi = form.feasible_rows(points, combinations[owner])
+    rows, phi = form.points.feasible_rows(points, combinations[owner])
     values = np.full((count, len(columns)), limits.worst)
     missed = np.maximum(np.nan_to_num(answer.violation, nan=1.0), 1e-6)
     for k in rows:
@@ -173,8 +175,8 @@ def _makeable(form: Formulation, combinations: np.ndarray, variables: np.ndarray
     if not form.gridded.any():
         return variables, np.arange(len(variables))
     low, high, owner = roundings(form, variables)
-    around = form.leaves(combinations[owner], low, high)
-    boxes = form.contract(replace(around, tag=owner), None)
+    around = form.boxes.leaves(combinations[owner], low, high)
+    boxes = form.boxes.contract(replace(around, tag=owner), None)
     shares = (form.tuning.heuristics.seeker.inside, 0.5)
-    points = np.concatenate([form.makeable(form.inside(boxes, share)) for share in shares])
+    points = np.concatenate([form.points.makeable(form.boxes.inside(boxes, share)) for share in shares])
     return points, np.tile(boxes.tag, 2)

@@ -85,7 +85,7 @@ def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, va
     for first in range(0, len(whose), at_once):
         deadline.check()
         part = slice(first, first + at_once)
-        own, values = form.feasible_rows(variables[part], combinations[part])
+        own, values = form.points.feasible_rows(variables[part], combinations[part])
         rows.append(first + own)
         phi.append(values[own])
     kept = np.concatenate(rows)
@@ -104,7 +104,7 @@ def _other_values(
         deadline.check()
         columns = list(variables[part].T[:, :, None])
         columns[k] = grid[None, :]
-        rows, there = np.nonzero(form.promising(columns, combinations[part, None], phi[part]))
+        rows, there = np.nonzero(form.points.promising(columns, combinations[part, None], phi[part]))
         own.append(part.start + rows)
         places.append(there)
     whose = np.concatenate(own)
@@ -121,7 +121,7 @@ def _other_parts(
     for part in _slices(form, len(combinations), len(form.instance.combinations.neighbours(combinations[0]))):
         deadline.check()
         others = form.instance.combinations.neighbours(combinations[part])
-        keep = form.promising(list(variables[part].T[:, :, None]), others, phi[part])
+        keep = form.points.promising(list(variables[part].T[:, :, None]), others, phi[part])
         own.append(part.start + np.nonzero(keep)[0])
         numbers.append(others[keep])
     whose = np.concatenate(own)
@@ -175,11 +175,11 @@ def polish_variables(
             weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
             slopes=np.zeros((len(moving), goals)),
             caps=caps[moving],
-            goal_scales=form.goal_scales,
+            goal_scales=form.objectives.scales,
             t_weight=0.0,
         )
-        answer = form.solve_many(tasks, combinations[moving], variables[moving], low[moving], high[moving])
-        rows, found = form.feasible_rows(answer.variables, combinations[moving])
+        answer = form.continuous.solve_many(tasks, combinations[moving], variables[moving], low[moving], high[moving])
+        rows, found = form.points.feasible_rows(answer.variables, combinations[moving])
         for k in rows:
             own = moving[k]
             if np.all(found[k] <= caps[own] + tie) and found[k, j] < phi[own, j] - tie:
@@ -233,17 +233,17 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     caps[:, :traded] = phi[:, :traded] + tie
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
-    cell[:, :apart] = form.cell_of(own)[:, :apart]
+    cell[:, :apart] = form.boxes.cell_of(own)[:, :apart]
     questions = form.instance.combinations.digits(own)[:apart]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
-        boxes = form.contract(boxes, caps[boxes.tag], passes=1)
-        single = form.cells.single(boxes.cell)
+        boxes = form.boxes.contract(boxes, caps[boxes.tag], passes=1)
+        single = form.boxes.cells.single(boxes.cell)
         numbers = _members(form, boxes.cell[single], most)
         tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))
         combinations += numbers
-        boxes, _ = form.split(boxes.take(~single))
+        boxes, _ = form.boxes.split(boxes.take(~single))
     whose, every = np.concatenate(tags), np.concatenate(combinations)
     # A cell may hold questions that are the same in all that counts: theirs are no other designs.
     keep = np.ones(len(whose), dtype=bool)
@@ -259,9 +259,9 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
 
 def _members(form: Formulation, cells: np.ndarray, most: int) -> list[np.ndarray]:
     """Return combinations of each of some cells that cannot be split, most of which have one: at most so many."""
-    if np.all(form.cells.size(cells) == 1):
-        return list(form.cells.combination(cells)[:, None])
-    return [form.cells.members(cell, most) for cell in cells]
+    if np.all(form.boxes.cells.size(cells) == 1):
+        return list(form.boxes.cells.combination(cells)[:, None])
+    return [form.boxes.cells.members(cell, most) for cell in cells]
 
 
 def solve_everywhere(
@@ -283,10 +283,12 @@ def solve_everywhere(
                     weights,
                     np.zeros((len(own), goals)),
                     np.tile(rule.fixed_cutoffs, (len(own), 1)),
-                    form.goal_scales,
+                    form.objectives.scales,
                     0.0,
                 )
-                points = form.makeable(form.solve_many(tasks, own, start).variables if form.n else start)
-                rows, phi = form.feasible_rows(points, own)
+                points = form.points.makeable(
+                    form.continuous.solve_many(tasks, own, start).variables if form.n else start
+                )
+                rows, phi = form.points.feasible_rows(points, own)
                 form.archive.add(own[rows], points[rows], phi[rows])
                 rule.take(own[rows], points[rows], phi[rows])

@@ -16,6 +16,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.polishing import polish_variables
 from synth.search.pruning import PruningRule
+from synth.search.refused_cells import not_refused
 
 
 class PrimalHeuristics:
@@ -35,13 +36,13 @@ class PrimalHeuristics:
             return
         if form.n and not len(form.archive):
             self._conflicts(batch)
-        phi = form.phi_of(batch.bounds)
+        phi = form.objectives.phi_of(batch.bounds)
         space, along = self.rule.possible_gain(phi, batch.cell), phi[:, self.rule.columns[0]]
         found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
         if form.n and self._worth_solving():
             most = limits.most_problems if len(self.rule.columns) > 1 else limits.least_problems
             chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
-            chosen = chosen.take(self.rule.possible_gain(form.phi_of(chosen.bounds), chosen.cell) > 0)
+            chosen = chosen.take(self.rule.possible_gain(form.objectives.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
             more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
             self.nlps = more if 4 * good > len(chosen) else fewer
@@ -60,7 +61,7 @@ class PrimalHeuristics:
         form, rule = self.form, self.rule
         found = len(form.archive) > 0 and form.propagation.taught >= self.limits.lessons
         pointed_at = self._known_before and self.rounds <= self.limits.long_proof
-        return form.conflict or not found or (len(rule.columns) > 1 and not pointed_at)
+        return form.infeasibility or not found or (len(rule.columns) > 1 and not pointed_at)
 
     @property
     def _known_before(self) -> bool:
@@ -91,36 +92,36 @@ class PrimalHeuristics:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
         form = self.form
         boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
-        combinations = form.combination(replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng)))
+        combinations = form.boxes.combination(replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
         caps = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
-        tasks = Tasks(nothing, nothing, caps, form.goal_scales, elastic=1.0)
-        found = form.solve_many(tasks, combinations, form.inside(boxes, 0.5))
+        tasks = Tasks(nothing, nothing, caps, form.objectives.scales, elastic=1.0)
+        found = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
-        form.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
+        form.continuous.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
         if not form.gridded.any():
             self.offer(found.variables, combinations)
 
     def _learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
         """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
-        if self.form.conflict:
-            room = self.rule.possible_gain(found.phi, self.form.cell_of(combinations))
+        if self.form.infeasibility:
+            room = self.rule.possible_gain(found.phi, self.form.boxes.cell_of(combinations))
             excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
             importance = np.maximum(excess, float(self.rule.tolerance.min())) ** -2.0
-        self.form.learn(tasks, found, importance)
+        self.form.continuous.learn(tasks, found, importance)
 
     def settle(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
-        self.offer(form.inside(small, 0.5), form.combination(small))
-        rest = small.take(self.rule.possible_gain(form.phi_of(small.bounds), small.cell) > 0)
+        self.offer(form.boxes.inside(small, 0.5), form.boxes.combination(small))
+        rest = small.take(self.rule.possible_gain(form.objectives.phi_of(small.bounds), small.cell) > 0)
         # What is left is feasible by the tolerance alone, or nearly so.
-        _, stood_for = self.on_edge(form.inside(rest, 0.5), form.combination(rest), len(rest))
-        low, high = form.ends(rest)
+        _, stood_for = self.on_edge(form.boxes.inside(rest, 0.5), form.boxes.combination(rest), len(rest))
+        low, high = form.boxes.ends(rest)
         # A single point is settled by its evaluation; a small box only nearly so.
         left = np.any(high - low > 1e-12 * np.abs(high), axis=1)
-        phi = form.phi_of(rest.bounds)
+        phi = form.objectives.phi_of(rest.bounds)
         # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
         left[stood_for] = True
         worth = np.zeros(phi.shape[1])
@@ -129,17 +130,17 @@ class PrimalHeuristics:
         return rest.take(left & (self.rule.possible_gain(phi, rest.cell) > 0))
 
     def _tightened(self, boxes: Boxes) -> Boxes:
-        caps = self.rule.cutoffs(self.form.phi_of(boxes.bounds), boxes.cell)
-        return self.form.contract(boxes, caps, every_goal=self.every)
+        caps = self.rule.cutoffs(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
+        return self.form.boxes.contract(boxes, caps, every_goal=self.every)
 
     def _probe(self, boxes: Boxes) -> int:
         """Evaluate points of a random combination of each box; gridded variables are fixed in its middle first."""
         form = self.form
-        single = form.cells.single(boxes.cell).all()
+        single = form.boxes.cells.single(boxes.cell).all()
         if not single:
-            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+            boxes = replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng))
         if form.gridded.any():
-            middle, (low, high) = form.makeable(form.inside(boxes, 0.5)), form.ends(boxes)
+            middle, (low, high) = form.points.makeable(form.boxes.inside(boxes, 0.5)), form.boxes.ends(boxes)
             boxes = replace(boxes, low=np.where(form.gridded, middle, low), high=np.where(form.gridded, middle, high))
         if form.gridded.any() or not single:
             boxes = self._tightened(boxes)
@@ -149,13 +150,15 @@ class PrimalHeuristics:
         """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
         found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
         for share in (self.limits.inside, 0.5) if len(boxes) else ():
-            points = self.form.makeable(self.form.inside(boxes, share))
-            new, rows = self._offered(points, self.form.combination(boxes))
+            points = self.form.points.makeable(self.form.boxes.inside(boxes, share))
+            new, rows = self._offered(points, self.form.boxes.combination(boxes))
             hit[rows] = True
             found += new
         missed = np.flatnonzero(thin & ~hit)
         if len(missed):
-            new, rows = self.on_edge(points[missed], self.form.combination(boxes.take(missed)), self.limits.rounded_off)
+            new, rows = self.on_edge(
+                points[missed], self.form.boxes.combination(boxes.take(missed)), self.limits.rounded_off
+            )
             hit[missed[rows]] = True
             found += new
         return found, hit
@@ -166,7 +169,7 @@ class PrimalHeuristics:
         What is feasible there is so by the tolerance alone. Without it such a sliver would be split endlessly along
         the other variables.
         """
-        low, high = self.form.ends(boxes)
+        low, high = self.form.boxes.ends(boxes)
         floor = self.limits.thin * np.maximum(np.abs(high), np.abs(low))
         narrow: np.ndarray = np.any((low < high) & (high - low <= floor), axis=1)
         return narrow
@@ -177,7 +180,7 @@ class PrimalHeuristics:
 
     def _offered(self, points: np.ndarray, combinations: np.ndarray) -> tuple[int, np.ndarray]:
         """Do the same; return also the rows that are feasible."""
-        rows, phi = self.form.feasible_rows(points, combinations)
+        rows, phi = self.form.points.feasible_rows(points, combinations)
         return self._taken(points[rows], combinations[rows], phi[rows]), rows
 
     def _taken(self, points: np.ndarray, combinations: np.ndarray, phi: np.ndarray) -> int:
@@ -207,10 +210,10 @@ class PrimalHeuristics:
             How many designs no known one covered, and the positions of the points that something stands for.
         """
         form, columns = self.form, self.rule.columns
-        rows, phi = form.edge_rows(points, combinations)
+        rows, phi = form.points.edge_rows(points, combinations)
         if not len(rows):
             return 0, rows
-        space = self.rule.possible_gain(phi[rows], form.cell_of(combinations[rows]))
+        space = self.rule.possible_gain(phi[rows], form.boxes.cell_of(combinations[rows]))
         rows, space = rows[space > 0], space[space > 0]
         rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
         marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
@@ -221,9 +224,9 @@ class PrimalHeuristics:
             base = np.full((len(own), len(form.goals)), np.inf)
             base[:, columns] = phi[own][:, columns]
             slopes = np.where(np.isfinite(base), 1.0, 0.0)
-            tasks = Tasks(self.limits.tie_weight * slopes, slopes, base, form.goal_scales, 1.0)
+            tasks = Tasks(self.limits.tie_weight * slopes, slopes, base, form.objectives.scales, 1.0)
             low, high = (np.where(form.gridded, points[own], ends) for ends in (form.lower, form.upper))
-            answer = form.solve_many(tasks, combinations[own], points[own], low, high)
+            answer = form.continuous.solve_many(tasks, combinations[own], points[own], low, high)
             new, kept = self._offered(answer.variables, combinations[own])
             form.kept_closely.update((mark, k in set(kept.tolist())) for k, mark in enumerate(fresh))
         alone = rows[[not form.kept_closely[mark] for mark in marks]]
@@ -233,10 +236,10 @@ class PrimalHeuristics:
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
         """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
         form = self.form
-        near = form.makeable(points)
+        near = form.points.makeable(points)
         self.offer(near, combinations)
         if form.n:
-            _, phi = form.feasible_rows(points, combinations)
+            _, phi = form.points.feasible_rows(points, combinations)
             self._reach(combinations, points, phi[:, self.rule.columns])
 
     def beside(self, clock: Clock) -> None:
@@ -266,7 +269,7 @@ class PrimalHeuristics:
                 return
 
     def _most_solved(self) -> int:
-        return self.limits.solved if self.form.batch_nlp().compiled else self.limits.solved_over_arrays
+        return self.limits.solved if self.form.continuous.batch_nlp().compiled else self.limits.solved_over_arrays
 
     def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return combinations that differ from a parent in one part, with its variables and phi."""
@@ -274,7 +277,7 @@ class PrimalHeuristics:
         made = [form.instance.combinations.neighbours(c.combination) for c in parents]
         combinations, rows = np.concatenate(made), np.repeat(np.arange(len(made)), [len(x) for x in made])
         _, first = np.unique(combinations, return_index=True)
-        first = first[form.not_refused(combinations[first])]
+        first = first[not_refused(form.instance, combinations[first])]
         if len(first) > self._most_solved():
             first = self.rng.choice(first, self._most_solved(), replace=False)
         rows = rows[first]
@@ -313,7 +316,7 @@ class PrimalHeuristics:
                 weights[:, self.rule.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
                 caps = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
-                tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.goal_scales, 0.0)
+                tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.objectives.scales, 0.0)
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
 
@@ -326,18 +329,18 @@ class PrimalHeuristics:
     def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
         """Solve many problems over the whole range of the variables; return how many designs are new."""
         form, columns = self.form, self.rule.columns
-        found = form.solve_many(tasks, combinations, start)
+        found = form.continuous.solve_many(tasks, combinations, start)
         self._learn(tasks, combinations, found)
         if not form.gridded.any():
             return self.offer(found.variables, combinations)
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
-        cell = form.cell_of(combinations[good])
+        cell = form.boxes.cell_of(combinations[good])
         space, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
         good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
-        return self.round_off(form.leaves(combinations[good]), found.variables[good], tasks.take(good))
+        return self.round_off(form.boxes.leaves(combinations[good]), found.variables[good], tasks.take(good))
 
     def _upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
@@ -353,24 +356,24 @@ class PrimalHeuristics:
             caps[:, columns] = np.where(known, base, np.inf)
             slopes[:, columns] = np.where(known, slope, 0.0)
             weights[:, columns] = np.where(known, self.limits.tie_weight / slope, 1.0)
-        return Tasks(weights, slopes, caps, form.goal_scales, 1.0 if len(columns) > 1 else 0.0)
+        return Tasks(weights, slopes, caps, form.objectives.scales, 1.0 if len(columns) > 1 else 0.0)
 
     def _solve(self, boxes: Boxes) -> int:
         """Solve the continuous problems of a random combination of each box: straight up from its lower bounds."""
         form, columns = self.form, self.rule.columns
         if not len(boxes):
             return 0
-        if not form.cells.single(boxes.cell).all():
-            boxes = replace(boxes, cell=form.cells.random_leaves(boxes.cell, self.rng))
+        if not form.boxes.cells.single(boxes.cell).all():
+            boxes = replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng))
             boxes = self._tightened(boxes)
             if not len(boxes):
                 return 0
-        tasks = self._upwards(form.phi_of(boxes.bounds)[:, columns])
-        combinations = form.combination(boxes)
-        low, high = form.ends(boxes)
+        tasks = self._upwards(form.objectives.phi_of(boxes.bounds)[:, columns])
+        combinations = form.boxes.combination(boxes)
+        low, high = form.boxes.ends(boxes)
         settled = form.gridded & (low == high)
         low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
-        answer = form.solve_many(tasks, combinations, form.inside(boxes, 0.5), low, high)
+        answer = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5), low, high)
         self._learn(tasks, combinations, answer)
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
@@ -394,13 +397,15 @@ class PrimalHeuristics:
         missed = np.ones(len(variables), dtype=bool)
         missed[around.tag[hit]] = False
         narrow = around.take(missed[around.tag])
-        narrow = narrow.take(self.rule.possible_gain(form.phi_of(narrow.bounds), narrow.cell) > 0)
+        narrow = narrow.take(self.rule.possible_gain(form.objectives.phi_of(narrow.bounds), narrow.cell) > 0)
         if not len(narrow):
             return found
-        low, high = form.ends(narrow)
+        low, high = form.boxes.ends(narrow)
         low, high = np.where(form.gridded, low, form.lower), np.where(form.gridded, high, form.upper)
-        combinations = form.combination(narrow)
-        answer = form.solve_many(tasks.take(narrow.tag), combinations, form.inside(narrow, 0.5), low, high)
+        combinations = form.boxes.combination(narrow)
+        answer = form.continuous.solve_many(
+            tasks.take(narrow.tag), combinations, form.boxes.inside(narrow, 0.5), low, high
+        )
         return found + self.offer(answer.variables, combinations)
 
 

@@ -108,7 +108,7 @@ class EpsilonCover:
             least = (self.known.phi[:, columns[0]] - self.tolerance[0]).min(initial=np.inf)
             fixed_cutoffs[columns[0]] = min(fixed_cutoffs[columns[0]], least)
         known = _covered_from(form, self.known, self.tolerance) if len(columns) == 2 else ()
-        return CapTables(columns, form.values_of(fixed_cutoffs), known=known)
+        return CapTables(columns, form.objectives.values_of(fixed_cutoffs), known=known)
 
 
 class NonImprovement:
@@ -221,7 +221,7 @@ class NonImprovement:
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
         (first, highest), known = self._in_order(), _covered_from(form, self.known, self.tolerance)
-        steps = form.signed(columns[0], first), form.signed(columns[1], highest)
+        steps = form.objectives.signed(columns[0], first), form.objectives.signed(columns[1], highest)
         return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
@@ -260,7 +260,8 @@ def _covered_from(
     pairs = zip((0, 1), known.covering(tolerance), strict=True)
     first, second = known.columns
     return tuple(
-        (form.signed((second, first)[k], at), form.signed((first, second)[k], least)) for k, (at, least) in pairs
+        (form.objectives.signed((second, first)[k], at), form.objectives.signed((first, second)[k], least))
+        for k, (at, least) in pairs
     )
 
 

@@ -49,6 +49,25 @@ def _over_clusters(tree: ClusterTree, rows: np.ndarray) -> np.ndarray:
     return found
 
 
+def not_refused(instance: Instance, combinations: np.ndarray, every: bool = False) -> np.ndarray:
+    """Tell which combinations no refusal over several slots forbids.
+
+    Parameters
+    ----------
+    instance : Instance
+    combinations : array (combinations,)
+    every : bool
+        Ask refusals over one slot as well. Rows that those exclude are left out where a question is posed, but not
+        where one of its requirements has been moved since.
+    """
+    model, keep = instance.model, np.ones(len(combinations), dtype=bool)
+    declared = zip(model.declaration.refusals, model.refusal_kinds, strict=True)
+    for refusal in [r for r, kinds in declared if kinds] if every else instance.joint_refusals:
+        inputs = [None] * len(model.variables) + instance.data(combinations)
+        keep &= ~(np.asarray(model.refused(refusal)(inputs)[0]) > 0.5)
+    return keep
+
+
 class RefusedCells:
     """What refusals that only compare say of whole clusters.
 

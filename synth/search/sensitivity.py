@@ -76,14 +76,14 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     phi = np.array([c.phi for c in candidates])
     positions = requirement_positions(form)
     speaking = np.array([_speaking_of(form, position) for position in positions.values()], dtype=bool)
-    result = form.evaluate(start, combinations)
+    result = form.points.evaluate(start, combinations)
     tight, sizes = _tight(form, result), _sizes(form, result)
     # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
     _, follows = _shares(form, combinations)
     spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
-    logs = np.array(form.rows().log_cuts, dtype=bool)
+    logs = np.array(form.continuous.rows.log_cuts, dtype=bool)
     for k in range(chosen):
-        if not form.log_goals[k]:
+        if not form.objectives.log[k]:
             continue
         found = optima(form, combinations, start, phi, chosen, k, sizes)
         counts = np.concatenate(
@@ -119,17 +119,17 @@ def optima(
     """
     tasks = held(form, phi, chosen, k)
     # Limits that no variable can move have no multiplier; where they are tight, nothing is known of a change.
-    answer = form.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
+    answer = form.continuous.solve_many(tasks, combinations, start, skipped=form.unmoved(gridded=True))
     data = form.instance.data(combinations)
     sizes = _sizes(form, form.instance.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
-    logs = np.array(form.rows().log_cuts, dtype=bool)
+    logs = np.array(form.continuous.rows.log_cuts, dtype=bool)
     signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
     with np.errstate(all="ignore"):
         limits = signs * answer.cut_multipliers * np.where(logs, 1.0, bounds / sizes)
     limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
     positions = requirement_positions(form)
-    slopes = form.model.function(("gradient", form.rows()), lambda: _gradient(form))
+    slopes = form.model.function(("gradient", form.continuous.rows), lambda: _gradient(form))
     requirements, ends = np.zeros((len(start), len(positions))), np.zeros((len(start), form.n))
     solved = np.flatnonzero(answer.converged)
     if len(solved):
@@ -157,7 +157,7 @@ def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndar
     caps[:, :chosen] = phi[:, :chosen] + form.tuning.tolerances.tie
     caps[:, k] = np.inf
     return Tasks(
-        np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.goal_scales, 0.0, moved=moved
+        np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.objectives.scales, 0.0, moved=moved
     )
 
 
@@ -241,7 +241,7 @@ def _slopes(model: Model) -> dict[str, list[tuple[str, Any, list[str]]]]:
 
 def _gradient(form: Formulation) -> Any:
     """Return the derivatives of the Lagrangian to data inputs and variables: of point, data and multipliers."""
-    rows, program, n = form.rows(), form.model.program, form.n
+    rows, program, n = form.continuous.rows, form.model.program, form.n
     x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
     values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
     bounds, sizes = ca.SX.sym("bounds", len(rows.cuts)), ca.SX.sym("sizes", len(rows.cuts))
@@ -269,7 +269,7 @@ def _gradient(form: Formulation) -> Any:
         k: int,
     ) -> tuple[np.ndarray, np.ndarray]:
         clean = np.where(np.isnan(known), 1.0, known)
-        units = np.where(rows.log_goals, 1.0, own.goal_scales)
+        units = np.where(rows.log_goals, 1.0, own.objectives.scales)
         weights = np.where(np.isfinite(goals), goals, 0.0) / units
         weights[:, k] += 1.0 / units[k]
         limits = np.tile(own.bounds, (len(points), 1))

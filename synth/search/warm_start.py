@@ -10,6 +10,7 @@ from synth.results import Design
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule
+from synth.search.refused_cells import not_refused
 
 
 def warm_start(form: Formulation, rule: PruningRule, designs: Sequence[Design], rng: np.random.Generator) -> bool:
@@ -21,7 +22,7 @@ def warm_start(form: Formulation, rule: PruningRule, designs: Sequence[Design], 
     names = [v.name for v in form.model.variables]
     rows = [(c, d) for d in designs if (c := form.instance.combinations.find(d)) is not None]
     combinations = np.array([c for c, _ in rows], dtype=np.int64)
-    keep = form.not_refused(combinations) if len(rows) else np.zeros(0, dtype=bool)
+    keep = not_refused(form.instance, combinations) if len(rows) else np.zeros(0, dtype=bool)
     points = np.array([[d.values.get(n, np.nan) for n in names] for _, d in rows]).reshape(len(rows), form.n)
     keep &= np.all(np.isfinite(points), axis=1)
     combinations, points = combinations[keep], np.clip(points[keep], form.lower, form.upper)

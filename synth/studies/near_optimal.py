@@ -284,8 +284,8 @@ class _Enumeration:
         span = np.ptp(values, axis=0)
         size = np.where(values[0] != 0, np.abs(values[0]), span)
         own = np.full(len(form.goals), np.inf)
-        own[:m] = form.phi_of(values[:1])[0]
-        slack = np.where(form.log_goals[:m], np.log1p(self.share), self.share * size / form.goal_scales[:m])
+        own[:m] = form.objectives.phi_of(values[:1])[0]
+        slack = np.where(form.objectives.log[:m], np.log1p(self.share), self.share * size / form.objectives.scales[:m])
         caps = np.full(len(form.goals), np.inf)
         caps[:m] = own[:m] + slack
         tie = form.tuning.tolerances.tie
@@ -331,7 +331,7 @@ class _Enumeration:
         form, near, batch_size = self.form, self.near, self.limits.batch
         seeker = PrimalHeuristics(form, near, self.rng, every=False)
         caps = near.fixed_cutoffs[: form.bounded] + near.tie
-        stack = [form.lean(form.root())]
+        stack = [form.boxes.lean(form.boxes.root())]
         while stack:
             boxes = stack.pop()
             batch, rest = boxes.take(slice(0, batch_size)), boxes.take(slice(batch_size, None))
@@ -340,42 +340,42 @@ class _Enumeration:
             if self.looked > self.limits.boxes or len(near.found) > self.limits.most:
                 return False
             self.looked += len(batch)
-            batch = form.contract(batch, caps)
-            batch = self._open(batch.take(near.possible_gain(form.phi_of(batch.bounds)) > 0))
+            batch = form.boxes.contract(batch, caps)
+            batch = self._open(batch.take(near.possible_gain(form.objectives.phi_of(batch.bounds)) > 0))
             if not len(batch):
                 continue
             self._try(batch)
             batch = self._open(batch)
-            batch, small = form.split(batch)
+            batch, small = form.boxes.split(batch)
             if len(small):
                 left = self._open(seeker.settle(small))
-                self.undecided.update(form.cells.all_members(left.cell, self.limits.most).tolist())
+                self.undecided.update(form.boxes.cells.all_members(left.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
         return not self.undecided - set(near.found)
 
     def _open(self, boxes: Boxes) -> Boxes:
         """Return the boxes that are not of a combination that is known to belong."""
-        single = np.flatnonzero(self.form.cells.single(boxes.cell))
+        single = np.flatnonzero(self.form.boxes.cells.single(boxes.cell))
         keep = np.ones(len(boxes), dtype=bool)
-        numbers = self.form.combination(boxes.take(single))
+        numbers = self.form.boxes.combination(boxes.take(single))
         keep[single] = [int(c) not in self.near.found for c in numbers]
         return boxes.take(keep)
 
     def _try(self, boxes: Boxes) -> None:
         """Solve, once for each combination that stands alone in a box, for the design that is least worse."""
         form = self.form
-        numbers = form.combination(boxes)
-        rows = [k for k in np.flatnonzero(form.cells.single(boxes.cell)) if int(numbers[k]) not in self.tried]
+        numbers = form.boxes.combination(boxes)
+        rows = [k for k in np.flatnonzero(form.boxes.cells.single(boxes.cell)) if int(numbers[k]) not in self.tried]
         _, first = np.unique(numbers[rows], return_index=True)
         rows = [rows[int(k)] for k in np.sort(first)]
         self.tried.update(int(numbers[k]) for k in rows)
         for start in range(0, len(rows), self.limits.problems):
             some = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
-            self._solve(numbers[some], form.inside(boxes.take(some), 0.5))
+            self._solve(numbers[some], form.boxes.inside(boxes.take(some), 0.5))
         # Boxes of combinations tried before have become smaller since.
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
-            points = form.makeable(form.inside(boxes, share))
+            points = form.points.makeable(form.boxes.inside(boxes, share))
             self._offer(points, numbers)
 
     def _solve(self, combinations: np.ndarray, start: np.ndarray) -> None:
@@ -386,8 +386,8 @@ class _Enumeration:
         count, goals = len(combinations), len(form.goals)
         slopes, caps = np.zeros((count, goals)), np.full((count, goals), np.inf)
         slopes[:, :m], caps[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
-        tasks = Tasks(np.zeros((count, goals)), slopes, caps, form.goal_scales, t_weight=1.0)
-        answer = form.solve_many(tasks, combinations, start)
+        tasks = Tasks(np.zeros((count, goals)), slopes, caps, form.objectives.scales, t_weight=1.0)
+        answer = form.continuous.solve_many(tasks, combinations, start)
         if not form.gridded.any():
             self._offer(answer.variables, combinations)
             return
@@ -404,16 +404,16 @@ class _Enumeration:
         if len(low) > self.limits.rounded:
             chosen = self.rng.choice(len(low), self.limits.rounded, replace=False)
             low, high = low[chosen], high[chosen]
-        cell = form.whole(combination).cell
-        whole = form.leaves(np.full(len(low), combination), low, high)
+        cell = form.boxes.whole(combination).cell
+        whole = form.boxes.leaves(np.full(len(low), combination), low, high)
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
-        around = form.contract(form.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
+        around = form.boxes.contract(form.boxes.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
-            points = form.makeable(form.inside(around, share))
-            self._offer(points, form.combination(around))
+            points = form.points.makeable(form.boxes.inside(around, share))
+            self._offer(points, form.boxes.combination(around))
 
     def _offer(self, points: np.ndarray, combinations: np.ndarray) -> None:
-        rows, phi = self.form.feasible_rows(points, combinations)
+        rows, phi = self.form.points.feasible_rows(points, combinations)
         self.near.take(combinations[rows], points[rows], phi[rows])
 
     # -- the choice ----------------------------------------------------------------------------
@@ -422,7 +422,7 @@ class _Enumeration:
         """Return all combinations that belong, without the chosen one: rows that are equal in all that counts too."""
         form, result = self.form, dict[int, tuple[float, Candidate]]()
         for combination, (worse, candidate) in self.near.found.items():
-            for other in form.cells.members(form.whole(combination).cell[0], self.limits.most):
+            for other in form.boxes.cells.members(form.boxes.whole(combination).cell[0], self.limits.most):
                 result[int(other)] = worse, replace(candidate, combination=int(other))
         result.pop(self.own, None)
         return dict(sorted(result.items()))
@@ -452,13 +452,13 @@ class _Enumeration:
         if hurried:
             return known
         gap = self.limits.settling_gap
-        slack = np.where(form.log_goals[:m], -np.log1p(-gap), gap / self.share * near.tolerance)
+        slack = np.where(form.objectives.log[:m], -np.log1p(-gap), gap / self.share * near.tolerance)
         caps = near.fixed_cutoffs.copy()
         caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
         rule = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
         rule.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         branch_and_bound(
-            form, form.leaves(np.array([combination])), rule, self.clock, self.rng, self.limits.settling_boxes
+            form, form.boxes.leaves(np.array([combination])), rule, self.clock, self.rng, self.limits.settling_boxes
         )
         worst = near.worse(rule.known.phi)
         best = rule.known[int(np.lexsort((*rule.known.phi.T[::-1], np.round(worst, 9)))[0])]
@@ -471,7 +471,7 @@ class _Enumeration:
     def _told(self, candidates: Sequence[Candidate], found: int, complete: bool, interrupted: str) -> NearEquals:
         form = self.form
         points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
-        result = form.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
+        result = form.points.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
         designs, changes, differences = [], [], []
         for k, c in enumerate(candidates):
             parts, _, choices = self.instance.combinations.describe(c.combination)
@@ -497,8 +497,8 @@ class _Enumeration:
         )
         statistics = {
             "combinations": self.instance.combinations.count,
-            "boxes": form.contracted,
-            "nlp_solves": form.nlp_solves,
+            "boxes": form.counters.contracted,
+            "nlp_solves": form.counters.nlp_solves,
             "seconds": time.monotonic() - self.started,
         }
         return NearEquals(

@@ -383,19 +383,19 @@ def formulation(options, grid=False, requirements=REQUIREMENTS, tuning=TUNING):
 def batches(form, rounds=12):
     """Contract and split from the root on, with caps that differ from box to box; yield every batch."""
     rng = np.random.default_rng(2)
-    boxes = form.root()
-    least = form.phi_of(boxes.bounds)[0]
+    boxes = form.boxes.root()
+    least = form.objectives.phi_of(boxes.bounds)[0]
     for _ in range(rounds):
         caps = least + rng.uniform(5.0, 12.0, boxes.bounds.shape)
         yield boxes, caps
-        boxes, _ = form.split(form.contract(boxes, caps))
+        boxes, _ = form.boxes.split(form.boxes.contract(boxes, caps))
 
 
 def compare(form, boxes, caps, passes, every, monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    expected = form.contract(boxes, caps, passes, every)
+    expected = form.boxes.contract(boxes, caps, passes, every)
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1")
-    found = form.contract(boxes, caps, passes, every)
+    found = form.boxes.contract(boxes, caps, passes, every)
     np.testing.assert_array_equal(found.cell, expected.cell)
     np.testing.assert_array_equal(found.tag, expected.tag)
     for name in ("low", "high", "bounds"):
@@ -442,7 +442,7 @@ def test_the_question_alone_decides_what_is_compiled():
 def test_it_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     form = formulation({}, tuning=AT_ONCE)
-    assert len(form.root()) == 1
+    assert len(form.boxes.root()) == 1
     assert form.propagation._code(True, False).compiled is None
     assert native.library("test", "int one(void) { return 1; }") is None
 

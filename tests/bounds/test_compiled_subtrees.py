@@ -1,13 +1,12 @@
 """Subtrees grown by compiled code: the same boxes as step by step, and nothing of use is lost."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 
 from synth.compiled import compiler
 from synth.search.archive import Archive
 from synth.search.boxes import Boxes
+from synth.search.execution import Execution
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.tuning import TUNING, CodeSizes
 from tests.sample_problems.strut import designs_of, strut_form
@@ -63,7 +62,7 @@ def purpose_of(kind, form, rng):
 
 def after(form, rule, generations):
     """Return boxes after some generations from the root, step by step."""
-    return by_single_steps(form, rule, form.lean(form.root()), generations)[0]
+    return by_single_steps(form, rule, form.boxes.lean(form.boxes.root()), generations)[0]
 
 
 def in_order(boxes):
@@ -76,9 +75,9 @@ def by_single_steps(form, rule, boxes, levels):
     """Return halves, and boxes too small to be split, after some generations, step by step."""
     small = [boxes.take(slice(0, 0))]
     for _ in range(levels):
-        boxes = form.contract(boxes, rule.cutoffs(form.phi_of(boxes.bounds), boxes.cell))
-        boxes = boxes.take(rule.possible_gain(form.phi_of(boxes.bounds), boxes.cell) > 0)
-        boxes, rest = form.split(boxes)
+        boxes = form.boxes.contract(boxes, rule.cutoffs(form.objectives.phi_of(boxes.bounds), boxes.cell))
+        boxes = boxes.take(rule.possible_gain(form.objectives.phi_of(boxes.bounds), boxes.cell) > 0)
+        boxes, rest = form.boxes.split(boxes)
         small.append(rest)
     return boxes, Boxes.joined(small)
 
@@ -90,7 +89,7 @@ def test_one_generation_is_a_single_step(kind, grid):
     rule = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, rule, 9)
     assert len(boxes) > 20
-    grown = form.grow(boxes, rule.tables(form), 1)
+    grown = form.boxes.grow(boxes, rule.tables(form), 1)
     halves, small = by_single_steps(form, rule, boxes, 1)
     np.testing.assert_allclose(in_order(grown.halves), in_order(halves), rtol=1e-9)
     np.testing.assert_allclose(in_order(grown.small), in_order(small), rtol=1e-9)
@@ -103,7 +102,7 @@ def test_generations_are_about_those_of_single_steps(kind, grid):
     form = strut_form(grid, AT_ONCE)
     rule = purpose_of(kind, form, np.random.default_rng(7))
     boxes = after(form, rule, 9)
-    grown = form.grow(boxes, rule.tables(form), 4)
+    grown = form.boxes.grow(boxes, rule.tables(form), 4)
     halves, small = by_single_steps(form, rule, boxes, 4)
     # Caps differ in their last digit, and with them what is split of two that blur a box as much.
     assert len(grown.halves) == pytest.approx(len(halves), rel=0.02)
@@ -117,7 +116,7 @@ def lost(boxes, points, combinations, form):
     for k in range(len(boxes)):
         low, high = boxes.low[k, : form.n] - 1e-9, boxes.high[k, : form.n] + 1e-9
         inside = np.all((points >= low) & (points <= high), axis=1)
-        for f, tree in enumerate(form.cells.trees):
+        for f, tree in enumerate(form.boxes.cells.trees):
             inside &= np.isin(digits[f], tree.rows(int(boxes.cell[k, f])))
         held |= inside
     return ~held
@@ -130,7 +129,7 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
     form, rng = strut_form(tuning=at_once(sizes)), np.random.default_rng(3)
     rule = purpose_of(kind, form, rng)
     boxes = after(form, rule, 4)
-    grown = form.grow(boxes, rule.tables(form), 6)
+    grown = form.boxes.grow(boxes, rule.tables(form), 6)
     points, combinations, phi = designs_of(form, rng, 60_000)
     # Of use: better than what is known, by the slack and a little.
     useful = rule.possible_gain(phi) > 10 * TIE
@@ -142,14 +141,14 @@ def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kin
 
 
 def test_threads_change_nothing():
-    form = strut_form(tuning=at_once(CodeSizes(tree_part=16)))
-    rule = purpose_of("front", form, np.random.default_rng(5))
-    boxes = after(form, rule, 9)
-    assert len(boxes) > 64
-    grow = partial(form.grow, boxes, rule.tables(form), 3)
-    one = grow()
-    form.workers = 3
-    three = grow()
+    found = []
+    for workers in (1, 3):
+        form = strut_form(tuning=at_once(CodeSizes(tree_part=16)), execution=Execution(workers=workers))
+        rule = purpose_of("front", form, np.random.default_rng(5))
+        boxes = after(form, rule, 9)
+        assert len(boxes) > 64
+        found.append(form.boxes.grow(boxes, rule.tables(form), 3))
+    one, three = found
     assert one.looked == three.looked > len(boxes)
     for name in ("cell", "low", "high", "bounds", "tag"):
         np.testing.assert_array_equal(getattr(one.halves, name), getattr(three.halves, name))
@@ -160,7 +159,7 @@ def test_boxes_carry_the_question_they_belong_to():
     rule = purpose_of("front", form, np.random.default_rng(5))
     boxes = after(form, rule, 6)
     boxes.tag[:] = np.arange(len(boxes))
-    grown = form.grow(boxes, rule.tables(form), 2)
+    grown = form.boxes.grow(boxes, rule.tables(form), 2)
     own = boxes.take(grown.halves.tag)
     assert len(set(grown.halves.tag.tolist())) > 1
     assert np.all(grown.halves.low >= own.low - 1e-9)
@@ -179,4 +178,4 @@ def test_without_a_compiler_nothing_is_grown(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     form = strut_form(tuning=AT_ONCE)
     rule = purpose_of("front", form, np.random.default_rng(5))
-    assert form.grow(after(form, rule, 3), rule.tables(form), 2) is None
+    assert form.boxes.grow(after(form, rule, 3), rule.tables(form), 2) is None

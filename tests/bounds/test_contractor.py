@@ -19,6 +19,7 @@ from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.question.catalogs import as_catalogs, catalogs_for
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.special import recorded
 from synth.tuning import TUNING
 from tests.asking import instance_of
@@ -377,8 +378,8 @@ def test_a_void_column_says_nothing(second):
     instance = instance_of(problem, {}, catalogs_for(problem, {"rows": LEVELS}), grid=False)
     form = Formulation(instance, {"cost": "min"}, 1)
     x = np.linspace(0.5, 10, 20)[:, None]
-    assert form.evaluate(x, np.full(20, 1)).feasible.all()
-    for box in (form.root(), form.contract(form.whole(1), None)):
+    assert form.points.evaluate(x, np.full(20, 1)).feasible.all()
+    for box in (form.boxes.root(), form.boxes.contract(form.boxes.whole(1), None)):
         assert len(box) == 1
         assert box.low[0, 0] <= 0.5
         assert box.high[0, 0] >= 10
@@ -392,15 +393,15 @@ def around(form, rng, points, combinations, scale):
     """Return boxes of clusters and ranges around designs; the tag tells which design each is around."""
     low = np.maximum(points - scale * rng.exponential(1.0, points.shape) * (form.upper - form.lower), form.lower)
     high = np.minimum(points + scale * rng.exponential(1.0, points.shape) * (form.upper - form.lower), form.upper)
-    boxes = form.leaves(combinations, low, high)
+    boxes = form.boxes.leaves(combinations, low, high)
     digits = form.instance.combinations.digits(combinations)
-    cell = [clusters_of(rng, t, d) for t, d in zip(form.cells.trees, digits, strict=True)]
+    cell = [clusters_of(rng, t, d) for t, d in zip(form.boxes.cells.trees, digits, strict=True)]
     return replace(boxes, cell=np.stack(cell, axis=1).astype(np.int32), tag=np.arange(len(points), dtype=np.int32))
 
 
 def assert_kept(kept, points, phi, form):
     np.testing.assert_array_equal(np.sort(kept.tag), np.arange(len(points)))
-    own, least, (low, high) = points[kept.tag], form.phi_of(kept.bounds), form.ends(kept)
+    own, least, (low, high) = points[kept.tag], form.objectives.phi_of(kept.bounds), form.boxes.ends(kept)
     assert np.all(own >= low - 1e-7 * np.abs(own) - 1e-12)
     assert np.all(own <= high + 1e-7 * np.abs(own) + 1e-12)
     assert not np.any(least > phi[kept.tag] + 1e-7 * (1 + np.abs(phi[kept.tag])))
@@ -414,27 +415,27 @@ def test_boxes_of_clusters_around_designs_of_a_small_problem_survive(grid, passe
     assert len(points) > 200
     for scale in (0.3, 0.03, 0.0):
         boxes = around(form, rng, points, combinations, scale)
-        assert_kept(form.contract(boxes, None, passes, every_goal=True), points, phi, form)
+        assert_kept(form.boxes.contract(boxes, None, passes, every_goal=True), points, phi, form)
         caps = phi + TIE + rng.exponential(0.1, phi.shape) * (rng.random(phi.shape) < 0.7)
-        assert_kept(form.contract(boxes, caps, passes, every_goal=True), points, phi, form)
+        assert_kept(form.boxes.contract(boxes, caps, passes, every_goal=True), points, phi, form)
 
 
 def test_halves_of_boxes_hold_what_the_box_held():
     form, rng = strut_form(), np.random.default_rng(1)
     points, combinations, _ = designs_of(form, rng, 1000)
     digits = form.instance.combinations.digits(combinations)
-    boxes = form.root()
+    boxes = form.boxes.root()
     for _ in range(12):
-        halves, rest = form.split(boxes)
+        halves, rest = form.boxes.split(boxes)
         boxes = halves.take(slice(0, 64)) if len(halves) > 64 else halves
-        boxes = form.contract(boxes, None) if len(halves) <= 64 else boxes
+        boxes = form.boxes.contract(boxes, None) if len(halves) <= 64 else boxes
         if len(halves) > 64:
             break
         assert not len(rest)
         held = np.all(
             (points[:, None] >= boxes.low - 1e-9) & (points[:, None] <= boxes.high + 1e-9), axis=2
         )  # (designs, boxes)
-        for f, tree in enumerate(form.cells.trees):
+        for f, tree in enumerate(form.boxes.cells.trees):
             inside = np.array([np.isin(digits[f], tree.rows(int(c))) for c in boxes.cell[:, f]]).T
             held &= inside
         assert held.any(axis=1).all()
@@ -450,9 +451,9 @@ def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
     caps = phi + rng.exponential(0.05, phi.shape) - 0.03  # some boxes die
     for limits in (None, caps):
         monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-        one = plain.contract(boxes, limits)
+        one = plain.boxes.contract(boxes, limits)
         monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "1")
-        two = machine.contract(boxes, limits)
+        two = machine.boxes.contract(boxes, limits)
         np.testing.assert_array_equal(one.tag, two.tag)
         np.testing.assert_array_equal(one.cell, two.cell)
         for a, b in ((one.low, two.low), (one.high, two.high), (one.bounds, two.bounds)):
@@ -487,7 +488,7 @@ class Family:
         self.form = Formulation(instance, dict.fromkeys(objectives, "min"), len(objectives))
         self.points, self.combinations = self._feasible(np.random.default_rng(11), wanted)
         values = self.model.evaluate(self.points, instance.data(self.combinations)).values
-        self.phi = self.form.phi_of(np.stack([values[name] for name in objectives], axis=1))
+        self.phi = self.form.objectives.phi_of(np.stack([values[name] for name in objectives], axis=1))
 
     def _feasible(self, rng, wanted):
         """Return random feasible points: sensible rings, forces that carry the sizing torque."""
@@ -503,7 +504,7 @@ class Family:
             with np.errstate(all="ignore"):
                 x[:, 2] = 1e4 * values["required_torque"] / values["torque"] * rng.uniform(1, 1.6, n)
             x[:, 2] = np.clip(np.nan_to_num(x[:, 2], nan=50.0), 50, 2e5)
-            good = np.flatnonzero(self.model.evaluate(x, data).feasible & self.form.not_refused(combinations))
+            good = np.flatnonzero(self.model.evaluate(x, data).feasible & not_refused(self.form.instance, combinations))
             found_x.append(x[good])
             found_c.append(combinations[good])
             if sum(map(len, found_x)) >= wanted:
@@ -524,7 +525,7 @@ def test_boxes_around_feasible_designs_survive(family):
     for scale in (3.0, 1.0, 0.3, 0.1, 0.02, 0.0):
         boxes = around(form, rng, points, family.combinations, 0.0)
         if scale < 0.2:
-            boxes = replace(boxes, cell=form.leaves(family.combinations).cell)
+            boxes = replace(boxes, cell=form.boxes.leaves(family.combinations).cell)
         low = np.maximum(points * np.exp(-scale * rng.exponential(1.0, points.shape)), lower)
         high = np.minimum(points * np.exp(scale * rng.exponential(1.0, points.shape)), upper)
         open_sides = (rng.random(points.shape) < 0.2) & (scale > 0)
@@ -532,7 +533,7 @@ def test_boxes_around_feasible_designs_survive(family):
         spare = rng.exponential(0.1, phi.shape) * (rng.random(phi.shape) < 0.7)
         for caps in (None, phi + spare + TIE * (1 + np.abs(phi))):
             for passes in (1, 3):
-                assert_kept(form.contract(boxes, caps, passes), points, phi, form)
+                assert_kept(form.boxes.contract(boxes, caps, passes), points, phi, form)
 
 
 def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(family):
@@ -554,19 +555,21 @@ def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(fa
                 low=np.concatenate([np.maximum(low, family.instance.lower), least], axis=1),
                 high=np.concatenate([np.minimum(high, family.instance.upper), most], axis=1),
             )
-            assert_kept(form.contract(carrying, None, 3), points, phi, form)
-            assert_kept(form.contract(carrying, phi + TIE * (1 + np.abs(phi)), 2), points, phi, form)
+            assert_kept(form.boxes.contract(carrying, None, 3), points, phi, form)
+            assert_kept(form.boxes.contract(carrying, phi + TIE * (1 + np.abs(phi)), 2), points, phi, form)
 
 
 def test_the_root_box_holds_all_feasible_designs(family):
     form, points, phi = family.form, family.points, family.phi
-    root = form.root()
+    root = form.boxes.root()
     assert len(root) == 1
     assert not root.cell.any()
     everywhere = replace(root.take(np.zeros(len(points), dtype=int)), tag=np.arange(len(points)))
     assert_kept(everywhere, points, phi, form)
-    leaves = replace(form.leaves(family.combinations), tag=np.arange(len(points), dtype=np.int32))
-    assert_kept(form.contract(leaves, None), points, phi, form)
+    leaves = replace(form.boxes.leaves(family.combinations), tag=np.arange(len(points), dtype=np.int32))
+    assert_kept(form.boxes.contract(leaves, None), points, phi, form)
     for k in range(0, len(points), 40):
-        alone = replace(form.contract(form.whole(int(family.combinations[k])), None), tag=np.zeros(1, dtype=np.int32))
+        alone = replace(
+            form.boxes.contract(form.boxes.whole(int(family.combinations[k])), None), tag=np.zeros(1, dtype=np.int32)
+        )
         assert_kept(alone, points[k : k + 1], phi[k : k + 1], form)

@@ -214,9 +214,9 @@ def test_a_short_time_limit_keeps_no_other_question_from_compiling(wanted):
 
 def test_pieces_that_ask_for_code_late_are_solved_without(monkeypatch):
     form, solved = strut_form(), BatchNlp.solve
-    tasks = Tasks(np.ones((1, 3)), np.zeros((1, 3)), np.full((1, 3), np.inf), form.goal_scales, 0.0)
-    start, asked = form.inside(form.leaves(np.zeros(1, dtype=np.int64)), 0.5), []
-    expected = form.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
+    tasks = Tasks(np.ones((1, 3)), np.zeros((1, 3)), np.full((1, 3), np.inf), form.objectives.scales, 0.0)
+    start, asked = form.boxes.inside(form.boxes.leaves(np.zeros(1, dtype=np.int64)), 0.5), []
+    expected = form.continuous.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
 
     def late(nlp, *args):
         asked.append(switched_on())
@@ -227,7 +227,7 @@ def test_pieces_that_ask_for_code_late_are_solved_without(monkeypatch):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setattr(BatchNlp, "solve", late)
     with deadline.until(time.monotonic() + 5.0):
-        found = form.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
+        found = form.continuous.solve_many(tasks, np.zeros(1, dtype=np.int64), start)
     assert asked == [True, False]
     assert np.allclose(found.variables, expected.variables, rtol=1e-5)
 

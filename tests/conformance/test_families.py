@@ -11,6 +11,7 @@ import synth
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.special import expanded
 from synth.units import parse_unit
 from tests.asking import instance_of
@@ -240,11 +241,14 @@ def test_the_search_calls_feasible_what_the_evaluation_does(example):
     variables *= np.exp(rng.normal(0, 1e-3, variables.shape) * (rng.random(variables.shape) < 0.2))
     variables = np.clip(variables, instance.lower, instance.upper)
     combinations = rng.integers(0, instance.combinations.count, len(variables))
-    close, edge = form.feasible_rows(variables, combinations)[0], form.edge_rows(variables, combinations)[0]
+    close, edge = (
+        form.points.feasible_rows(variables, combinations)[0],
+        form.points.edge_rows(variables, combinations)[0],
+    )
     assert not set(close) & set(edge)
     rows = np.union1d(close, edge)
-    result = form.evaluate(variables, combinations)
-    allowed = result.feasible & form.not_refused(combinations)
+    result = form.points.evaluate(variables, combinations)
+    allowed = result.feasible & not_refused(form.instance, combinations)
     assert 0 < len(rows)
     np.testing.assert_array_equal(rows, np.flatnonzero(allowed))
 
@@ -322,17 +326,17 @@ def test_random_starts_of_the_solver_find_nothing_better(example):
         synth.load(family, **case.options), case.requirements, as_catalogs(None), **settings, grid=False
     )
     form = Formulation(instance, {objective.name: objective.sense}, 1)
-    task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), form.goal_scales, t_weight=0.0)
+    task = Task(np.ones(1), np.zeros(1), np.full(1, np.inf), form.objectives.scales, t_weight=0.0)
     rng = np.random.default_rng(4)
     reached = []
     for combination in rng.permutation(instance.combinations.count)[:12]:
-        box = form.contract(form.whole(int(combination)), None)
+        box = form.boxes.contract(form.boxes.whole(int(combination)), None)
         for _ in range(2 * len(box)):
             low, high = box.low[0, : form.n], box.high[0, : form.n]  # a box may carry inner nodes too
             start = low * (high / low) ** rng.random(form.n)
             solution = refereed(form, task, int(combination), start, low, high)
             if solution is not None:
-                value = form.evaluate(solution.variables[None, :], np.array([combination]))
+                value = form.points.evaluate(solution.variables[None, :], np.array([combination]))
                 if value.feasible[0]:
                     reached.append(float(value.values[objective.name][0]))
     assert len(reached) >= 4

@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import synth
+from synth.model.constraint import void_limits
 from synth.nlp.batch import Tasks
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
+from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of
@@ -65,10 +67,10 @@ class Question:
         asked = chosen_objectives(model, case.settings.get("objectives")) | chosen_objectives(model, None)
         names = model.declaration.objectives
         objectives = {name: sense for name, sense in with_ties(model, asked).items() if name in names}
-        self.form = form = Formulation(instance, objectives, len(asked), compiled=False)
+        self.form = form = Formulation(instance, objectives, len(asked), execution=Execution(compiled=False))
         self.own = np.zeros(STARTS, dtype=np.int64)
         self.data = [float(np.asarray(x).ravel()[0]) for x in instance.data(self.own[:1])]
-        self.void = form.void(self.data, 1)[0]
+        self.void = void_limits(form.constraints, self.data, 1)[0]
         self.positive = form.lower > 0
         self.design = np.array([pinned.design.values[v.name] for v in model.variables])
         share = np.random.default_rng(3).random((STARTS, form.n))
@@ -83,13 +85,13 @@ class Question:
         m, traded = len(form.goals), np.arange(len(form.goals)) < form.traded
         free, none = np.full(m, np.inf), np.zeros(m)
         weights = [*np.eye(m), traded / form.traded]
-        _, (phi,) = form.feasible_rows(self.design[None, :], self.own[:1])
-        alone = [Task(w, none, free, form.goal_scales, 0.0) for w in weights]
-        return [*alone, Task(none, np.ones(m), np.where(traded, phi, np.inf), form.goal_scales, 1.0)]
+        _, (phi,) = form.points.feasible_rows(self.design[None, :], self.own[:1])
+        alone = [Task(w, none, free, form.objectives.scales, 0.0) for w in weights]
+        return [*alone, Task(none, np.ones(m), np.where(traded, phi, np.inf), form.objectives.scales, 1.0)]
 
     def cost_of(self, task: Task, point: np.ndarray) -> float:
         """Return the cost of sizes by the formulas as they were written; infinite where a limit does not hold."""
-        kept, (phi,) = self.form.feasible_rows(point[None, :], self.own[:1])
+        kept, (phi,) = self.form.points.feasible_rows(point[None, :], self.own[:1])
         if not len(kept):
             return np.inf
         return float(task.weights @ phi + (task.t_weight * np.max(phi - task.caps) if task.t_weight else 0.0))
@@ -98,7 +100,7 @@ class Question:
         """Return cost and sizes of what the search's own solver calls optima, from every start."""
         wide = [np.tile(x, (STARTS, 1)) for x in (task.weights, task.slopes, task.caps)]
         tasks = Tasks(wide[0], wide[1], wide[2], task.goal_scales, task.t_weight)
-        found = self.form.solve_many(tasks, self.own, self.starts)
+        found = self.form.continuous.solve_many(tasks, self.own, self.starts)
         called = np.flatnonzero(found.converged & (found.violation <= TUNING.nlp.missed))
         return [(self.cost_of(task, x), x) for x in found.variables[called]]
 
@@ -153,7 +155,7 @@ def test_the_best_design_does_not_become_worse_with_a_smaller_gap(example):
     question = Question(synth.load(family, **case.options), case, pinned)
     declaration = question.form.model.declaration
     # Where formulas have edges every size is free; elsewhere those that the case pins stay, for a quick proof.
-    edged = question.form._has_edges(question.form._kinks)
+    edged = question.form.continuous.has_edges
     sizes = {} if edged else {k: v for k, v in case.settings.get("fix", {}).items() if k not in declaration.counts}
     name = question.form.names[0]
     asked = {"parts": pinned.parts, "fix": {**sizes, **pinned.fix}, "objectives": [name], "grid": False, "points": 1}

@@ -27,11 +27,11 @@ def test_a_pinned_ring_that_is_feasible_is_kept(outer, ratio, compiled):
     forces = np.geomspace(500, 20000, 400)
     points = np.column_stack([np.full(400, outer / 1e3), np.full(400, inner / 1e3), forces, np.full(400, 2.0)])
     result = instance.model.evaluate(points, instance.data(np.array([0])))
-    kept = form.root()
+    kept = form.boxes.root()
     if result.feasible.any():
         assert len(kept) == 1
         for _ in range(5):
-            kept = form.contract(kept, None, passes=3, every_goal=True)
+            kept = form.boxes.contract(kept, None, passes=3, every_goal=True)
         assert len(kept) == 1
         least, most = forces[result.feasible][[0, -1]]
         assert kept.low[0, 2] <= least

@@ -6,7 +6,9 @@ import pytest
 
 from synth.feasibility import TOLERANCE
 from synth.nlp.ipopt import Task
+from synth.search.execution import Execution
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.special import expanded
 from tests.conformance.cases import CASES, answer
 from tests.regimes import refereed
@@ -63,20 +65,22 @@ def reached(form, combination, variables, phi):
     With other parts, from these variables, of which the makeable ones stay. Negative: the design is dominated.
     """
     low, high = (np.where(form.gridded, variables, ends) for ends in (form.lower, form.upper))
-    task = Task(np.zeros(len(phi)), np.ones(len(phi)), phi, form.goal_scales)
+    task = Task(np.zeros(len(phi)), np.ones(len(phi)), phi, form.objectives.scales)
     solution = refereed(form, task, combination, variables, low, high)
     if solution is None:
         return None
-    rows, found = form.feasible_rows(solution.variables[None, :], np.array([combination]))
+    rows, found = form.points.feasible_rows(solution.variables[None, :], np.array([combination]))
     return float(np.max(found[0] - phi)) if len(rows) else None
 
 
 def test_no_design_is_dominated_by_another_combination_that_keeps_the_limits_closely(front):
     instance, rng = front.question, np.random.default_rng(5)
-    form = Formulation(instance, front.frame.objectives, len(front.frame.objectives), compiled=False)
+    form = Formulation(
+        instance, front.frame.objectives, len(front.frame.objectives), execution=Execution(compiled=False)
+    )
     made = [combination_of(instance, d) for d in front.designs]
     points = np.array([[d.values[v.name] for v in instance.model.variables] for d in front.designs])
-    _, phi = form.feasible_rows(points, np.array(made))
+    _, phi = form.points.feasible_rows(points, np.array(made))
     compared = 0
     for own, x, target in zip(made, points, phi, strict=True):
         # The design itself loses nothing where it keeps the limits closely.
@@ -84,7 +88,7 @@ def test_no_design_is_dominated_by_another_combination_that_keeps_the_limits_clo
         beside = instance.combinations.neighbours(own)
         rivals = [(c, y) for c, y in zip(made, points, strict=True) if c != own]
         rivals = [rivals[k] for k in rng.permutation(len(rivals))[:OTHERS]]
-        rivals += [(int(c), x) for c in rng.permutation(beside[form.not_refused(beside)])[:OTHERS]]
+        rivals += [(int(c), x) for c in rng.permutation(beside[not_refused(form.instance, beside)])[:OTHERS]]
         short = [reached(form, combination, start, target) for combination, start in rivals]
         assert all(t is None or t > -SURE for t in short)
         compared += sum(t is not None for t in short)

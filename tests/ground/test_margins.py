@@ -90,8 +90,8 @@ def test_thin_boxes_of_any_sign_are_kept_and_split(code):
     rng = np.random.default_rng(0)
     middle = np.stack([rng.uniform(-0.17, -0.07, size), rng.uniform(-2.9, -1.1, size)], axis=1)
     half = np.abs(middle) * 10.0 ** rng.uniform(-16, -6, (size, 1))
-    boxes = form.leaves(np.zeros(size, dtype=np.int64), middle - half, middle + half)
-    kept = form.contract(boxes, np.full(len(form.goals), np.inf))
+    boxes = form.boxes.leaves(np.zeros(size, dtype=np.int64), middle - half, middle + half)
+    kept = form.boxes.contract(boxes, np.full(len(form.goals), np.inf))
     assert len(kept) == size
     assert np.all((kept.low <= middle * (1 - 1e-12)) & (kept.high >= middle * (1 + 1e-12)))
 

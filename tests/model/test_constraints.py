@@ -9,7 +9,7 @@ import pytest
 import synth
 from synth.declaration import Origin
 from synth.feasibility import SMALLEST, holds
-from synth.model.constraint import SIGNS, Constraint, NodeConstraint
+from synth.model.constraint import SIGNS, Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.nlp.rows import GUARD_MARGIN
 from synth.proof.questions import Point
@@ -19,7 +19,9 @@ from synth.question.instance import Instance
 from synth.question.objectives import chosen_objectives
 from synth.question.uncertainty import read_block
 from synth.robust.counterpart import robust_counterpart
+from synth.search.execution import Execution
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.studies.infeasibility.relaxation import AMOUNT, Relaxed
 from synth.units import format_quantity
 from synth.verification.verify import VerificationRun
@@ -96,7 +98,7 @@ def question(problem, requirements, catalogs, objectives, sound, rng, **restrict
     variables = sound(plain)
     total = plain.combinations.count
     allowed = np.arange(total) if total < 10_000 else rng.integers(0, total, 999)
-    allowed = allowed[Formulation(plain, {}, 0, compiled=False).not_refused(allowed)]
+    allowed = allowed[not_refused(plain, allowed)]
     combinations = rng.choice(allowed, len(variables))
     limits = {**restricted.pop("limits", {})}
     for name, text in own_limits(plain, variables, combinations, rng).items():
@@ -193,21 +195,21 @@ def test_the_check_of_a_design_reads_limits_as_the_question_does(asked):
 
 
 def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
-    form = Formulation(asked.instance, {}, 0, compiled=False)
-    result, refused = asked.result, ~form.not_refused(asked.combinations)
+    form = Formulation(asked.instance, {}, 0, execution=Execution(compiled=False))
+    result, refused = asked.result, ~not_refused(form.instance, asked.combinations)
     feasible = result.feasible & ~refused
-    rows = [form.feasible_rows, form.edge_rows]
+    rows = [form.points.feasible_rows, form.points.edge_rows]
     screened = np.concatenate([pick(asked.variables, asked.combinations)[0] for pick in rows])
     np.testing.assert_array_equal(np.sort(screened), np.flatnonzero(feasible))
     columns = [x[:, None] for x in asked.variables.T]
     most = np.full((POINTS, 0), np.inf)
-    kept = form.promising(columns, asked.combinations[:, None], most)[:, 0]
+    kept = form.points.promising(columns, asked.combinations[:, None], most)[:, 0]
     assert np.all(kept[feasible])
 
 
 def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
-    form = Formulation(asked.instance, asked.chosen, len(asked.chosen), compiled=False)
-    result, goals, logs = asked.result, len(form.goals), form.rows().log_cuts
+    form = Formulation(asked.instance, asked.chosen, len(asked.chosen), execution=Execution(compiled=False))
+    result, goals, logs = asked.result, len(form.goals), form.continuous.rows.log_cuts
     assert form.cuts == [NodeConstraint.of(x) for x in asked.instance.constraints]
     comparable = guarded(asked, result)
     for x, log in zip(asked.instance.constraints, logs, strict=True):
@@ -221,11 +223,11 @@ def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
             row = np.where(r < 0, np.log1p(r), -np.log1p(-r)) if log else r
         row = np.where(np.isnan(r), np.inf, row + (GUARD_MARGIN if x.guard else 0.0))
         expected = np.maximum(expected, np.where(result.void[x.name][rows], 0.0, row))
-    nlp = BatchNlp(asked.instance.model.program, form.n, form.rows(), "arrays")
+    nlp = BatchNlp(asked.instance.model.program, form.n, form.continuous.rows, "arrays")
     nothing = np.zeros((len(rows), goals))
-    tasks = Tasks(nothing, nothing, np.full((len(rows), goals), np.inf), form.goal_scales, 0.0)
+    tasks = Tasks(nothing, nothing, np.full((len(rows), goals), np.inf), form.objectives.scales, 0.0)
     points, data = asked.variables[rows], asked.instance.data(asked.combinations[rows])
-    found = nlp.solve(tasks, data, points, points, points, form.bounds, form.void(data, len(rows)))
+    found = nlp.solve(tasks, data, points, points, points, form.bounds, void_limits(form.constraints, data, len(rows)))
     np.testing.assert_allclose(found.violation, expected, rtol=1e-6, atol=1e-8)
 
 
@@ -337,7 +339,7 @@ def test_what_a_user_limits_must_have_a_value():
     result = instance.evaluate(np.full((2, 1), 1.5), instance.data(np.arange(2)))
     assert result.holds["life >= 2"].tolist() == [True, False]
     form = Formulation(instance, {}, 0)
-    assert form.feasible_rows(np.full((2, 1), 1.5), np.arange(2))[0].tolist() == [0]
+    assert form.points.feasible_rows(np.full((2, 1), 1.5), np.arange(2))[0].tolist() == [0]
     relaxed = Relaxed(instance, instance.own, {}, [x.name for x in instance.constraints]).model(frozenset(), None)
     both = relaxed.evaluate(np.array([[1.5, 0.0], [1.5, 0.0]]), instance.data(np.arange(2)))
     assert both.feasible.tolist() == [True, False]

@@ -11,6 +11,7 @@ import synth
 from synth.question.catalogs import catalogs_for
 from synth.search import refused_cells
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.tables.conditions import parse_condition
 from tests.asking import instance_of
 
@@ -89,7 +90,7 @@ def offered(instance):
     form = Formulation(instance, {"cost": "min", "weight": "min"}, 2)
     every = np.arange(instance.combinations.count)
     found = set()
-    for k in every[form.not_refused(every)]:
+    for k in every[not_refused(form.instance, every)]:
         parts, _, _ = instance.combinations.describe(int(k))
         found.add(tuple(table.designations[row] for table, row in parts.values()))
     return found
@@ -145,18 +146,18 @@ def test_boxes_of_clusters_are_given_up_before_single_rows(monkeypatch):
     text = "designation == two.designation"
     instance = instance_of(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
     form = Formulation(instance, {"cost": "min", "weight": "min"}, 2)
-    trees = form.cells.trees
+    trees = form.boxes.cells.trees
     cells = np.array(list(itertools.product(range(len(trees[0])), range(len(trees[1])), [0])), dtype=np.int32)
-    may = form.refused_cells.may_be_allowed(cells)
+    may = form.boxes.refused_cells.may_be_allowed(cells)
     slots = zip(instance.selection.slots, trees[:2], strict=True)
     rows = [[set(slot.rows[tree.rows(k)].tolist()) for k in range(len(tree))] for slot, tree in slots]
     holds = np.array([bool(rows[0][a] & rows[1][b]) for a, b, _ in cells])
     np.testing.assert_array_equal(may, holds)  # small enough for a table of all pairs
     monkeypatch.setattr(refused_cells, "MOST_COMPARED", 0)
-    may = refused_cells.RefusedCells(instance, form.cells).may_be_allowed(cells)
+    may = refused_cells.RefusedCells(instance, form.boxes.cells).may_be_allowed(cells)
     assert np.all(may | ~holds)  # nothing that may hold is lost
     assert (~may).sum() > 0.4 * (~holds).sum()
-    singles = form.cells.single(np.column_stack([cells[:, :2], np.full(len(cells), trees[2].leaf_of_row[0])]))
+    singles = form.boxes.cells.single(np.column_stack([cells[:, :2], np.full(len(cells), trees[2].leaf_of_row[0])]))
     assert np.array_equal(may[singles], holds[singles])
 
 

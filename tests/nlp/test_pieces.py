@@ -14,7 +14,7 @@ import yaml
 
 import synth
 from synth.feasibility import residual
-from synth.model.constraint import Goal, NodeConstraint
+from synth.model.constraint import Goal, NodeConstraint, void_limits
 from synth.model.program import Program
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
@@ -342,17 +342,17 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
     start = form.lower * (form.upper / form.lower) ** rng.random((len(own), form.n))
     weights = np.eye(goals)[:1]
     free = np.full((1, goals), np.inf)
-    tasks = Tasks(*(np.tile(x, (len(own), 1)) for x in (weights, 0 * weights, free)), form.goal_scales, 0.0)
-    found = form.solve_many(tasks, own, start)
-    rows, phi = form.feasible_rows(found.variables, own)
+    tasks = Tasks(*(np.tile(x, (len(own), 1)) for x in (weights, 0 * weights, free)), form.objectives.scales, 0.0)
+    found = form.continuous.solve_many(tasks, own, start)
+    rows, phi = form.points.feasible_rows(found.variables, own)
     data = [float(np.asarray(x).ravel()[0]) for x in form.instance.data(own[:1])]
-    task = Task(weights[0], 0 * weights[0], free[0], form.goal_scales, 0.0)
+    task = Task(weights[0], 0 * weights[0], free[0], form.objectives.scales, 0.0)
 
     def mass_of(point: np.ndarray) -> float:
-        kept, values = form.feasible_rows(point[None, :], own[:1])
+        kept, values = form.points.feasible_rows(point[None, :], own[:1])
         return float(values[0, 0]) if len(kept) else np.inf
 
-    ends, void = (form.lower, form.upper), form.void(data, 1)[0]
+    ends, void = (form.lower, form.upper), void_limits(form.constraints, data, 1)[0]
     starts = np.array([*start[:3], found.variables[rows[0]]])
     least = best_in_any_regime(referee(form), task, data, starts, ends, form.bounds, void, mass_of)
     assert found.converged.sum() >= 11

@@ -389,7 +389,7 @@ def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) 
     proceed = together_search._Attempt.open_questions
 
     def noted(attempt: Any, questions: np.ndarray, effort: float) -> np.ndarray:
-        asked_of.append((attempt.form.conflict, int(questions.sum())))
+        asked_of.append((attempt.form.infeasibility, int(questions.sum())))
         return proceed(attempt, questions, effort)
 
     monkeypatch.setattr(together_search._Attempt, "open_questions", noted)
@@ -625,9 +625,9 @@ def test_what_holds_for_many_questions_is_found_once(
         # Its clusters and tables are those of questions that are prepared alone.
         alone = Formulation(together, wider.goals, 1, conflict)
         roots.pop()
-        for one, other in zip(form.cells.trees, alone.cells.trees, strict=True):
+        for one, other in zip(form.boxes.cells.trees, alone.boxes.cells.trees, strict=True):
             assert np.array_equal(one.factor.columns, other.factor.columns)
-        for tree in form.cells.trees:
+        for tree in form.boxes.cells.trees:
             assert len(tree.order) == len(tree.factor.columns)
     assert len(roots) == 1
     # What the wider questions do not speak of is prepared anew.
@@ -687,7 +687,7 @@ def test_a_question_keeps_its_best_design(together: JointInstance) -> None:
 def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     search = an_open_search()
     form, rng = search.form, np.random.default_rng(seed)
-    tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
+    tree, count, goals = form.boxes.cells.trees[0], len(search.questions), len(form.goals)
     plain = np.where(rng.random((count, goals)) < 0.2, 0.5, np.inf)
     known = IncumbentPerScenario(search.together, 0, form.n, goals, plain)
     chosen = rng.integers(0, search.together.combinations.count, 5)
@@ -701,7 +701,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     ]
     assert rule.needed().tolist() == needed
     boxes = 60
-    cell = np.stack([rng.integers(0, len(t), boxes) for t in form.cells.trees], axis=1).astype(np.int32)
+    cell = np.stack([rng.integers(0, len(t), boxes) for t in form.boxes.cells.trees], axis=1).astype(np.int32)
     lower = np.round(rng.random((boxes, goals)), 1)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
     caps, room = rule.cutoffs(lower, cell), rule.possible_gain(lower, cell)
@@ -719,7 +719,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
         assert np.isfinite(plain[:, form.bounded :]).any()
     else:
         of_boxes = tables.of_cluster[cell[:, 0]]
-        np.testing.assert_allclose(of_boxes, form.values_of(caps[:, : form.bounded]), rtol=1e-12)
+        np.testing.assert_allclose(of_boxes, form.objectives.values_of(caps[:, : form.bounded]), rtol=1e-12)
 
 
 @cache
@@ -732,24 +732,27 @@ def an_open_search() -> JointSearch:
 def test_open_boxes_leave_their_questions_open(seed: int) -> None:
     search = an_open_search()
     form, rng = search.form, np.random.default_rng(seed)
-    tree, count, goals = form.cells.trees[0], len(search.questions), len(form.goals)
+    tree, count, goals = form.boxes.cells.trees[0], len(search.questions), len(form.goals)
     known = IncumbentPerScenario(search.together, 0, form.n, goals)
     phi = np.round(rng.normal(size=(4, goals)), 1)
     known.add(rng.integers(0, search.together.combinations.count, 4), np.zeros((4, form.n)), phi)
     wanted = rng.random(count) < 0.7
     rule = BestPerScenario(form, known, lambda own: np.full(len(own), 0.05), wanted)
     needed = rule.needed()
-    boxes = form.leaves(rng.integers(0, search.together.combinations.count, 6))
+    boxes = form.boxes.leaves(rng.integers(0, search.together.combinations.count, 6))
     clusters = rng.integers(0, len(tree), 6).astype(np.int32)
     boxes.cell[:, 0] = clusters
     lower = np.round(rng.normal(size=6), 1)
     lower[rng.random(6) < 0.1] = -np.inf
     sign = form.goals[0].sign
-    bounds = np.exp(lower) if form.log_goals[0] else sign * lower
+    bounds = np.exp(lower) if form.objectives.log[0] else sign * lower
     boxes.bounds[:, 0] = bounds
     true = [
-        any(q in tree.rows(int(c)) and form.phi_of(boxes.bounds[[b]])[0, 0] < needed[q] for b, c in enumerate(clusters))
+        any(
+            q in tree.rows(int(c)) and form.objectives.phi_of(boxes.bounds[[b]])[0, 0] < needed[q]
+            for b, c in enumerate(clusters)
+        )
         for q in range(count)
     ]
     assert rule.open_questions(boxes).tolist() == true
-    assert not rule.open_questions(form.nothing()).any()
+    assert not rule.open_questions(form.boxes.nothing()).any()

@@ -5,6 +5,7 @@ import pandas as pd
 import synth
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Candidate
+from synth.search.execution import EXECUTION
 from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of
@@ -52,23 +53,25 @@ class Strut(synth.DesignProblem):
         d.advise("wide", width > 0.05, "a wide bar")
 
 
-def strut_form(grid=True, tuning=TUNING):
+def strut_form(grid=True, tuning=TUNING, execution=EXECUTION):
     """Return the problem ready to be searched."""
     problem = Strut()
     instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}), grid=grid)
-    return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, tuning=tuning)
+    return Formulation(
+        instance, {"mass": "min", "flexibility": "min", "width": "min"}, 2, execution=execution, tuning=tuning
+    )
 
 
 def designs_of(form, rng, count):
     """Return random feasible makeable designs of random combinations, and phi."""
     share = rng.random((count, form.n))
-    points = form.makeable(form.lower + share * (form.upper - form.lower))
+    points = form.points.makeable(form.lower + share * (form.upper - form.lower))
     combinations = rng.integers(form.instance.combinations.count, size=count)
-    rows, phi = form.feasible_rows(points, combinations)
+    rows, phi = form.points.feasible_rows(points, combinations)
     return points[rows], combinations[rows], phi[rows]
 
 
 def feasible_candidates(form, points, combinations):
     """Return those of some designs that are feasible, without the search learning of them."""
-    rows, phi = form.feasible_rows(points, combinations)
+    rows, phi = form.points.feasible_rows(points, combinations)
     return [Candidate(int(combinations[k]), points[k].copy(), phi[k]) for k in rows]

@@ -42,7 +42,7 @@ def whole(form, slack):
 
 def test_it_closes_what_a_cover_leaves_open(form):
     rule = whole(form, 0.01)
-    begun = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100)
+    begun = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 100)
     assert len(begun.open)
     ended = best_first(form, begun.open, rule, Clock(), np.random.default_rng(0), EFFORT)
     assert ended.closed
@@ -51,9 +51,9 @@ def test_it_closes_what_a_cover_leaves_open(form):
 
 def test_boxes_with_most_room_come_first_until_too_many_wait(form):
     rule = whole(form, 0.01)
-    branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100)
-    left = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 100).open
-    room = rule.possible_gain(form.phi_of(left.bounds))
+    branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 100)
+    left = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 100).open
+    room = rule.possible_gain(form.objectives.phi_of(left.bounds))
     assert room.min() < 0.01 < room.max() / 2
     # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
     for most, low, high in ((10**6, room.max() / 2, room.max()), (0, 0.0, 0.01)):
@@ -61,7 +61,7 @@ def test_boxes_with_most_room_come_first_until_too_many_wait(form):
         waiting.add(left)
         assert len(waiting) == len(left) == sum(len(b) for b in waiting.batches)
         batch = waiting.next()
-        first = rule.possible_gain(form.phi_of(batch.bounds))[0]
+        first = rule.possible_gain(form.objectives.phi_of(batch.bounds))[0]
         assert low <= first <= high
         assert len(waiting) + len(batch) == len(left)
 
@@ -71,16 +71,16 @@ def test_what_does_not_close_ends_by_the_count_of_boxes(form):
     ends = []
     for own in (prepared(), prepared()):
         rule = whole(own, 1e-9)  # less than numbers can tell
-        found = best_first(own, own.root(), rule, Clock(), np.random.default_rng(0), effort)
+        found = best_first(own, own.boxes.root(), rule, Clock(), np.random.default_rng(0), effort)
         ends.append((found.looked, len(found.open)))
     assert ends[0] == ends[1]
     assert ends[0][1] > 0
     rule = whole(form, 1e-9)
-    spent = best_first(form, form.root(), rule, Clock(), np.random.default_rng(0), SearchEffort(seconds=0.0))
+    spent = best_first(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), SearchEffort(seconds=0.0))
     assert spent.spent
     assert not spent.closed
     with pytest.raises(Stopped, match="time limit"):
-        best_first(form, form.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
+        best_first(form, form.boxes.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0), EFFORT)
 
 
 def test_boxes_close_where_fewer_wait_or_promise_less_or_hold_less():
@@ -101,28 +101,28 @@ def test_what_waits_holds_less_the_more_is_closed(form):
     rule = whole(form, 0.01)
 
     def left(effort: int) -> Boxes:
-        return branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), effort).open
+        return branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), effort).open
 
-    extents = [form.extent(boxes) for boxes in (form.root(), left(50), left(100), left(200))]
+    extents = [form.boxes.extent(boxes) for boxes in (form.boxes.root(), left(50), left(100), left(200))]
     assert extents == sorted(extents, reverse=True)
     assert extents[0] > extents[-1] > 0
     # Halves hold as much as what was split, be it along a variable or between combinations; but for what lies between
     # makeable values.
-    boxes = form.root()
+    boxes = form.boxes.root()
     for _ in range(6):
-        halves = Boxes.joined(list(form.split(boxes)))
-        assert 0.98 * form.extent(boxes) < form.extent(halves) <= form.extent(boxes) * (1 + 1e-9)
+        halves = Boxes.joined(list(form.boxes.split(boxes)))
+        assert 0.98 * form.boxes.extent(boxes) < form.boxes.extent(halves) <= form.boxes.extent(boxes) * (1 + 1e-9)
         boxes = halves
 
 
 def test_the_gap_of_open_boxes_is_what_they_allow(form):
     plain = np.full(2, np.inf)
-    found, ended = best(form, form.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
+    found, ended = best(form, form.boxes.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
     assert ended.closed
     form.archive.__init__([0, 1], form.n, 2)
-    left = branch_and_bound(form, form.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open
+    left = branch_and_bound(form, form.boxes.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open
     assert len(left)
-    corners, logs = form.phi_of(left.bounds)[:, :1], np.array([True])
+    corners, logs = form.objectives.phi_of(left.bounds)[:, :1], np.array([True])
     gap = least_gap([Bound(np.array([1e-3]), corners)], found.phi[None, :1], logs, np.ones(1))
     assert gap == pytest.approx(max(1 - np.exp(corners.min() - found.phi[0]), 1 - np.exp(-1e-3)))
 

@@ -194,17 +194,17 @@ def form():
 
 def sampled(form, rng, count=20000):
     share = rng.random((count, form.n))
-    points = form.makeable(form.lower + share * (form.upper - form.lower))
+    points = form.points.makeable(form.lower + share * (form.upper - form.lower))
     return feasible_candidates(form, points, rng.integers(form.instance.combinations.count, size=count))
 
 
 def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
     slack = np.array([0.02, 0.02])
     rule = EpsilonCover([0, 1], slack, np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1e6)
+    outcome = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 1e6)
     assert outcome.closed
     assert outcome.looked > 0
-    rows, _ = form.feasible_rows(form.archive.variables, form.archive.combination)
+    rows, _ = form.points.feasible_rows(form.archive.variables, form.archive.combination)
     assert len(rows) == len(form.archive) > 3
     others = sampled(form, np.random.default_rng(1))
     assert len(others) > 500
@@ -218,23 +218,23 @@ def test_the_best_design_is_proven(form, column):
     others = sampled(form, np.random.default_rng(2))
     form.archive.__init__([0, 1], form.n, 2)
     plain = np.full(2, np.inf)
-    found, outcome = best(form, form.root(), column, plain, 1e-3, Clock(), np.random.default_rng(0))
+    found, outcome = best(form, form.boxes.root(), column, plain, 1e-3, Clock(), np.random.default_rng(0))
     assert outcome.closed
     assert found.phi[column] <= min(c.phi[column] for c in others) + 1e-3
 
 
 def test_effort_and_time_end_a_cover(form):
     rule = EpsilonCover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1)
+    outcome = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 1)
     assert not outcome.closed
     assert len(outcome.open)
     with pytest.raises(Stopped, match="time limit"):
-        branch_and_bound(form, form.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0))
+        branch_and_bound(form, form.boxes.root(), rule, Clock(deadline=-np.inf), np.random.default_rng(0))
 
 
 def test_enough_designs_end_a_cover(form):
     rule = EpsilonCover([0, 1], np.array([1e-3, 1e-3]), np.full(2, np.inf), form.archive)
-    outcome = branch_and_bound(form, form.root(), rule, Clock(), np.random.default_rng(0), 1e6, enough=5)
+    outcome = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 1e6, enough=5)
     assert outcome.full
     assert not outcome.closed
     assert len(form.archive) > 5

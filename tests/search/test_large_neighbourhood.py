@@ -48,14 +48,14 @@ def test_dives_come_near_the_best_and_keep_only_feasible_designs(seed):
     problem, rng = Fits(), np.random.default_rng(seed)
     instance = instance_of(problem, {}, catalogs_for(problem, {"rows": ROWS}))
     form = Formulation(instance, {"mass": "min", "length": "min"}, 2)
-    points = form.makeable(form.lower + rng.random((20000, 2)) * (form.upper - form.lower))
+    points = form.points.makeable(form.lower + rng.random((20000, 2)) * (form.upper - form.lower))
     own = rng.integers(instance.combinations.count, size=len(points))
-    rows, phi = form.feasible_rows(points, own)
+    rows, phi = form.points.feasible_rows(points, own)
     worst = rows[[int(np.argmax(phi[rows, 0]))]]
     form.archive.add(own[worst], points[worst], phi[worst])
     large_neighbourhood_search(form, [0, 1], np.full(2, 1e-3), Clock(), rng)
     archive = form.archive
-    assert len(form.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
+    assert len(form.points.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
     mass, length = every_design()
     assert np.exp(archive.phi[:, 0].min()) == pytest.approx(mass.min(), rel=0.02)
     assert np.exp(archive.phi[:, 1].min()) == pytest.approx(length.min(), rel=0.02)

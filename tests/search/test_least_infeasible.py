@@ -66,6 +66,6 @@ def test_no_design_that_chance_finds_is_nearer() -> None:
     form, rng = Formulation(question.instance, dict(question.chosen), 2), np.random.default_rng(5)
     combinations = rng.integers(question.instance.combinations.count, size=200)
     points = form.lower + rng.random((200, form.n)) * (form.upper - form.lower)
-    result = form.evaluate(points, combinations)
+    result = form.points.evaluate(points, combinations)
     capacity, needed = (np.asarray(x, dtype=float) for x in result.limits["torque_capacity"])
     assert missed["torque_capacity"] <= 1 - (capacity / needed).max() + 1e-9

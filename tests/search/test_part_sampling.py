@@ -168,18 +168,18 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
     problem = Strut()
     instance = instance_of(problem, NEEDED, catalogs_for(problem, {"rods": RODS}))
     form = Formulation(instance, {"mass": "min", "flexibility": "min"}, 2, tuning=tuned(**SMALL))
-    root = form.root()
-    left = form.split(root)[0].take(slice(0, 1))  # half of everything
+    root = form.boxes.root()
+    left = form.boxes.split(root)[0].take(slice(0, 1))  # half of everything
     archive = Archive(columns, form.n, 2)
     rule = EpsilonCover(columns, np.full(len(columns), 1e-3), np.full(2, np.inf), archive)
     journal = tmp_path / "study.journal" if kept else None
     assert sample_parts(form, left, rule, Clock(), journal, 0, TRIALS) == TRIALS
     assert journal is None or not journal.exists()
     assert len(archive)
-    rows, phi = form.feasible_rows(archive.variables, archive.combination)
+    rows, phi = form.points.feasible_rows(archive.variables, archive.combination)
     assert len(rows) == len(archive)
     np.testing.assert_array_equal(phi, archive.phi)
-    for f, tree in enumerate(form.cells.trees):
+    for f, tree in enumerate(form.boxes.cells.trees):
         assert np.isin(instance.combinations.digits(archive.combination)[f], tree.rows(int(left.cell[0, f]))).all()
     assert len(form.archive)
 

@@ -83,7 +83,7 @@ IN_PIECES = forms(tuned(heuristics={"settle": SettleLimits(tried_at_once=300, ev
 def some_designs(form, count):
     rng = np.random.default_rng(7)
     low, high = form.lower, form.upper
-    points = form.makeable(low + (high - low) * rng.random((20 * count, form.n)))
+    points = form.points.makeable(low + (high - low) * rng.random((20 * count, form.n)))
     found = feasible_candidates(form, points, rng.integers(0, form.instance.combinations.count, len(points)))
     assert len(found) >= count
     return found[:count]
@@ -91,7 +91,7 @@ def some_designs(form, count):
 
 def step(form, own, trials, combinations, traded, order):
     """Return the best of some points by the objectives in their order, where it is better than a design."""
-    rows, phi = form.feasible_rows(trials, combinations)
+    rows, phi = form.points.feasible_rows(trials, combinations)
     left = [k for k in rows if np.all(phi[k, :traded] <= own.phi[:traded] + TIE)]
     for j in order:
         least = min((phi[k, j] for k in left), default=np.inf)
@@ -127,8 +127,14 @@ def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, tra
     alone = [settled_alone(form, own, traded, order, parts) for own in designs]
     if traded == 0 or (parts and 0 in order):
         assert any(a is not own for a, own in zip(alone, designs, strict=True))
-    pieces, evaluated, sizes = IN_PIECES[which], IN_PIECES[which].feasible_rows, []
-    monkeypatch.setattr(pieces, "feasible_rows", lambda points, own: sizes.append(len(own)) or evaluated(points, own))
+    pieces, sizes = IN_PIECES[which], []
+    evaluated = pieces.points.feasible_rows
+
+    def counted(points, own):
+        sizes.append(len(own))
+        return evaluated(points, own)
+
+    monkeypatch.setattr(pieces.points, "feasible_rows", counted)
     in_pieces = settle_discrete(pieces, designs, traded, order, parts)
     assert 0 < max(sizes) <= AT_ONCE
     for found in (together, in_pieces):
@@ -150,10 +156,10 @@ def test_what_is_feasible_and_as_good_is_promising(which):
     caps = np.array([c.phi[:2] for c in some_designs(form, 40)])
     grid = np.linspace(form.lower[0], form.upper[0], 50)
     columns = [grid[None, :], *points.T[1:, :, None]]
-    keep = form.promising(columns, combinations, caps)
+    keep = form.points.promising(columns, combinations, caps)
     every = np.repeat(points, 50, axis=0)
     every[:, 0] = np.tile(grid, 40)
-    rows, phi = form.feasible_rows(every, np.repeat(combinations[:, 0], 50))
+    rows, phi = form.points.feasible_rows(every, np.repeat(combinations[:, 0], 50))
     good = rows[np.all(phi[rows, :2] <= np.repeat(caps, 50, axis=0)[rows] + TIE, axis=1)]
     assert len(good)
     assert keep.ravel()[good].all()

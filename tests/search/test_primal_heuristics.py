@@ -34,9 +34,9 @@ def seeker(form, slack=1e-3):
 def first_design(form, combination, rng):
     """Archive one feasible design of a combination, as it comes."""
     points = form.lower + rng.random((4000, form.n)) * (form.upper - form.lower)
-    rows, phi = form.feasible_rows(form.makeable(points), np.full(len(points), combination))
+    rows, phi = form.points.feasible_rows(form.points.makeable(points), np.full(len(points), combination))
     worst = rows[int(np.argmax(phi[rows, 0]))]
-    form.archive.add(np.array([combination]), form.makeable(points[worst][None, :]), phi[worst][None, :])
+    form.archive.add(np.array([combination]), form.points.makeable(points[worst][None, :]), phi[worst][None, :])
 
 
 @pytest.mark.parametrize("grid", [False, True])
@@ -45,7 +45,7 @@ def test_exchanging_parts_finds_what_solving_everything_finds(grid):
     everything = np.arange(form.instance.combinations.count)
     points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
     own = rng.choice(everything, len(points))
-    rows, phi = form.feasible_rows(form.makeable(points), own)
+    rows, phi = form.points.feasible_rows(form.points.makeable(points), own)
     first_design(form, int(own[rows[int(np.argmax(phi[rows, 0]))]]), rng)
     before = form.archive.phi[0, 0]
     seeker(form).beside(Clock())
@@ -57,19 +57,19 @@ def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
     form, rng = strut_form(), np.random.default_rng(4)
     points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
     own = rng.choice(form.instance.combinations.count, len(points))
-    rows, phi = form.feasible_rows(points, own)
+    rows, phi = form.points.feasible_rows(points, own)
     first_design(form, int(own[rows[0]]), rng)
     seeker(form).beside(Clock())
     archive = form.archive
     assert len(archive) > 10
-    assert len(form.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
+    assert len(form.points.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
     assert np.all(archive.phi[:, :2].min(axis=0) <= phi[rows, :2].min(axis=0) + 1e-9)
 
 
 def test_nothing_is_looked_for_where_nothing_is_known():
     form = strut_form()
     seeker(form).beside(Clock())
-    assert form.nlp_solves == 0
+    assert form.counters.nlp_solves == 0
 
 
 def test_corners_lie_below_two_neighbours_where_the_steps_are_widest():
@@ -117,7 +117,7 @@ def test_what_is_important_is_learned_most():
 def test_limits_that_exclude_each_other_teach_what_to_split():
     form = strut_form()
     assert not len(form.archive)
-    boxes = form.root()
+    boxes = form.boxes.root()
     seeker(form).look(boxes)
     assert form.propagation._lessons.sum() > 0
 
@@ -139,13 +139,13 @@ def test_what_no_point_hits_is_solved_for():
     form = Formulation(instance_of(Narrow(), {}, catalogs_for(Narrow(), {})), {"size": "min"}, 1)
     sliver, combination = np.array([0.02, 0.5]), np.zeros(1, dtype=np.int64)
     force, time = 10 + sliver * (3.2**2 - 10), 10**0.5 + sliver * (3.2 - 10**0.5)
-    assert not len(form.feasible_rows(np.stack([[10.0, 10.0], force, time], axis=1), np.zeros(2, dtype=int))[0])
-    tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.goal_scales, 0.0)
-    optimum = form.solve_many(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
+    assert not len(form.points.feasible_rows(np.stack([[10.0, 10.0], force, time], axis=1), np.zeros(2, dtype=int))[0])
+    tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.objectives.scales, 0.0)
+    optimum = form.continuous.solve_many(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
     assert optimum.variables[0, 0] == pytest.approx(100 / 3.2**2, rel=1e-6)
-    assert seeker(form).round_off(form.leaves(combination), optimum.variables, tasks) > 0
+    assert seeker(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks) > 0
     assert form.archive.variables[0, 0] == 10
-    assert len(form.feasible_rows(form.archive.variables, form.archive.combination)[0]) == 1
+    assert len(form.points.feasible_rows(form.archive.variables, form.archive.combination)[0]) == 1
 
 
 class Lidded(synth.DesignProblem):
@@ -165,12 +165,12 @@ def test_boxes_are_split_along_what_matters_at_the_designs_known():
     problem = Lidded()
     form = Formulation(instance_of(problem, {}, catalogs_for(problem, {"rows": rows})), {"mass": "min"}, 1)
     caps = np.array([np.inf])
-    before = form.contract(form.root(), caps)
+    before = form.boxes.contract(form.boxes.root(), caps)
     point, combination = np.array([[1.5]]), np.array([0])
-    feasible, phi = form.feasible_rows(point, combination)
+    feasible, phi = form.points.feasible_rows(point, combination)
     form.archive.add(combination[feasible], point[feasible], phi[feasible])
-    form.focus()
-    after = form.contract(form.root(), caps)
+    form.boxes.focus(form.archive)
+    after = form.boxes.contract(form.boxes.root(), caps)
     assert before.scores[0, 0] > before.scores[0, 1]
     assert after.scores[0, 0] < before.scores[0, 0]
     assert after.scores[0, 1] > before.scores[0, 1]

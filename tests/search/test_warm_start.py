@@ -62,9 +62,9 @@ def test_ideas_are_solved_again_for_the_new_question(designs: list[Design]) -> N
     lightest = min(d.values["mass"] for d in fresh)
     assert np.exp(known.phi[:, 0].min()) == pytest.approx(lightest, rel=0.05)
     # What is put into the archive keeps the limits of this question, not of the one it comes from.
-    result = search.form.evaluate(known.variables, known.combination)
+    result = search.form.points.evaluate(known.variables, known.combination)
     assert result.feasible.all()
-    assert not search.form.evaluate(
+    assert not search.form.points.evaluate(
         np.array([[d.values["width"], d.values["length"]] for d in designs]),
         np.array([heavier.instance.combinations.find(d) for d in designs]),
     ).feasible.all()

@@ -16,6 +16,7 @@ from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.results import ParetoFront
 from synth.search.formulation import Formulation
+from synth.search.refused_cells import not_refused
 from synth.search.sensitivity import held, requirement_positions, sides
 from synth.study_limits import PRICES, PriceLimits
 
@@ -50,7 +51,7 @@ class Resolver:
         chosen = dict(front.frame.objectives)
         self.m = len(chosen)
         self.form = Formulation(instance, with_ties(instance.model, chosen), self.m)
-        self.logs = np.array(self.form.rows().log_cuts, dtype=bool)
+        self.logs = np.array(self.form.continuous.rows.log_cuts, dtype=bool)
         self.fixed = self.form.unmoved(gridded=True)
         self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.cuts])
         self.limit_names = [x.name for x in instance.constraints]
@@ -128,7 +129,7 @@ class Resolver:
 
     def _offered(self, combinations: np.ndarray, known: np.ndarray) -> np.ndarray:
         new = np.setdiff1d(combinations, known)
-        kept: np.ndarray = new[self.form.not_refused(new)]
+        kept: np.ndarray = new[not_refused(self.form.instance, new)]
         return kept
 
     # -- solving -------------------------------------------------------------------------------
@@ -156,12 +157,14 @@ class Resolver:
         if form.n:
             low, high = self._ends(moves)
             possible = np.all(low <= high, axis=1)
-            found = form.solve_many(tasks, combinations, start, np.minimum(low, high), high, self.fixed, data)
+            found = form.continuous.solve_many(
+                tasks, combinations, start, np.minimum(low, high), high, self.fixed, data
+            )
         else:
             nothing = np.zeros((count, 0))
             values = form.model.evaluate(nothing, data).values
             signed = np.stack([g.sign * values[n] for g, n in zip(form.goals, form.names, strict=True)], axis=1)
-            reached = form.phi_of(signed)
+            reached = form.objectives.phi_of(signed)
             over = np.max(np.where(np.isfinite(tasks.caps), reached - tasks.caps, 0.0), axis=1, initial=0.0)
             none = np.zeros((count, len(form.cuts)))
             found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= missed)
@@ -207,7 +210,7 @@ class Resolver:
         for number in np.unique(moves[moves >= 0]):
             move, rows = self.moves[number], moves == number
             if move.kind == "requirement":
-                allowed[rows] = not move.refused and self.form.not_refused(combinations[rows], move.instance)
+                allowed[rows] = not move.refused and not_refused(move.instance, combinations[rows], every=True)
         return allowed
 
     def difference(self, own: int, other: int) -> str:

@@ -21,6 +21,7 @@ import numpy as np
 from synth.analysis.restate import question_of
 from synth.deadline import Stopped, until
 from synth.errors import InputError
+from synth.model.constraint import void_limits
 from synth.nlp.batch import Solutions, Tasks
 from synth.output_folder import claimed
 from synth.question.instance import Instance
@@ -165,7 +166,7 @@ class _Pricing:
             interrupted = "interrupted"
         statistics = {
             "combinations": self.instance.combinations.count,
-            "nlp_solves": self.again.form.nlp_solves,
+            "nlp_solves": self.again.form.counters.nlp_solves,
             "kept": kept,
             "seconds": time.monotonic() - self.started,
         }
@@ -189,7 +190,7 @@ class _Pricing:
         again, form = self.again, self.again.form
         own = self.instance.combinations.number(design)
         point = np.array([[design.values[v.name] for v in self.instance.model.variables]]).reshape(1, form.n)
-        _, phi = form.feasible_rows(point, np.array([own]))
+        _, phi = form.points.feasible_rows(point, np.array([own]))
         others = again.others(own)
         rows: list[Price] = []
         for k in range(again.m):
@@ -212,7 +213,7 @@ class _Case:
         self.base = float(best.phi[0])
         self.others = others
         # phi times this is the share of the objective; nothing where the objective is 0.
-        self.unit = 1.0 if form.log_goals[k] else 1.0 / abs(self.base) if abs(self.base) > NOISE else math.nan
+        self.unit = 1.0 if form.objectives.log[k] else 1.0 / abs(self.base) if abs(self.base) > NOISE else math.nan
         self.compared = ""
         self.already: dict[int, float] = {}
 
@@ -308,9 +309,9 @@ class _Case:
         caps, slopes = np.full(nothing.shape, np.inf), nothing.copy()
         caps[:, : self.again.m] = self.phi[: self.again.m] + form.tuning.tolerances.tie
         caps[:, self.k] = self.base + reach
-        slopes[:, : self.again.m] = np.where(form.log_goals, 1.0, np.abs(self.phi))[: self.again.m]
-        tasks = Tasks(nothing, slopes, caps, form.goal_scales, elastic=1.0)
-        return form.solve_many(tasks, combinations, start, skipped=self.again.fixed)
+        slopes[:, : self.again.m] = np.where(form.objectives.log, 1.0, np.abs(self.phi))[: self.again.m]
+        tasks = Tasks(nothing, slopes, caps, form.objectives.scales, elastic=1.0)
+        return form.continuous.solve_many(tasks, combinations, start, skipped=self.again.fixed)
 
     # -- prices --------------------------------------------------------------------------------
 
@@ -322,7 +323,7 @@ class _Case:
     def _jump(self, reached: float, number: int) -> float:
         """Return the whole change over the step, per cent per per cent: with other parts there is no slope."""
         worse = (reached - self.base) * self.unit
-        share = math.expm1(worse) if self.again.form.log_goals[self.k] else worse
+        share = math.expm1(worse) if self.again.form.objectives.log[self.k] else worse
         return float(self.goal.sign * share / (self.again.moves[number].factor - 1.0))
 
     def _slope(self, move: Move) -> float:
@@ -385,7 +386,11 @@ class _Case:
         if move.kind == "range":
             limit = self.again.ranges[move.position][1].bound
             return "" if limit else f"the limit {move.name} is 0: there is no per cent of it"
-        void = bool(self.again.form.void(self.again.instance.data(np.array([self.own])), 1)[0, move.position])
+        void = bool(
+            void_limits(self.again.form.constraints, self.again.instance.data(np.array([self.own])), 1)[
+                0, move.position
+            ]
+        )
         if void or math.isfinite(float(self.best.limits[0, move.position])):
             return ""
         return f"the limit {move.name} is 0 here: there is no per cent of it"

@@ -517,7 +517,7 @@ def test_objectives_are_surely_positive_so_that_the_gap_is_relative(torque, more
     given = {"required_torque": torque, "bore_diameter": "4 mm", **more}
     instance = instance_of(synth.load("wrap_spring"), given, as_catalogs(None))
     goals = ("mass", "drag_torque", "stress_utilisation", "pressure_utilisation", "outer_diameter")
-    assert Formulation(instance, dict.fromkeys(goals, "min"), 2).log_goals.all()
+    assert Formulation(instance, dict.fromkeys(goals, "min"), 2).objectives.log.all()
 
 
 # -- curves ----------------------------------------------------------------------------------------

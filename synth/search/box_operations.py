@@ -1,0 +1,321 @@
+"""What a search does with boxes, thousands at a time: tighten, snap to grids, split, and take points from them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from synth import deadline
+from synth.bounds.compiled_subtrees import CapTables
+from synth.bounds.propagation import Propagation
+from synth.margins import above, below
+from synth.search.archive import Archive
+from synth.search.boxes import Boxes, Subtrees
+from synth.search.counters import SearchCounters
+from synth.search.log_objectives import LogObjectives
+from synth.search.refused_cells import RefusedCells, not_refused
+from synth.tuning import TUNING, Tuning
+
+
+class BoxOperations:
+    """Operations on the boxes of a question.
+
+    A box may carry more than the variables: auxiliary variables, which come after them.
+
+    Parameters
+    ----------
+    propagation : Propagation
+        Bounds of the question, and the clusters of its combinations.
+    objectives : LogObjectives
+    bounded : int
+        How many objectives, from the first, are bounded in every box.
+    counters : SearchCounters
+        Counts the boxes that are tightened.
+    workers : int
+        Threads.
+    tuning : Tuning
+    """
+
+    def __init__(
+        self,
+        propagation: Propagation,
+        objectives: LogObjectives,
+        bounded: int,
+        counters: SearchCounters,
+        workers: int = 1,
+        tuning: Tuning = TUNING,
+    ) -> None:
+        self.propagation, self.objectives, self.bounded = propagation, objectives, bounded
+        self.counters, self.workers, self.tuning = counters, workers, tuning
+        self.instance = instance = propagation.instance
+        self.n, self.goals = len(instance.model.variables), len(propagation.goals)
+        self.cells, self.width = propagation.cells, propagation.width
+        self.refused_cells = RefusedCells(instance, self.cells)
+        self.grids = instance.grids()
+        auxiliary = np.zeros(self.width - self.n)
+        self._gridded = np.concatenate([[len(g) > 0 for g in self.grids], auxiliary]).astype(bool)
+        self._span = np.concatenate([instance.upper - instance.lower, auxiliary])
+        self._focused: np.ndarray | None = None
+
+    # -- boxes of some combinations ----------------------------------------------------------------
+
+    def root(self, passes: int = 3) -> Boxes:
+        """Return the box of everything, tightened; no box where nothing is feasible."""
+        boxes = self._boxes(self.cells.whole())
+        if self.propagation.empty or not self.instance.combinations.count:
+            return boxes.take(np.zeros(0, dtype=np.int64))
+        if self.propagation.compiled_at_once:
+            # The code that all other boxes are tightened with: caps of infinity say nothing.
+            return self.contract(boxes, np.full(self.goals, np.inf), passes)
+        return self.contract(boxes, None, passes, every_goal=True)
+
+    def nothing(self) -> Boxes:
+        """Return no boxes."""
+        return self._boxes(self.cells.whole()).take(slice(0, 0))
+
+    def leaves(self, combinations: np.ndarray, low: np.ndarray | None = None, high: np.ndarray | None = None) -> Boxes:
+        """Return a box per combination, over the whole range of the variables unless ends are given."""
+        boxes = self._boxes(self.cell_of(combinations))
+        return boxes if low is None or high is None else replace(boxes, low=low, high=high)
+
+    def whole(self, combination: int) -> Boxes:
+        """Return the box of one combination over the whole range of the variables."""
+        digits = [int(x[0]) for x in self.instance.combinations.digits(np.array([combination]))]
+        return self._boxes(self.cells.leaf_of(digits))
+
+    def lean(self, boxes: Boxes) -> Boxes:
+        """Return boxes with the bounds of the first objectives alone, which are all that most searches need."""
+        return replace(boxes, bounds=np.ascontiguousarray(boxes.bounds[:, : self.bounded]))
+
+    def combination(self, boxes: Boxes) -> np.ndarray:
+        """Return a combination of each box; the only one where its cell is single."""
+        return self.cells.combination(boxes.cell)
+
+    def cell_of(self, combinations: np.ndarray) -> np.ndarray:
+        """Return the cell of each combination (combinations, factors)."""
+        digits = self.instance.combinations.digits(combinations)
+        leaves = [tree.leaf_of_row[d] for tree, d in zip(self.cells.trees, digits, strict=True)]
+        return np.stack(leaves, axis=1) if leaves else np.zeros((len(combinations), 0), dtype=np.int32)
+
+    def _boxes(self, cell: np.ndarray) -> Boxes:
+        n = len(cell)
+        return Boxes(
+            cell,
+            np.broadcast_to(self.propagation.low, (n, self.width)).copy(),
+            np.broadcast_to(self.propagation.high, (n, self.width)).copy(),
+            np.full((n, self.goals), -np.inf),
+            np.ones((n, self.width + len(self.cells.trees)), dtype=np.float32),
+            np.zeros(n, dtype=np.int32),
+        )
+
+    # -- tightening --------------------------------------------------------------------------------
+
+    def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
+        """Return what survives of the boxes, tightened and snapped to the grid.
+
+        ``caps`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
+        that only settle ties.
+        """
+        if boxes.low.shape[1] < self.width:
+            boxes = self._with_auxiliary(boxes)
+        width = boxes.bounds.shape[1]
+        if every_goal and width < self.goals:
+            unknown = np.full((len(boxes), self.goals - width), -np.inf)
+            boxes = replace(boxes, bounds=np.concatenate([boxes.bounds, unknown], axis=1))
+        at_once = self.tuning.arrays.boxes
+        if len(boxes) <= at_once:
+            return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
+        kept = []
+        for first in range(0, len(boxes), at_once):
+            deadline.check()
+            rows = slice(first, min(first + at_once, len(boxes)))
+            own = caps if caps is None or caps.ndim == 1 else caps[rows]
+            kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
+        return Boxes.joined(kept)
+
+    def grow(self, boxes: Boxes, caps: CapTables, levels: int, passes: int = 2) -> Subtrees | None:
+        """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
+
+        The boxes carry their auxiliary variables and the bounds of the first objectives alone.
+        """
+        found = self.propagation.grown(
+            boxes.cell,
+            boxes.low,
+            boxes.high,
+            boxes.bounds,
+            boxes.tag,
+            caps,
+            passes,
+            levels,
+            self.tuning.tolerances.margins,
+            self.workers,
+        )
+        if found is None:
+            return None
+        self.counters.contracted += found.contracted
+        scores = np.ones((len(found.cell), boxes.scores.shape[1]), dtype=np.float32)
+        both = Boxes(found.cell, found.low, found.high, found.bounds, scores, found.tag)
+        halves, small = both.take(~found.too_small), both.take(found.too_small)
+        return Subtrees(self._without_refused(halves), self._without_refused(small), found.contracted)
+
+    def _with_auxiliary(self, boxes: Boxes) -> Boxes:
+        """Return boxes of variables with all that the auxiliary variables could be."""
+        low, high = (
+            np.concatenate([ends, np.broadcast_to(known[self.n :], (len(boxes), self.width - self.n))], axis=1)
+            for ends, known in ((boxes.low, self.propagation.low), (boxes.high, self.propagation.high))
+        )
+        return replace(boxes, low=low, high=high)
+
+    def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int, every: bool) -> Boxes:
+        self.counters.contracted += len(boxes)
+        values = None if caps is None else self.objectives.values_of(caps)
+        packed = self.propagation.packed(
+            boxes.cell,
+            boxes.low,
+            boxes.high,
+            boxes.bounds,
+            boxes.tag,
+            values,
+            passes,
+            every,
+            self.tuning.tolerances.margins,
+            self.workers,
+        )
+        if packed is not None:
+            return self._without_refused(
+                Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
+            )
+        limits = None if values is None else list(np.moveaxis(values, -1, 0))
+        found = self.propagation.run(boxes.cell, boxes.low, boxes.high, limits, passes, every)
+        low, high = found.low, found.high
+        alive = found.alive & self._snap(low, high)
+        bounds = boxes.bounds.copy()
+        for j, least in enumerate(found.goals):
+            bounds[:, j] = np.fmax(bounds[:, j], least)
+        scores = self.propagation.scores(boxes.cell, low, high, found.open, len(found.goals), values)
+        return self._without_refused(Boxes(boxes.cell, low, high, bounds, scores, boxes.tag).take(alive))
+
+    def _without_refused(self, boxes: Boxes) -> Boxes:
+        """Return the boxes that may hold a combination that no refusal over several slots forbids."""
+        if not self.instance.joint_refusals:
+            return boxes
+        boxes = boxes.take(self.refused_cells.may_be_allowed(boxes.cell))
+        keep = ~self.cells.single(boxes.cell)
+        single = ~keep
+        keep[single] = not_refused(self.instance, self.combination(boxes.take(single)))
+        return boxes.take(keep)
+
+    def _snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
+        alive = np.ones(len(low), dtype=bool)
+        # An active limit loosened by the slack must not cost a grid point or a pinned value.
+        n = self.n
+        np.maximum(low[:, :n], self.instance.lower, out=low[:, :n])
+        np.minimum(high[:, :n], self.instance.upper, out=high[:, :n])
+        margins = self.tuning.tolerances.margins
+        for k, grid in enumerate(self.grids):
+            if len(grid):
+                first = np.searchsorted(grid, below(low[:, k], *margins))
+                last = np.searchsorted(grid, above(high[:, k], *margins), side="right") - 1
+                alive &= first <= last
+                low[:, k] = grid[np.minimum(first, len(grid) - 1)]
+                high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
+        alive &= ~np.any(low > above(high, *margins), axis=1)
+        np.maximum(high, low, out=high)
+        return alive
+
+    # -- splitting ---------------------------------------------------------------------------------
+
+    def focus(self, known: Archive) -> None:
+        """Split boxes from now on where it matters at the designs known."""
+        if not len(known) or known.phi is self._focused:
+            return
+        self._focused = known.phi
+        rows = np.unique(np.linspace(0, len(known) - 1, self.tuning.tree.focus).astype(int))
+        self.propagation.focus(known.variables[rows], known.combination[rows])
+
+    def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
+        """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
+        n, count = self.width, len(boxes)
+        can = np.zeros((count, n + len(self.cells.trees)), dtype=bool)
+        width = self._splittable(boxes.low, boxes.high)
+        can[:, :n] = width > 0
+        for f, tree in enumerate(self.cells.trees):
+            can[:, n + f] = ~tree.leaf[boxes.cell[:, f]]
+        score = np.where(can, boxes.scores, -1.0)
+        factors = len(self.cells.trees)
+        # Where no score tells (nothing depends on the box any more) parts are told apart first, then the widest.
+        flat = ~np.any(score > 1e-9, axis=1)
+        if flat.any():
+            parts = np.full((int(flat.sum()), factors), 1e3)
+            score[flat] = np.where(can[flat], np.concatenate([width[flat], parts], axis=1), -1.0)
+        small = ~np.any(can, axis=1)
+        rest, whole = boxes.take(small), boxes.take(~small)
+        return self._halves(whole, np.argmax(score[~small], axis=1)), rest
+
+    def _halves(self, whole: Boxes, choice: np.ndarray) -> Boxes:
+        """Return both halves of boxes, each split along the variable or factor of this number."""
+        rows, n = np.arange(len(whole)), self.width
+        left_cell, right_cell = whole.cell.copy(), whole.cell.copy()
+        left_high, right_low = whole.high.copy(), whole.low.copy()
+        by_variable = choice < n
+        if by_variable.any():
+            own, variable = rows[by_variable], choice[by_variable]
+            left_end, right_start = self._middle(variable, whole.low[own, variable], whole.high[own, variable])
+            left_high[own, variable], right_low[own, variable] = left_end, right_start
+        for f, tree in enumerate(self.cells.trees):
+            own = rows[choice == n + f]
+            if len(own):
+                clusters = whole.cell[own, f]
+                left_cell[own, f], right_cell[own, f] = tree.left[clusters], tree.right[clusters]
+        return Boxes.joined(
+            [replace(whole, cell=left_cell, high=left_high), replace(whole, cell=right_cell, low=right_low)]
+        )
+
+    def _splittable(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return widths, 0 where a variable cannot be split any more."""
+        size = np.maximum(np.abs(low), np.abs(high))
+        snap = self.tuning.tolerances.snap
+        floor = np.where(self._gridded, snap * size, 1e-7 * np.maximum(size, 1e-9 * self._span))
+        width = self.propagation.widths(low, high)
+        result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
+        return result
+
+    def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return where the lower half of a range of each variable ends and the upper begins: neighbours on a grid."""
+        with np.errstate(all="ignore"):
+            middle = np.where(low > 0, np.sqrt(low * high), 0.5 * (low + high))
+        left, right, margins = middle.copy(), middle.copy(), self.tuning.tolerances.margins
+        for k, grid in enumerate(self.grids):
+            rows = np.flatnonzero(variable == k)
+            if len(grid) and len(rows):
+                first = np.searchsorted(grid, below(low[rows], *margins))
+                last = np.searchsorted(grid, above(high[rows], *margins), side="right") - 1
+                cut = (first + last) // 2
+                left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
+        return left, right
+
+    # -- what boxes hold ---------------------------------------------------------------------------
+
+    def ends(self, boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:
+        """Return the ends of the variables of boxes, without those of auxiliary variables."""
+        return boxes.low[:, : self.n], boxes.high[:, : self.n]
+
+    def inside(self, boxes: Boxes, share: np.ndarray | float) -> np.ndarray:
+        """Return points inside boxes: share 0 is the lower, 1 the upper end; by ratio where positive."""
+        low, high = self.ends(boxes)
+        with np.errstate(all="ignore"):
+            ratio = low * (high / low) ** share
+        points: np.ndarray = np.where(low > 0, ratio, low + share * (high - low))
+        return points
+
+    def extent(self, boxes: Boxes) -> float:
+        """Return how much of everything boxes hold together: combinations times shares of the ranges of variables.
+
+        What is narrower than ``point_share`` of its range counts as that wide, so that one point is not nothing.
+        """
+        ranged = np.flatnonzero(self._span[: self.n] > 0)
+        shares = (boxes.high[:, ranged] - boxes.low[:, ranged]) / self._span[ranged]
+        least = self.tuning.tolerances.point_share
+        return float(self.cells.size(boxes.cell) @ np.maximum(shares, least).prod(axis=1))

@@ -1,0 +1,198 @@
+"""The continuous problems of a question: the variables of a combination under all limits, many solved at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from synth.bounds.propagation import Propagation
+from synth.compiled.compilation import NotCompiled, switched_on
+from synth.model.constraint import Constraint, NodeConstraint, void_limits
+from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
+from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
+from synth.nlp.rows import Rows
+from synth.search.counters import SearchCounters
+from synth.search.execution import Execution
+from synth.tuning import TUNING, Tuning
+
+
+def rows_of_question(propagation: Propagation, log_goals: Sequence[bool]) -> Rows:
+    """Return what a solver knows of the limits and objectives of a question.
+
+    Parameters
+    ----------
+    propagation : Propagation
+        Tells which quantities are surely positive.
+    log_goals : list of bool
+        Which objectives are measured by logarithm.
+    """
+
+    def both_positive(cut: NodeConstraint) -> bool:
+        positive = propagation.surely_positive
+        # Where nothing is feasible nothing proves a sign, and logarithms would not exist.
+        right = cut.bound > 0 if cut.limit is None else positive(cut.limit)
+        return not propagation.empty and positive(cut.value) and right
+
+    cuts = propagation.cuts
+    return Rows(
+        cuts=tuple(replace(c, bound=0.0) for c in cuts),
+        goals=tuple(propagation.goals),
+        log_cuts=tuple(c.sense != "equal" and both_positive(c) for c in cuts),
+        log_goals=tuple(bool(x) for x in log_goals),
+        log_variables=tuple(bool(x > 0) for x in propagation.instance.lower),
+    )
+
+
+def open_kinks(propagation: Propagation, rows: Rows) -> tuple[int, ...]:
+    """Return the decisions of formulas (nodes) that may go either way somewhere in a question."""
+    program = propagation.instance.model.program
+    every = decisions(program, len(rows.log_variables), rows)
+    if propagation.empty:
+        return tuple(every)
+
+    def settled(k: int) -> bool:
+        a, b = (propagation.range_of(x) if x is not None else (0.0, 0.0) for x in sides(program, k))
+        return a[1] < b[0] or b[1] < a[0]
+
+    return tuple(k for k in every if not settled(k))
+
+
+class ContinuousProblems:
+    """Solves the continuous problems of a question.
+
+    Parameters
+    ----------
+    propagation : Propagation
+        Bounds of the question; learns from what is solved where to split boxes.
+    constraints : list of Constraint
+    rows : Rows
+    kinks : tuple of int
+        Decisions of formulas that may go either way.
+    counters : SearchCounters
+        Counts what is solved; much work makes code of its own worth compiling.
+    execution : Execution
+    tuning : Tuning
+    """
+
+    def __init__(
+        self,
+        propagation: Propagation,
+        constraints: Sequence[Constraint],
+        rows: Rows,
+        kinks: tuple[int, ...],
+        counters: SearchCounters,
+        execution: Execution,
+        tuning: Tuning = TUNING,
+    ) -> None:
+        self.propagation, self.instance, self.constraints = propagation, propagation.instance, constraints
+        self.rows, self.kinks, self.counters = rows, kinks, counters
+        self.execution, self.tuning = execution, tuning
+        self.model, self.n = self.instance.model, len(self.instance.model.variables)
+
+    @property
+    def has_edges(self) -> bool:
+        """Tell whether limits or objectives read the larger or smaller of two things that move."""
+        moving, nodes = self.model.program.dependence(range(self.n)), self.model.program.nodes
+        return any(
+            nodes[k].op in (ca.OP_FMAX, ca.OP_FMIN) and all(moving[a] for a in nodes[k].args) for k in self.kinks
+        )
+
+    def batch_nlp(self) -> BatchNlp | KinkedNlp:
+        """Return the NLP of this question for many designs at once; built once per model and set of rows."""
+        try:
+            return self._batch_nlp()
+        except NotCompiled:
+            return self._batch_nlp()  # over arrays: compiled code is switched off now
+
+    def solve_many(
+        self,
+        tasks: Tasks,
+        combinations: np.ndarray,
+        start: np.ndarray,
+        low: np.ndarray | None = None,
+        high: np.ndarray | None = None,
+        skipped: np.ndarray | None = None,
+        data: Sequence[Any] | None = None,
+        rough: bool = False,
+    ) -> Solutions:
+        """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.
+
+        Parameters
+        ----------
+        tasks : Tasks
+            What is to be made small, a row per problem.
+        combinations : array (problems,)
+        start : array (problems, variables)
+        low, high : array (problems, variables), optional
+        skipped : array of bool (limits,) or (problems, limits), optional
+            Limits that are left out.
+        data : list, optional
+            Inputs of the model in place of those of the question.
+        rough : bool
+            Answers may be near optima, where formulas have edges.
+        """
+        count = len(combinations)
+        data = self.instance.data(combinations) if data is None else data
+        self.counters.solved_combinations.update(np.unique(combinations).tolist())
+        self.counters.nlp_solves += count
+        low = np.broadcast_to(self.instance.lower, (count, self.n)) if low is None else low
+        high = np.broadcast_to(self.instance.upper, (count, self.n)) if high is None else high
+        void = void_limits(self.constraints, data, count)
+        void = void if skipped is None else void | skipped
+        start, bounds, workers = np.clip(start, low, high), self.propagation.bounds, self.execution.workers
+
+        def solved() -> Solutions:
+            nlp = self.batch_nlp()
+            before = nlp.evaluations
+            if isinstance(nlp, KinkedNlp):
+                found = nlp.solve(tasks, data, start, low, high, bounds, void, workers, rough)
+            else:
+                found = nlp.solve(tasks, data, start, low, high, bounds, void, workers)
+            self.counters.work += (nlp.evaluations - before) * len(self.model.program.nodes)
+            return found
+
+        try:
+            return solved()
+        except NotCompiled:
+            return solved()  # pieces ask for code of their own; compiled code is switched off now
+
+    def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
+        """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
+        prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
+        self.propagation.learn(prices[found.converged], importance[found.converged])
+
+    def _batch_nlp(self) -> BatchNlp | KinkedNlp:
+        model, rows, kinks, nlp, code = self.model, self.rows, self.kinks, self.tuning.nlp, self._code()
+        # At an optimum on the edge a solver finds no way; a rounded edge leads there, and near to it.
+        edge = nlp.edge if self.has_edges else 0.0
+        first: BatchNlp = model.function(
+            ("batch", rows, code, edge, nlp),
+            lambda: BatchNlp(model.program, self.n, rows, code, edge, settings=nlp),
+        )
+        if not kinks:
+            return first
+        positive = tuple(dict.fromkeys(k for d in kinks for k in sides(model.program, d) if self._positive(k)))
+
+        def made() -> KinkedNlp:
+            pieces = Pieces(model.program, self.n, rows, kinks, positive.__contains__)
+            # Few problems are solved again where the formulas are solved as they stand.
+            return KinkedNlp(first, PiecedNlp(pieces, "general" if code == "own" and not edge else code, nlp))
+
+        kinked: KinkedNlp = model.function(("kinked", rows, code, edge, kinks, positive, nlp), made)
+        return kinked
+
+    def _code(self) -> Code:
+        """Return which code is used: that of the question, if it is worth compiling, or of all, or arrays."""
+        if not switched_on():
+            return "arrays"
+        compiling, execution = self.tuning.compiling, self.execution
+        large = self.instance.combinations.count * execution.alike >= compiling.combinations
+        worthwhile = large or self.counters.work > compiling.work
+        return "own" if execution.compiled and worthwhile else "general"
+
+    def _positive(self, node: int | None) -> bool:
+        return node is not None and not self.propagation.empty and self.propagation.surely_positive(node)

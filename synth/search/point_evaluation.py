@@ -1,0 +1,171 @@
+"""Single designs, many at a time: whether they are feasible, and what their objectives are.
+
+What the search finds feasible keeps limits more closely than feasibility asks for, so that designs do not live off the
+tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.feasibility import TOLERANCE, holds, residual
+from synth.margins import below
+from synth.model.constraint import Constraint, Goal, NodeConstraint, void_limits
+from synth.model.model import Evaluation
+from synth.question.instance import Instance
+from synth.search.archive import Candidate, rows_of
+from synth.search.log_objectives import LogObjectives
+from synth.search.refused_cells import not_refused
+from synth.tuning import TUNING, Tuning
+
+
+class PointEvaluation:
+    """Evaluates designs of a question: combinations with values of the variables.
+
+    Parameters
+    ----------
+    instance : Instance
+    constraints : list of Constraint
+    goals : list of Goal
+    objectives : LogObjectives
+    immovable : array of bool (limits,)
+        Limits that no continuous variable moves: they need no more than the full tolerance, as nothing near to a
+        design keeps them more closely.
+    tuning : Tuning
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        constraints: Sequence[Constraint],
+        goals: Sequence[Goal],
+        objectives: LogObjectives,
+        immovable: np.ndarray,
+        tuning: Tuning = TUNING,
+    ) -> None:
+        self.instance, self.constraints, self.objectives = instance, constraints, objectives
+        self.margins = tuning.tolerances
+        self.n, self.grids = len(instance.model.variables), instance.grids()
+        self._cuts = cuts = [NodeConstraint.of(x) for x in constraints]
+        self._signs = np.array([float(g.sign) for g in goals])
+        kinds = [(c.sense, c.guard) for c in cuts]
+        self._of_kind = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
+        self._scales = np.array([c.scale for c in cuts], dtype=float)
+        self._tolerances = np.where(immovable, TOLERANCE, tuning.tolerances.limit)
+        values = [c.value for c in cuts]
+        bounds = [c.value if c.limit is None else c.limit for c in cuts]
+        nodes, model = (*values, *bounds, *(g.node for g in goals)), instance.model
+        self._sides = model.function(("screen", nodes), lambda: model.program.compile(nodes))
+        self._constant = {len(cuts) + k: c.bound for k, c in enumerate(cuts) if c.limit is None}
+
+    def evaluate(self, variables: np.ndarray, combinations: np.ndarray) -> Evaluation:
+        """Evaluate all that is declared for designs (designs, variables), (designs,)."""
+        return self.instance.evaluate(variables, self.instance.data(np.asarray(combinations)))
+
+    def feasible_rows(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the positions of the feasible points, and phi of all points.
+
+        Parameters
+        ----------
+        variables : array (points, variables)
+        combinations : array (points,)
+
+        Returns
+        -------
+        tuple of array (feasible,), array (points, objectives)
+        """
+        phi, closely = self._judged(variables, combinations, self._tolerances)
+        return np.flatnonzero(closely), phi
+
+    def edge_rows(self, variables: np.ndarray, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the positions of the points that are feasible by the full tolerance alone, and phi of all points.
+
+        Where something that moves continuously enters a limit such a point is of use only if nothing near to it keeps
+        the limit more closely: ``PrimalHeuristics.on_edge``.
+        """
+        phi, held = self._judged(variables, combinations, np.full(len(self._cuts), TOLERANCE))
+        rows = np.flatnonzero(held)
+        closely = np.isin(rows, rows[self.feasible_rows(variables[rows], combinations[rows])[0]])
+        return rows[~closely], phi
+
+    def as_they_are(self, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs with phi of their values: those on the edge count as worse while they are compared."""
+        if not candidates:
+            return []
+        combinations, variables, _ = rows_of(candidates)
+        _, phi = self.feasible_rows(variables.reshape(len(candidates), self.n), combinations)
+        return [replace(c, phi=own) for c, own in zip(candidates, phi, strict=True)]
+
+    def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:
+        """Tell which of many points may be feasible and keep caps of phi; ``feasible_rows`` has the last word.
+
+        What many points have in common is computed once for them, so this costs much less than to look at each.
+
+        Parameters
+        ----------
+        variables, combinations : array per variable, array
+            That broadcast to (designs, points of each).
+        caps : array (designs, objectives)
+            Of the first objectives.
+        """
+        data = self.instance.data(combinations)
+        keep = np.ones(np.broadcast_shapes(combinations.shape, *(x.shape for x in variables)), dtype=bool)
+        most = self.objectives.values_of(caps + 2 * self.margins.tie * np.maximum(np.abs(caps), 1.0))
+        limits = len(self._cuts)
+        with np.errstate(all="ignore"):
+            sides = self._screen([*variables, *data])
+            for k, sign in enumerate(self._signs[: caps.shape[1]]):
+                keep &= sign * sides[2 * limits + k] <= most[:, k, None]
+            for j, cut in enumerate(self._cuts):
+                value, limit = sides[j], sides[limits + j]
+                # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
+                room = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
+                kept = np.True_ if cut.sense == "at_least" else value <= limit + room
+                kept = kept if cut.sense == "at_most" else kept & (value >= limit - room)
+                for k in self.constraints[j].void_without:
+                    kept = kept | np.isnan(np.asarray(data[k], dtype=float))
+                keep &= kept
+        return keep
+
+    def makeable(self, variables: np.ndarray) -> np.ndarray:
+        """Return points (points, variables) with gridded variables moved to the nearest makeable value."""
+        result = variables.copy()
+        for k, grid in enumerate(self.grids):
+            if len(grid):
+                after = np.clip(np.searchsorted(grid, result[:, k]), 1, max(len(grid) - 1, 1))
+                before = np.minimum(after - 1, len(grid) - 1)
+                after = np.minimum(after, len(grid) - 1)
+                nearer = np.abs(grid[after] - result[:, k]) < np.abs(grid[before] - result[:, k])
+                result[:, k] = np.where(nearer, grid[after], grid[before])
+        return result
+
+    def _judged(
+        self, variables: np.ndarray, combinations: np.ndarray, tolerances: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return phi of points, and which of them are feasible with these tolerances of the limits."""
+        count = len(combinations)
+        if not count:
+            return np.empty((0, len(self._signs))), np.empty(0, dtype=bool)
+        data = self.instance.data(np.asarray(combinations))
+        with np.errstate(all="ignore"):
+            raw = self._screen([variables[:, k] for k in range(self.n)] + list(data))
+            sides = np.empty((len(raw), count))
+            for row, x in zip(sides, raw, strict=True):
+                row[:] = x
+            limits = len(self._cuts)
+            phi = self.objectives.phi_of((sides[2 * limits :] * self._signs[:, None]).T)
+            held = void_limits(self.constraints, data, count).T
+            for (sense, guard), rows in self._of_kind.items():
+                r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
+                held[rows] |= holds(r, guard, tolerances[rows, None])
+        feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & not_refused(self.instance, combinations)
+        feasible &= np.all(variables >= below(self.instance.lower, self.margins.pinned), axis=1)
+        return phi, feasible
+
+    def _screen(self, inputs: Sequence[Any]) -> list[Any]:
+        """Return both sides of all limits and the objectives: all that tells whether a point is feasible."""
+        return [self._constant.get(k, x) for k, x in enumerate(self._sides(inputs))]
