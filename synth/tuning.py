@@ -443,6 +443,8 @@ class JointLimits:
         Questions of which a rough picture of the front is made.
     levels : int
         Caps of that picture.
+    numbers : int
+        Combinations of all questions together, as their numbers must fit 64 bits.
     """
 
     turns: tuple[tuple[int, int, int], ...] = (
@@ -457,6 +459,7 @@ class JointLimits:
     front_points: int = 8
     places: int = 8
     levels: int = 12
+    numbers: int = 2**61
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -526,6 +529,26 @@ class BranchingSettings:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CompilingEffort:
+    """How long a compiler may work, and when it is not begun at all.
+
+    Parameters
+    ----------
+    worthwhile : float
+        In s: a time limit shorter than that may be over before anything is compiled. What has such a limit is done
+        without code that is not there yet.
+    most : float
+        In s, after which a compiler is given up.
+    look : float
+        In s, between looks at whether it is done: as long as the end of the time limit may go unnoticed.
+    """
+
+    worthwhile: float = 10.0
+    most: float = 300.0
+    look: float = 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
 class CodeSizes:
     """How much compiled code does at a time.
 
@@ -561,29 +584,15 @@ class CompilingLimits:
     work : float
         Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
     sizes : CodeSizes
+    effort : CompilingEffort
+        For the code of boxes; the solver has its own.
     """
 
     combinations: int = 5000
     boxes: float = 20_000
     work: float = 150_000_000
     sizes: CodeSizes = field(default_factory=CodeSizes)
-
-
-@dataclass(frozen=True, kw_only=True)
-class CompilingEffort:
-    """How long a compiler may work, and when it is not begun at all.
-
-    Parameters
-    ----------
-    worthwhile : float
-        In s: a time limit shorter than that may be over before anything is compiled. What has such a limit is done
-        without code that is not there yet.
-    most : float
-        In s, after which a compiler is given up.
-    """
-
-    worthwhile: float = 10.0
-    most: float = 300.0
+    effort: CompilingEffort = field(default_factory=CompilingEffort)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -600,12 +609,16 @@ class ArraySizes:
         Designs that are compared with all others at a time.
     steps : int
         Boxes that are compared with all steps of a front that is being proven at a time, for three objectives or more.
+    pairs : int
+        Of rows of two slots with a refusal between them, for which is known of all clusters which go together; beyond
+        that the ends of the clusters tell less, and single combinations the rest.
     """
 
     boxes: int = 4096
     capped: int = 512
     compared: int = 256
     steps: int = 1024
+    pairs: int = 4_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -743,6 +756,8 @@ class NlpSettings:
         Share of the lanes below which new problems come in.
     step_cost : int
         Evaluations of code that serves all formulas that take as long as one step over arrays.
+    effort : CompilingEffort
+        For the code of the solver.
     """
 
     method: InteriorPointSettings = field(default_factory=InteriorPointSettings)
@@ -755,6 +770,7 @@ class NlpSettings:
     lanes: int = 2048
     refill: float = 0.75
     step_cost: int = 1000
+    effort: CompilingEffort = field(default_factory=CompilingEffort)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,7 @@ from synth.compiled.compilation import NotCompiled, switched_on
 from synth.compiled.compiler import FLAGS, library
 from synth.model.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
 from synth.special import SpecialFunction
-from synth.tuning import CodeSizes
+from synth.tuning import CodeSizes, CompilingEffort
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
 BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
@@ -373,14 +373,14 @@ def _all_done(work: Sequence[Callable[[], None]], workers: int) -> None:
         thread.join()
 
 
-def compiled(code: Code) -> BoxCode | None:
+def compiled(code: Code, effort: CompilingEffort) -> BoxCode | None:
     """Return the compiled form of generated code; None where it cannot be had."""
     if not switched_on():
         return None
     if code.compiled is None and not code.hopeless:
         text = source(code)
         try:
-            loaded = None if text is None else library("boxes", text, BOX_FLAGS)
+            loaded = None if text is None else library("boxes", text, effort, BOX_FLAGS)
         except NotCompiled:
             return None
         if loaded is not None:

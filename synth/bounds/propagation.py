@@ -508,7 +508,9 @@ class Propagation:
 
     def _compiled_code(self, every: bool, capped: bool, boxes: int) -> BoxCode | None:
         """Return the code for so many boxes more, if they are worth compiling."""
-        return compiled(self._code(every, capped)) if self._to_compile(every, capped, boxes) else None
+        if not self._to_compile(every, capped, boxes):
+            return None
+        return compiled(self._code(every, capped), self.compiling.effort)
 
     def _prepared_for(self, every: bool, margins: tuple[float, float]) -> Prepared:
         if every not in self._prepared:

@@ -22,8 +22,6 @@ from synth import deadline
 from synth.native_switch import native_wanted
 from synth.tuning import CompilingEffort
 
-EFFORT = CompilingEffort()
-TURN = 0.02  # s between looks at the compiler
 PREFIX = "compiling_"  # of the folders it works in, beside what is finished
 
 _other_work: ContextVar[Callable[[Callable[[], bool]], None] | None] = ContextVar("other_work", default=None)
@@ -63,7 +61,7 @@ def switched_on() -> bool:
     return native_wanted() and not _off.get() and _refused.get() is not deadline.current()
 
 
-def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -> None:
+def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str], effort: CompilingEffort) -> None:
     """Compile a C source into a shared library, unless the time limit is too short for that.
 
     It is made beside its final place and moved there at once: another process sees all of it or nothing. Whatever ends
@@ -77,6 +75,7 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
     path : Path
         Of the library.
     flags : list of str
+    effort : CompilingEffort
 
     Raises
     ------
@@ -88,10 +87,10 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
         It is not even begun; compiled code is switched off for all that has this time limit.
     """
     end = deadline.current()
-    if end.given < EFFORT.worthwhile:
+    if end.given < effort.worthwhile:
         _refused.set(end)
         raise NotCompiled
-    _clear_away(path.parent)
+    _clear_away(path.parent, 2 * effort.most)
     folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=path.parent))
     process: subprocess.Popen[bytes] | None = None
     try:
@@ -107,7 +106,7 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
             start_new_session=True,
             env={**os.environ, "TMPDIR": str(folder)},
         )
-        _wait(process)
+        _wait(process, effort)
         if process.returncode != 0:
             raise subprocess.CalledProcessError(process.returncode, command)
         made.replace(path)
@@ -117,7 +116,7 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str]) -
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _wait(process: subprocess.Popen[bytes]) -> None:
+def _wait(process: subprocess.Popen[bytes], effort: CompilingEffort) -> None:
     """Wait for a compiler, and do other work meanwhile, if there is any."""
     begun, work = time.monotonic(), _other_work.get()
     if work is not None:
@@ -128,10 +127,10 @@ def _wait(process: subprocess.Popen[bytes]) -> None:
             _other_work.reset(without)
     while process.poll() is None:
         deadline.check()
-        if time.monotonic() > begun + EFFORT.most:
-            raise subprocess.TimeoutExpired(process.args, EFFORT.most)
+        if time.monotonic() > begun + effort.most:
+            raise subprocess.TimeoutExpired(process.args, effort.most)
         with suppress(subprocess.TimeoutExpired):
-            process.wait(TURN)
+            process.wait(effort.look)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
@@ -142,9 +141,9 @@ def _end(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-def _clear_away(folder: Path) -> None:
-    """Remove what programs that were killed have left behind."""
+def _clear_away(folder: Path, age: float) -> None:
+    """Remove what programs that were killed have left behind: what is older, in s, than any compiler may work."""
     for left in folder.glob(f"{PREFIX}*"):
         with suppress(OSError):
-            if time.time() - left.stat().st_mtime > 2 * EFFORT.most:
+            if time.time() - left.stat().st_mtime > age:
                 shutil.rmtree(left, ignore_errors=True)

@@ -13,11 +13,12 @@ from pathlib import Path
 
 from synth.compiled.compilation import compile_shared, switched_on
 from synth.native_switch import c_compiler
+from synth.tuning import CompilingEffort
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
 
 
-def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
+def library(name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
     """Return a C source as loaded code; None where it cannot be compiled, kept or loaded.
 
     Parameters
@@ -26,6 +27,7 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL |
         Of the kind of code, for the cache folder.
     text : str
         The translation unit.
+    effort : CompilingEffort
     flags : list of str
         For the compiler.
 
@@ -43,7 +45,7 @@ def library(name: str, text: str, flags: Sequence[str] = FLAGS) -> ctypes.CDLL |
     path = folder / f"{name}_{key}.so"
     try:
         if not path.exists():
-            compile_shared(compiler[0], text, path, flags)
+            compile_shared(compiler[0], text, path, flags, effort)
         return ctypes.CDLL(str(path))
     except (OSError, subprocess.SubprocessError):
         return None

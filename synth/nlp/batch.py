@@ -143,7 +143,7 @@ class BatchNlp:
 
     def _solver(self, code: Code) -> InteriorPoint | Solver:
         compiled = {"own": native, "general": general}
-        made = compiled[code](self.functions, self.settings.method) if code != "arrays" else None
+        made = compiled[code](self.functions, self.settings) if code != "arrays" else None
         return made or InteriorPoint(self.functions, self.settings)
 
     @property

@@ -16,7 +16,7 @@ from synth.compiled.compiler import library
 from synth.nlp.interior_point import Ends, Problems
 from synth.nlp.interior_point_c_source import source
 from synth.nlp.row_functions import RowFunctions
-from synth.tuning import InteriorPointSettings
+from synth.tuning import NlpSettings
 
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 INTEGERS = ctypes.POINTER(ctypes.c_longlong)
@@ -86,9 +86,9 @@ class Solver:
         return ends
 
 
-def native(functions: RowFunctions, method: InteriorPointSettings) -> Solver | None:
+def native(functions: RowFunctions, settings: NlpSettings) -> Solver | None:
     """Return the compiled solver; None where code cannot be compiled, kept or loaded."""
     if not switched_on() or functions.n == 0:
         return None
-    loaded = library("nlp", source(functions, method))
+    loaded = library("nlp", source(functions, settings.method), settings.effort)
     return None if loaded is None else Solver(functions, loaded)

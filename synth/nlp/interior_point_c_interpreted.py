@@ -21,7 +21,7 @@ from synth.nlp.interior_point import Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_c import Solver
 from synth.nlp.interior_point_c_source import settings, translation_unit
 from synth.nlp.row_functions import RowFunctions
-from synth.tuning import InteriorPointSettings
+from synth.tuning import InteriorPointSettings, NlpSettings
 
 # Sizes that the code has room for; what is larger is solved without it.
 MOST = {"N": 24, "ROWS": 96, "GOALS": 16, "NONZEROS": 1024, "CURVATURES": 300}
@@ -179,11 +179,11 @@ def fits(functions: RowFunctions) -> bool:
     return functions.n > 0 and all(size <= MOST[name] for name, size in sizes.items())
 
 
-def general(functions: RowFunctions, method: InteriorPointSettings) -> General | None:
+def general(functions: RowFunctions, settings: NlpSettings) -> General | None:
     """Return the solver; None where row functions are too large, or code cannot be compiled, kept or loaded."""
     if not switched_on() or not fits(functions):
         return None
-    loaded = library("nlp", _text(method))
+    loaded = library("nlp", _text(settings.method), settings.effort)
     return None if loaded is None else General(functions, loaded)
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.parametric.joint_question import LARGEST, different, groups_of
+from synth.parametric.joint_question import different, groups_of
 from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
@@ -32,7 +32,7 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
         for k in group:
             sizes.setdefault(questions[k].settings.points, []).append(k)
         # Every level of every question has combinations of its own, which must be numbered.
-        most = LARGEST // (joint.levels * questions[group[0]].instance.combinations.count)
+        most = joint.numbers // (joint.levels * questions[group[0]].instance.combinations.count)
         few = (own for points, own in sizes.items() if 2 <= points <= joint.front_points)
         groups += [own for own in few if len(own) > 1 and max(len(own), joint.places) <= most]
     return groups

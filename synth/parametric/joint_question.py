@@ -24,8 +24,6 @@ from synth.search.pruning import reaches_beyond
 from synth.search.question import Question
 from synth.tuning import TUNING, Tuning
 
-LARGEST = 2**61  # combinations of all questions, whose numbers must fit 64 bits
-
 
 class JointInstance(Instance):
     """Several questions as one: the first digit of a combination tells which.
@@ -270,4 +268,9 @@ def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1
     for k, question in enumerate(questions):
         if len(question.chosen) == objectives:
             groups.setdefault(alike(question), []).append(k)
-    return [g for g in groups.values() if least <= len(g) <= LARGEST // questions[g[0]].instance.combinations.count]
+    return [g for g in groups.values() if least <= len(g) <= _most(questions[g[0]])]
+
+
+def _most(question: Question) -> int:
+    """Return how many questions such as this the numbers of combinations reach for."""
+    return question.tuning.joint.numbers // question.instance.combinations.count

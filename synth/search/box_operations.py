@@ -51,7 +51,7 @@ class BoxOperations:
         self.instance = instance = propagation.instance
         self.n, self.goals = len(instance.model.variables), len(propagation.goals)
         self.cells, self.width = propagation.cells, propagation.width
-        self.refused_cells = RefusedCells(instance, self.cells)
+        self.refused_cells = RefusedCells(instance, self.cells, tuning.arrays.pairs)
         self.grids = instance.grids()
         auxiliary = np.zeros(self.width - self.n)
         self._gridded = np.concatenate([[len(g) > 0 for g in self.grids], auxiliary]).astype(bool)

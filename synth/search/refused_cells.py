@@ -14,7 +14,7 @@ from synth.bounds.intervals import FORWARD, Interval
 from synth.declaration import Refusal
 from synth.model.model import Model
 from synth.model.program import COMPARISONS, Program
-from synth.question.instance import MOST_COMPARED, Instance
+from synth.question.instance import Instance
 
 EXACT = COMPARISONS | {ca.OP_INPUT, ca.OP_CONST}
 
@@ -80,9 +80,11 @@ class RefusedCells:
     instance : Instance
     cells : Cells
         The clusters; rows of a leaf are equal in all that refusals read.
+    most_pairs : int
+        Of rows, for which a table is made.
     """
 
-    def __init__(self, instance: Instance, cells: Cells) -> None:
+    def __init__(self, instance: Instance, cells: Cells, most_pairs: int) -> None:
         self._refused: list[tuple[Program, int]] = []
         self._tables: list[tuple[int, int, np.ndarray]] = []  # two factors, and which clusters of them go together
         self._ends: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}  # by data input: factor, ends per cluster
@@ -96,7 +98,7 @@ class RefusedCells:
             if any(node.op not in EXACT for node in nodes) or min(read, default=0) < 0:
                 continue
             factors = sorted({owner[k] for k in read if owner[k] >= 0})
-            if len(factors) == 2 and np.prod([float(instance.combinations.radix[f]) for f in factors]) <= MOST_COMPARED:
+            if len(factors) == 2 and np.prod([float(instance.combinations.radix[f]) for f in factors]) <= most_pairs:
                 one, two = factors
                 self._tables.append((one, two, _pairs(instance, cells, refusal, factors)))
                 continue

@@ -23,7 +23,7 @@ from synth.nlp import interior_point_c as native
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
 from synth.special import TABLE, recorded
-from synth.tuning import TUNING, CodeSizes
+from synth.tuning import TUNING, CodeSizes, CompilingEffort
 from tests.asking import instance_of
 from tests.tuned import tuned
 
@@ -48,7 +48,7 @@ def loaded(code):
     """Return compiled code."""
     text = native_boxes.source(code)
     assert text is not None
-    library = native.library("test", text, native_boxes.BOX_FLAGS)
+    library = native.library("test", text, CompilingEffort(), native_boxes.BOX_FLAGS)
     assert library is not None
     return native_boxes.BoxCode(library, code.sweeps.limits)
 
@@ -349,7 +349,7 @@ def test_special_functions_agree(name):
             "}",
         ]
     )
-    library = native.library("test", text, native_boxes.BOX_FLAGS)
+    library = native.library("test", text, CompilingEffort(), native_boxes.BOX_FLAGS)
     # Registers are read from places that are multiples of their length.
     memory = np.empty((len(arguments) + 1) * count + 8)
     start = (-memory.ctypes.data // 8) % 8
@@ -423,8 +423,8 @@ def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
     monkeypatch.setattr(native_boxes, "library", lambda *given: asked.append(given))
     case = random_case(5, ARITHMETIC, boxes=8)
     code = case.contractor.code(case.root, False)
-    assert native_boxes.compiled(code) is None
-    assert native_boxes.compiled(code) is None
+    assert native_boxes.compiled(code, CompilingEffort()) is None
+    assert native_boxes.compiled(code, CompilingEffort()) is None
     assert len(asked) == 1
 
 
@@ -444,7 +444,7 @@ def test_it_can_be_switched_off(monkeypatch):
     form = formulation({}, tuning=AT_ONCE)
     assert len(form.boxes.root()) == 1
     assert form.propagation._code(True, False).compiled is None
-    assert native.library("test", "int one(void) { return 1; }") is None
+    assert native.library("test", "int one(void) { return 1; }", CompilingEffort()) is None
 
 
 def test_requirements_do_not_enter_the_source():
@@ -463,5 +463,5 @@ def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
     case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
     assert native_boxes.source(code) is None
-    assert native_boxes.compiled(code) is None
+    assert native_boxes.compiled(code, CompilingEffort()) is None
     assert code.hopeless

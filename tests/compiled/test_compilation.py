@@ -24,10 +24,9 @@ from tests.tuned import synthesize, tuned
 SOURCE = "int one(void) { return 1; }"
 
 
-@pytest.fixture
-def always_worthwhile(monkeypatch):
-    """Let a compiler begin however short the time limit is."""
-    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=0.0))
+USUAL = CompilingEffort()
+ALWAYS = CompilingEffort(worthwhile=0.0)  # however short the time limit is
+NOT_WITHIN_A_YEAR = CompilingEffort(worthwhile=3e7)
 
 
 def slow_compiler(folder: Path, seconds: float) -> str:
@@ -63,7 +62,7 @@ def alive(pid: int) -> bool:
 def test_what_is_compiled_is_moved_to_its_place_at_once(tmp_path):
     place = tmp_path / "cache" / "code.so"
     place.parent.mkdir()
-    compile_shared(slow_compiler(tmp_path, 0.1), SOURCE, place, [])
+    compile_shared(slow_compiler(tmp_path, 0.1), SOURCE, place, [], USUAL)
     assert place.read_text() == "compiled"
     assert list(place.parent.iterdir()) == [place]
 
@@ -76,7 +75,6 @@ def begun(tmp_path: Path) -> int:
     return int(child.read_text())
 
 
-@pytest.mark.usefixtures("always_worthwhile")
 @pytest.mark.parametrize("how", ["time limit", "interrupted"])
 def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
     folder, children = tmp_path / "cache", []
@@ -89,7 +87,7 @@ def test_a_compiler_is_ended_with_all_that_it_has_started(tmp_path, how):
 
     end = time.monotonic() + (0.5 if how == "time limit" else 60.0)
     with meanwhile(work), deadline.until(end), pytest.raises((Stopped, KeyboardInterrupt)):
-        compile_shared(slow_compiler(tmp_path, 600), SOURCE, folder / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 600), SOURCE, folder / "code.so", [], ALWAYS)
     assert children
     assert ended(children[0])
     assert not list(folder.iterdir())
@@ -106,7 +104,7 @@ def test_what_is_done_meanwhile_is_told_when_the_compiler_is_done(tmp_path):
         told.append(ready())
 
     with meanwhile(work):
-        compile_shared(slow_compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [], USUAL)
     assert told == [False, True]
 
 
@@ -115,7 +113,7 @@ def test_what_killed_programs_have_left_is_cleared_away(tmp_path):
     old.mkdir()
     new.mkdir()
     os.utime(old, (0, 0))
-    compile_shared(slow_compiler(tmp_path, 0), SOURCE, tmp_path / "code.so", [])
+    compile_shared(slow_compiler(tmp_path, 0), SOURCE, tmp_path / "code.so", [], USUAL)
     assert not old.exists()
     assert new.exists()
 
@@ -124,18 +122,17 @@ def test_compiled_code_can_be_switched_off_for_a_block(monkeypatch):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     with switched_off():
         assert not switched_on()
-        assert native.library("test", SOURCE) is None
+        assert native.library("test", SOURCE, USUAL) is None
     assert switched_on()
 
 
 # -- beside a search -------------------------------------------------------------------------------
 
 
-AT_ONCE = tuned(compiling={"combinations": 0})  # everything is compiled from the first
-
-
-def ask(problem=None, **more):
-    return synthesize(AT_ONCE, problem or Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
+def ask(problem=None, effort=USUAL, **more):
+    """Return a front; everything is compiled from the first."""
+    numbers = tuned(compiling={"combinations": 0, "effort": effort}, nlp={"effort": effort})
+    return synthesize(numbers, problem or Strut(), NEEDED, catalogs={"rods": RODS}, points=5, **more)
 
 
 @pytest.fixture
@@ -148,10 +145,9 @@ def never_done(tmp_path, monkeypatch):
     return tmp_path / "home" / "clutchsynth"
 
 
-@pytest.mark.usefixtures("always_worthwhile")
 def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_done):
     begin = time.monotonic()
-    front = ask(time_limit=4.0, gap=1e-6)
+    front = ask(effort=ALWAYS, time_limit=4.0, gap=1e-6)
     assert front.designs
     assert all(not d.violated for d in front.designs)
     assert front.certificate.gap is not None
@@ -179,10 +175,9 @@ def test_what_is_proven_while_the_compiler_works_is_an_answer_where_time_is_over
 
 @pytest.fixture
 def wanted(monkeypatch, tmp_path):
-    """Let all time limits of less than a year be too short for compiling, with an empty cache; what is compiled."""
+    """Let the cache be empty, and nothing be compiled; what would have been."""
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(worthwhile=3e7))
     monkeypatch.setattr(compiler, "_compiler", lambda: ("cc", "a compiler"))
     begun = []
 
@@ -195,20 +190,20 @@ def wanted(monkeypatch, tmp_path):
 
 
 def test_under_a_short_time_limit_nothing_is_compiled(wanted, tmp_path):
-    limited = ask(time_limit=1e6)
+    limited = ask(effort=NOT_WITHIN_A_YEAR, time_limit=1e6)
     assert not wanted
     assert not list(tmp_path.rglob("*.so"))
     assert limited.certificate.kind == "global"
     with switched_off():
-        assert limited.files()["designs.csv"] == ask().files()["designs.csv"]
+        assert limited.files()["designs.csv"] == ask(effort=NOT_WITHIN_A_YEAR).files()["designs.csv"]
 
 
 def test_a_short_time_limit_keeps_no_other_question_from_compiling(wanted):
     problem = Strut()
-    ask(problem, time_limit=1e6)
+    ask(problem, NOT_WITHIN_A_YEAR, time_limit=1e6)
     assert switched_on()
     assert not wanted
-    ask(problem, time_limit=6e7)
+    ask(problem, NOT_WITHIN_A_YEAR, time_limit=6e7)
     assert wanted
 
 
@@ -221,7 +216,7 @@ def test_pieces_that_ask_for_code_late_are_solved_without(monkeypatch):
     def late(nlp, *args):
         asked.append(switched_on())
         if asked == [True]:
-            compile_shared("cc", SOURCE, Path("code.so"), [])
+            compile_shared("cc", SOURCE, Path("code.so"), [], USUAL)
         return solved(nlp, *args)
 
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
@@ -276,7 +271,6 @@ def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatc
     assert first == second
 
 
-def test_a_compiler_that_takes_too_long_is_given_up(tmp_path, monkeypatch):
-    monkeypatch.setattr(compilation, "EFFORT", CompilingEffort(most=0.2))
+def test_a_compiler_that_takes_too_long_is_given_up(tmp_path):
     with pytest.raises(subprocess.TimeoutExpired):
-        compile_shared(slow_compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [])
+        compile_shared(slow_compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [], CompilingEffort(most=0.2))

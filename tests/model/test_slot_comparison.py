@@ -9,9 +9,8 @@ import pytest
 
 import synth
 from synth.question.catalogs import catalogs_for
-from synth.search import refused_cells
 from synth.search.formulation import Formulation
-from synth.search.refused_cells import not_refused
+from synth.search.refused_cells import RefusedCells, not_refused
 from synth.tables.conditions import parse_condition
 from tests.asking import instance_of
 
@@ -141,7 +140,7 @@ def test_a_front_that_broke_the_comparison_does_not_hold(tmp_path):
     assert any("refused, parts: one" in f or "is not a row" in f for f in checked.findings), checked.findings
 
 
-def test_boxes_of_clusters_are_given_up_before_single_rows(monkeypatch):
+def test_boxes_of_clusters_are_given_up_before_single_rows():
     """Of 24 x 24 pairs with a rule that few meet, clusters without any are left out as a whole, and no other."""
     text = "designation == two.designation"
     instance = instance_of(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
@@ -153,8 +152,7 @@ def test_boxes_of_clusters_are_given_up_before_single_rows(monkeypatch):
     rows = [[set(slot.rows[tree.rows(k)].tolist()) for k in range(len(tree))] for slot, tree in slots]
     holds = np.array([bool(rows[0][a] & rows[1][b]) for a, b, _ in cells])
     np.testing.assert_array_equal(may, holds)  # small enough for a table of all pairs
-    monkeypatch.setattr(refused_cells, "MOST_COMPARED", 0)
-    may = refused_cells.RefusedCells(instance, form.boxes.cells).may_be_allowed(cells)
+    may = RefusedCells(instance, form.boxes.cells, 0).may_be_allowed(cells)
     assert np.all(may | ~holds)  # nothing that may hold is lost
     assert (~may).sum() > 0.4 * (~holds).sum()
     singles = form.boxes.cells.single(np.column_stack([cells[:, :2], np.full(len(cells), trees[2].leaf_of_row[0])]))

@@ -586,7 +586,7 @@ def small_functions() -> Any:
 def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     functions = small_functions()
-    assert native.native(functions, TUNING.nlp.method) is not None
+    assert native.native(functions, TUNING.nlp) is not None
     (kept,) = (tmp_path / "clutchsynth").iterdir()
     assert kept.suffix == ".so"
     written = kept.stat().st_mtime_ns
@@ -595,7 +595,7 @@ def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
         raise AssertionError("compiled again")
 
     monkeypatch.setattr(subprocess, "run", fail)
-    assert native.native(functions, TUNING.nlp.method) is not None
+    assert native.native(functions, TUNING.nlp) is not None
     assert kept.stat().st_mtime_ns == written
 
 
@@ -623,9 +623,9 @@ def test_what_is_too_large_for_general_code_is_solved_over_arrays():
 def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
-    assert native.native(small_functions(), TUNING.nlp.method) is None
+    assert native.native(small_functions(), TUNING.nlp) is None
     assert not list(tmp_path.iterdir())
-    assert native_general.general(small_functions(), TUNING.nlp.method) is None
+    assert native_general.general(small_functions(), TUNING.nlp) is None
     for code in ("general", "own"):
         solver = BatchNlp((s := Small(3, 2, box)).program, 3, s.rows, code)
         assert not solver.compiled
@@ -634,7 +634,7 @@ def test_everything_works_without_compiled_code(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch):
     (tmp_path / "clutchsynth").write_text("a file in the way")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert native.native(small_functions(), TUNING.nlp.method) is None
+    assert native.native(small_functions(), TUNING.nlp) is None
 
 
 def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
@@ -643,5 +643,5 @@ def test_a_compiler_that_fails_is_no_error(tmp_path, monkeypatch):
     broken.chmod(0o755)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(compiler, "_compiler", lambda: (str(broken), "broken"))
-    assert native.native(small_functions(), TUNING.nlp.method) is None
+    assert native.native(small_functions(), TUNING.nlp) is None
     assert not list((tmp_path / "clutchsynth").iterdir())

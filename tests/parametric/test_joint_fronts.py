@@ -12,7 +12,6 @@ import pytest
 import synth
 from synth.deadline import Stopped
 from synth.feasibility import Status
-from synth.parametric import joint_fronts as together_fronts
 from synth.parametric.joint_fronts import JointFrontSearch, joint_answers, joint_groups
 from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
@@ -22,6 +21,7 @@ from synth.tuning import TUNING
 from tests.asking import pose
 from tests.sample_problems.ropes import Ropes, ropes
 from tests.sample_problems.strut import RODS, Strut
+from tests.tuned import tuned
 
 GAP = 1e-3
 BOTH = ("mass", "flexibility")
@@ -206,13 +206,11 @@ def test_few_designs_of_two_objectives_are_searched_together() -> None:
     assert groups(*struts(3, 10), *struts(3, 20, gap=0.01)) == []
 
 
-def test_there_are_numbers_for_every_level_of_every_question(monkeypatch: pytest.MonkeyPatch) -> None:
-    questions = struts(3, 10, 20)
-    numbers = TUNING.joint.places * TUNING.joint.levels * questions[0].instance.combinations.count
-    monkeypatch.setattr(together_fronts, "LARGEST", numbers)
-    assert joint_groups(questions) == [[0, 1]]
-    monkeypatch.setattr(together_fronts, "LARGEST", numbers - 1)
-    assert joint_groups(questions) == []
+def test_there_are_numbers_for_every_level_of_every_question() -> None:
+    combinations = struts(3, 10, 20)[0].instance.combinations.count
+    numbers = TUNING.joint.places * TUNING.joint.levels * combinations
+    assert joint_groups(struts(3, 10, 20, tuning=tuned(joint={"numbers": numbers}))) == [[0, 1]]
+    assert joint_groups(struts(3, 10, 20, tuning=tuned(joint={"numbers": numbers - 1}))) == []
 
 
 def test_answers_are_those_of_the_kind_of_question() -> None:
