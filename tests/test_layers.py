@@ -113,6 +113,20 @@ def test_imports_point_one_way() -> None:
     assert wrong == set()
 
 
+SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "question_bounds", "propagation"}
+STEERING = {"influences", "branching"}
+BOTH = {"compiled_rules", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
+OF_FORMULAS = {"structure", "curvature", "elementary"}  # what kind of function a formula is: not of the search
+
+
+def test_what_proves_does_not_know_what_steers() -> None:
+    own = {module for module in modules() if module.startswith("synth.bounds.")}
+    assert {module.removeprefix("synth.bounds.") for module in own} == SOUND | STEERING | BOTH | OF_FORMULAS
+    for name in SOUND:
+        read = imports(modules()[f"synth.bounds.{name}"].read_text(), own)
+        assert read <= {f"synth.bounds.{other}" for other in SOUND}, f"{name} imports what steers"
+
+
 def test_no_class_name_stands_for_two_things() -> None:
     homes: dict[str, list[str]] = {}
     for module, path in modules().items():

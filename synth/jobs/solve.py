@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 
 if TYPE_CHECKING:
-    from synth.bounds.propagation import Lessons
+    from synth.bounds.branching import BranchingStatistics
     from synth.model.problem import DesignProblem
     from synth.results import Design, ParetoFront
     from synth.search.question import Question
@@ -85,7 +85,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     """
     begin = time.monotonic()
     known: Sequence[Design] = ()
-    lessons: Lessons | None = None
+    lessons: BranchingStatistics | None = None
     if LIKE in question:
         known, lessons = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
     try:
@@ -113,7 +113,7 @@ def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 
 
 @lru_cache(maxsize=8)
-def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], Lessons | None]:
+def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], BranchingStatistics | None]:
     """Return what the search for a similar question has found and learned; nothing where it fails."""
     try:
         front, lessons = _posed(json.loads(question), json.loads(settings), shared).experience()

@@ -253,7 +253,7 @@ class JointSearch:
         form = self._prepared(conflict=True)
         form.counters.work = self.form.counters.work
         form.counters.solved_combinations = self.form.counters.solved_combinations
-        form.propagation.taught_by(self.form.propagation.lessons())
+        form.bounding.branching.adopt(self.form.bounding.branching.statistics())
         form.archive = known = self._none_known()
         return _Attempt(self, form, known, form.boxes.root())
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from synth import deadline
+from synth.bounds.bounding import Bounding
 from synth.bounds.compiled_subtrees import CapTables
-from synth.bounds.propagation import Propagation
 from synth.margins import above, below
 from synth.search.archive import Archive
 from synth.search.boxes import Boxes, Subtrees
@@ -25,8 +25,8 @@ class BoxOperations:
 
     Parameters
     ----------
-    propagation : Propagation
-        Bounds of the question, and the clusters of its combinations.
+    bounding : Bounding
+        Bounds of the question and its boxes, and where to split them.
     objectives : LogObjectives
     bounded : int
         How many objectives, from the first, are bounded in every box.
@@ -39,18 +39,19 @@ class BoxOperations:
 
     def __init__(
         self,
-        propagation: Propagation,
+        bounding: Bounding,
         objectives: LogObjectives,
         bounded: int,
         counters: SearchCounters,
         workers: int = 1,
         tuning: Tuning = TUNING,
     ) -> None:
-        self.propagation, self.objectives, self.bounded = propagation, objectives, bounded
+        self.bounding, self.objectives, self.bounded = bounding, objectives, bounded
         self.counters, self.workers, self.tuning = counters, workers, tuning
-        self.instance = instance = propagation.instance
-        self.n, self.goals = len(instance.model.variables), len(propagation.goals)
-        self.cells, self.width = propagation.cells, propagation.width
+        question = bounding.question
+        self.instance = instance = question.instance
+        self.n, self.goals = len(instance.model.variables), len(question.goals)
+        self.cells, self.width = bounding.propagation.cells, question.width
         self.refused_cells = RefusedCells(instance, self.cells, tuning.arrays.pairs)
         self.grids = instance.grids()
         auxiliary = np.zeros(self.width - self.n)
@@ -63,9 +64,9 @@ class BoxOperations:
     def root(self, passes: int = 3) -> Boxes:
         """Return the box of everything, tightened; no box where nothing is feasible."""
         boxes = self._boxes(self.cells.whole())
-        if self.propagation.empty or not self.instance.combinations.count:
+        if self.bounding.question.root.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
-        if self.propagation.compiled_at_once:
+        if self.bounding.compiled.at_once:
             # The code that all other boxes are tightened with: caps of infinity say nothing.
             return self.contract(boxes, np.full(self.goals, np.inf), passes)
         return self.contract(boxes, None, passes, every_goal=True)
@@ -102,8 +103,8 @@ class BoxOperations:
         n = len(cell)
         return Boxes(
             cell,
-            np.broadcast_to(self.propagation.low, (n, self.width)).copy(),
-            np.broadcast_to(self.propagation.high, (n, self.width)).copy(),
+            np.broadcast_to(self.bounding.question.low, (n, self.width)).copy(),
+            np.broadcast_to(self.bounding.question.high, (n, self.width)).copy(),
             np.full((n, self.goals), -np.inf),
             np.ones((n, self.width + len(self.cells.trees)), dtype=np.float32),
             np.zeros(n, dtype=np.int32),
@@ -139,7 +140,7 @@ class BoxOperations:
 
         The boxes carry their auxiliary variables and the bounds of the first objectives alone.
         """
-        found = self.propagation.grown(
+        found = self.bounding.compiled.grown(
             boxes.cell,
             boxes.low,
             boxes.high,
@@ -148,7 +149,6 @@ class BoxOperations:
             caps,
             passes,
             levels,
-            self.tuning.tolerances.margins,
             self.workers,
         )
         if found is None:
@@ -163,14 +163,14 @@ class BoxOperations:
         """Return boxes of variables with all that the auxiliary variables could be."""
         low, high = (
             np.concatenate([ends, np.broadcast_to(known[self.n :], (len(boxes), self.width - self.n))], axis=1)
-            for ends, known in ((boxes.low, self.propagation.low), (boxes.high, self.propagation.high))
+            for ends, known in ((boxes.low, self.bounding.question.low), (boxes.high, self.bounding.question.high))
         )
         return replace(boxes, low=low, high=high)
 
     def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int, every: bool) -> Boxes:
         self.counters.contracted += len(boxes)
         values = None if caps is None else self.objectives.values_of(caps)
-        packed = self.propagation.packed(
+        packed = self.bounding.compiled.packed(
             boxes.cell,
             boxes.low,
             boxes.high,
@@ -179,7 +179,6 @@ class BoxOperations:
             values,
             passes,
             every,
-            self.tuning.tolerances.margins,
             self.workers,
         )
         if packed is not None:
@@ -187,13 +186,13 @@ class BoxOperations:
                 Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
             )
         limits = None if values is None else list(np.moveaxis(values, -1, 0))
-        found = self.propagation.run(boxes.cell, boxes.low, boxes.high, limits, passes, every)
+        found = self.bounding.propagation.run(boxes.cell, boxes.low, boxes.high, limits, passes, every)
         low, high = found.low, found.high
         alive = found.alive & self._snap(low, high)
         bounds = boxes.bounds.copy()
         for j, least in enumerate(found.goals):
             bounds[:, j] = np.fmax(bounds[:, j], least)
-        scores = self.propagation.scores(boxes.cell, low, high, found.open, len(found.goals), values)
+        scores = self.bounding.branching.scores(boxes.cell, low, high, found.undecided, len(found.goals), values)
         return self._without_refused(Boxes(boxes.cell, low, high, bounds, scores, boxes.tag).take(alive))
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
@@ -233,7 +232,7 @@ class BoxOperations:
             return
         self._focused = known.phi
         rows = np.unique(np.linspace(0, len(known) - 1, self.tuning.tree.focus).astype(int))
-        self.propagation.focus(known.variables[rows], known.combination[rows])
+        self.bounding.branching.focus(known.variables[rows], known.combination[rows])
 
     def split(self, boxes: Boxes) -> tuple[Boxes, Boxes]:
         """Return the halves of all boxes that can be split, and the boxes that are too small to be split."""
@@ -278,7 +277,7 @@ class BoxOperations:
         size = np.maximum(np.abs(low), np.abs(high))
         snap = self.tuning.tolerances.snap
         floor = np.where(self._gridded, snap * size, 1e-7 * np.maximum(size, 1e-9 * self._span))
-        width = self.propagation.widths(low, high)
+        width = self.bounding.branching.widths(low, high)
         result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
         return result
 

@@ -9,7 +9,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from synth.bounds.propagation import Propagation
+from synth.bounds.branching import BranchingWeights
+from synth.bounds.question_bounds import QuestionBounds
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
@@ -20,42 +21,42 @@ from synth.search.execution import Execution
 from synth.tuning import TUNING, Tuning
 
 
-def rows_of_question(propagation: Propagation, log_goals: Sequence[bool]) -> Rows:
+def rows_of_question(question: QuestionBounds, log_goals: Sequence[bool]) -> Rows:
     """Return what a solver knows of the limits and objectives of a question.
 
     Parameters
     ----------
-    propagation : Propagation
+    question : QuestionBounds
         Tells which quantities are surely positive.
     log_goals : list of bool
         Which objectives are measured by logarithm.
     """
 
     def both_positive(cut: NodeConstraint) -> bool:
-        positive = propagation.surely_positive
+        positive = question.surely_positive
         # Where nothing is feasible nothing proves a sign, and logarithms would not exist.
         right = cut.bound > 0 if cut.limit is None else positive(cut.limit)
-        return not propagation.empty and positive(cut.value) and right
+        return not question.root.empty and positive(cut.value) and right
 
-    cuts = propagation.cuts
+    cuts = question.cuts
     return Rows(
         cuts=tuple(replace(c, bound=0.0) for c in cuts),
-        goals=tuple(propagation.goals),
+        goals=tuple(question.goals),
         log_cuts=tuple(c.sense != "equal" and both_positive(c) for c in cuts),
         log_goals=tuple(bool(x) for x in log_goals),
-        log_variables=tuple(bool(x > 0) for x in propagation.instance.lower),
+        log_variables=tuple(bool(x > 0) for x in question.instance.lower),
     )
 
 
-def open_kinks(propagation: Propagation, rows: Rows) -> tuple[int, ...]:
+def open_kinks(question: QuestionBounds, rows: Rows) -> tuple[int, ...]:
     """Return the decisions of formulas (nodes) that may go either way somewhere in a question."""
-    program = propagation.instance.model.program
+    program = question.instance.model.program
     every = decisions(program, len(rows.log_variables), rows)
-    if propagation.empty:
+    if question.root.empty:
         return tuple(every)
 
     def settled(k: int) -> bool:
-        a, b = (propagation.range_of(x) if x is not None else (0.0, 0.0) for x in sides(program, k))
+        a, b = (question.range_of(x) if x is not None else (0.0, 0.0) for x in sides(program, k))
         return a[1] < b[0] or b[1] < a[0]
 
     return tuple(k for k in every if not settled(k))
@@ -66,8 +67,9 @@ class ContinuousProblems:
 
     Parameters
     ----------
-    propagation : Propagation
-        Bounds of the question; learns from what is solved where to split boxes.
+    question : QuestionBounds
+    branching : BranchingWeights
+        Learns from what is solved where to split boxes.
     constraints : list of Constraint
     rows : Rows
     kinks : tuple of int
@@ -80,7 +82,8 @@ class ContinuousProblems:
 
     def __init__(
         self,
-        propagation: Propagation,
+        question: QuestionBounds,
+        branching: BranchingWeights,
         constraints: Sequence[Constraint],
         rows: Rows,
         kinks: tuple[int, ...],
@@ -88,7 +91,8 @@ class ContinuousProblems:
         execution: Execution,
         tuning: Tuning = TUNING,
     ) -> None:
-        self.propagation, self.instance, self.constraints = propagation, propagation.instance, constraints
+        self.question, self.branching = question, branching
+        self.instance, self.constraints = question.instance, constraints
         self.rows, self.kinks, self.counters = rows, kinks, counters
         self.execution, self.tuning = execution, tuning
         self.model, self.n = self.instance.model, len(self.instance.model.variables)
@@ -143,7 +147,7 @@ class ContinuousProblems:
         high = np.broadcast_to(self.instance.upper, (count, self.n)) if high is None else high
         void = void_limits(self.constraints, data, count)
         void = void if skipped is None else void | skipped
-        start, bounds, workers = np.clip(start, low, high), self.propagation.bounds, self.execution.workers
+        start, bounds, workers = np.clip(start, low, high), self.question.right_sides, self.execution.workers
 
         def solved() -> Solutions:
             nlp = self.batch_nlp()
@@ -163,7 +167,7 @@ class ContinuousProblems:
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
         prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
-        self.propagation.learn(prices[found.converged], importance[found.converged])
+        self.branching.learn(prices[found.converged], importance[found.converged])
 
     def _batch_nlp(self) -> BatchNlp | KinkedNlp:
         model, rows, kinks, nlp, code = self.model, self.rows, self.kinks, self.tuning.nlp, self._code()
@@ -195,4 +199,4 @@ class ContinuousProblems:
         return "own" if execution.compiled and worthwhile else "general"
 
     def _positive(self, node: int | None) -> bool:
-        return node is not None and not self.propagation.empty and self.propagation.surely_positive(node)
+        return node is not None and not self.question.root.empty and self.question.surely_positive(node)

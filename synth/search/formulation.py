@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth.bounds.propagation import Propagation
+from synth.bounds.bounding import Bounding
+from synth.bounds.question_bounds import QuestionBounds
 from synth.model.constraint import Goal, NodeConstraint
 from synth.question.instance import Instance
 from synth.search.archive import Archive
@@ -71,13 +72,12 @@ class Formulation:
         self.infeasibility = infeasibility
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
-        self.propagation = Propagation(
-            instance, self.cuts, self.goals, self.bounded, infeasibility, execution.compiled, execution.alike, tuning
-        )
+        question = QuestionBounds(instance, self.cuts, self.goals, self.bounded, infeasibility, tuning.branching)
+        self.bounding = Bounding(question, execution.compiled, execution.alike, tuning)
         self.objectives = self._log_objectives()
         self._immovable = self.unmoved(gridded=False)
-        self._rows = rows_of_question(self.propagation, self.objectives.log.tolist())
-        self._kinks = open_kinks(self.propagation, self._rows)
+        self._rows = rows_of_question(question, self.objectives.log.tolist())
+        self._kinks = open_kinks(question, self._rows)
         self._begin(SearchCounters() if counters is None else counters)
 
     def among(self, instance: Instance, workers: int = 1) -> Formulation | None:
@@ -86,20 +86,20 @@ class Formulation:
         Parameters
         ----------
         instance : Instance
-            As for :meth:`Propagation.among`.
+            As for :meth:`QuestionBounds.among`.
         workers : int
             Threads.
 
         Returns
         -------
         Formulation, optional
-            That knows no design yet; None as for :meth:`Propagation.among`.
+            That knows no design yet; None as for :meth:`QuestionBounds.among`.
         """
-        propagation = self.propagation.among(instance)
-        if propagation is None:
+        bounding = self.bounding.among(instance)
+        if bounding is None:
             return None
         own = copy.copy(self)
-        own.instance, own.propagation, own.execution = instance, propagation, replace(self.execution, workers=workers)
+        own.instance, own.bounding, own.execution = instance, bounding, replace(self.execution, workers=workers)
         own._begin(SearchCounters())
         return own
 
@@ -111,19 +111,20 @@ class Formulation:
         # By combination and makeable values, where the full tolerance was needed: whether something does without it.
         self.kept_closely: dict[tuple[int, bytes], bool] = {}
         self.boxes = BoxOperations(
-            self.propagation, self.objectives, self.bounded, counters, self.execution.workers, self.tuning
+            self.bounding, self.objectives, self.bounded, counters, self.execution.workers, self.tuning
         )
         self.points = PointEvaluation(
             self.instance, self.constraints, self.goals, self.objectives, self._immovable, self.tuning
         )
+        question, branching = self.bounding.question, self.bounding.branching
         self.continuous = ContinuousProblems(
-            self.propagation, self.constraints, self._rows, self._kinks, counters, self.execution, self.tuning
+            question, branching, self.constraints, self._rows, self._kinks, counters, self.execution, self.tuning
         )
 
     def _log_objectives(self) -> LogObjectives:
-        positive = [g.sign > 0 and self.propagation.surely_positive(g.node) for g in self.goals]
+        positive = [g.sign > 0 and self.bounding.question.surely_positive(g.node) for g in self.goals]
         declared = [declared_resolution(self.model.declaration, name) for name in self.names]
-        return LogObjectives.of(positive, self.propagation.goal_sizes, declared)
+        return LogObjectives.of(positive, self.bounding.goal_sizes, declared)
 
     def unmoved(self, gridded: bool) -> np.ndarray:
         """Return which limits no variable moves: of those that may move at all, or only the continuous ones of them.

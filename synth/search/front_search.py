@@ -12,7 +12,7 @@ import numpy as np
 
 from synth import deadline
 from synth.analysis.designs import make_frame, offered
-from synth.bounds.propagation import Lessons
+from synth.bounds.branching import BranchingStatistics
 from synth.compiled.compilation import meanwhile, switched_off
 from synth.deadline import Stopped
 from synth.feasibility import Status
@@ -69,7 +69,7 @@ class FrontSearch:
         effort: int | None = None,
         known: Sequence[Design] = (),
         alike: int = 1,
-        lessons: Lessons | None = None,
+        lessons: BranchingStatistics | None = None,
         tuning: Tuning = TUNING,
     ) -> None:
         self.tuning, self.limits = tuning, tuning.tree
@@ -122,7 +122,7 @@ class FrontSearch:
         self.given = np.empty((0, self.m))  # phi of the designs of an earlier search
         self.given_gap: float | None = None
         self.given_amounts = np.full(self.m, math.inf)  # in SI: of its claim, where that is no share of the value
-        self.taught = lessons is not None and self.form.propagation.taught_by(lessons)
+        self.taught = lessons is not None and self.form.bounding.branching.adopt(lessons)
 
     def _formulation(self, conflict: bool, counters: SearchCounters | None = None) -> Formulation:
         goals = with_ties(self.instance.model, self.chosen)
@@ -484,7 +484,7 @@ class FrontSearch:
         known, self.in_conflict = self.form, conflict
         self.form = self._formulation(conflict, known.counters)
         if conflict:
-            self.form.propagation.taught_by(known.propagation.lessons())
+            self.form.bounding.branching.adopt(known.bounding.branching.statistics())
         self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
         self.rule = self._rule(None)
         self._set_pool()

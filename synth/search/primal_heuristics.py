@@ -59,7 +59,7 @@ class PrimalHeuristics:
         close around a design that is not known.
         """
         form, rule = self.form, self.rule
-        found = len(form.archive) > 0 and form.propagation.taught >= self.limits.lessons
+        found = len(form.archive) > 0 and form.bounding.branching.learned >= self.limits.lessons
         pointed_at = self._known_before and self.rounds <= self.limits.long_proof
         return form.infeasibility or not found or (len(rule.columns) > 1 and not pointed_at)
 
@@ -416,8 +416,8 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
     steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T
     count = len(steps)
-    low = np.tile(form.propagation.low[: form.n], (len(variables) * count, 1))
-    high = np.tile(form.propagation.high[: form.n], (len(variables) * count, 1))
+    low = np.tile(form.bounding.question.low[: form.n], (len(variables) * count, 1))
+    high = np.tile(form.bounding.question.high[: form.n], (len(variables) * count, 1))
     for k, grid in enumerate(form.grids):
         if len(grid):
             place = np.searchsorted(grid, below(variables[:, k], snap))[:, None] + steps[None, :, k]

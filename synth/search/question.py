@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from synth.bounds.propagation import Lessons
+from synth.bounds.branching import BranchingStatistics
 from synth.model.problem import DesignProblem
 from synth.question.count_domain import stated
 from synth.question.instance import Instance
@@ -57,7 +57,7 @@ class Question:
         progress: Progress | None = None,
         known: Sequence[Design] = (),
         explained: bool = True,
-        lessons: Lessons | None = None,
+        lessons: BranchingStatistics | None = None,
         given: ParetoFront | None = None,
     ) -> ParetoFront:
         """Search the designs.
@@ -71,15 +71,15 @@ class Question:
             search.begin_from(given)
         return search.run(list(self.weights.values()), self.record(), explained)
 
-    def experience(self) -> tuple[ParetoFront, Lessons | None]:
+    def experience(self) -> tuple[ParetoFront, BranchingStatistics | None]:
         """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
         search = self.search()
         front = search.run(list(self.weights.values()), self.record(), explained=False)
         # What was learned where nothing was feasible does not help where something is.
-        return front, search.form.propagation.lessons() if front.designs and not search.in_conflict else None
+        return front, search.form.bounding.branching.statistics() if front.designs and not search.in_conflict else None
 
     def search(
-        self, progress: Progress | None = None, known: Sequence[Design] = (), lessons: Lessons | None = None
+        self, progress: Progress | None = None, known: Sequence[Design] = (), lessons: BranchingStatistics | None = None
     ) -> FrontSearch:
         """Return the search that answers."""
         return FrontSearch(

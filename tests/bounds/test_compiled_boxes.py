@@ -412,7 +412,7 @@ def test_the_family_agrees(options, grid, monkeypatch):
     compare(form, boxes, np.median(caps, axis=0), 1, True, monkeypatch)
     compare(form, boxes, None, 3, True, monkeypatch)
     assert len(boxes) > 30
-    assert form.propagation._code(False, True).compiled is not None
+    assert form.bounding.propagation.code(False, True).compiled is not None
 
 
 # -- when code is compiled ---------------------------------------------------------------------------
@@ -431,25 +431,25 @@ def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
 def test_the_question_alone_decides_what_is_compiled():
     own, many = formulation({}).instance.combinations.count, TUNING.compiling.boxes
     small, large = (
-        formulation({}, tuning=tuned(compiling={"combinations": least})).propagation for least in (own + 1, own)
+        formulation({}, tuning=tuned(compiling={"combinations": least})).bounding.compiled for least in (own + 1, own)
     )
-    assert [small._to_compile(False, True, boxes) for boxes in (10, many - 10, 1)] == [False, False, True]
-    assert not small._to_compile(True, True, 1)  # each pattern counts for itself
-    assert large._to_compile(False, True, 1)
-    assert not large._to_compile(False, False, 1)  # without caps only the first box is contracted
+    assert [small.to_compile(False, True, boxes) for boxes in (10, many - 10, 1)] == [False, False, True]
+    assert not small.to_compile(True, True, 1)  # each pattern counts for itself
+    assert large.to_compile(False, True, 1)
+    assert not large.to_compile(False, False, 1)  # without caps only the first box is contracted
 
 
 def test_it_can_be_switched_off(monkeypatch):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", "0")
     form = formulation({}, tuning=AT_ONCE)
     assert len(form.boxes.root()) == 1
-    assert form.propagation._code(True, False).compiled is None
+    assert form.bounding.propagation.code(True, False).compiled is None
     assert native.library("test", "int one(void) { return 1; }", CompilingEffort()) is None
 
 
 def test_requirements_do_not_enter_the_source():
     code = [
-        form.propagation._code(False, True)
+        form.bounding.propagation.code(False, True)
         for form in (formulation({}), formulation({}, requirements={**REQUIREMENTS, "load_torque": "612.345 N*m"}))
     ]
     assert native_boxes.source(code[0]) == native_boxes.source(code[1])

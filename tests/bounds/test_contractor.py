@@ -460,7 +460,7 @@ def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
             np.testing.assert_allclose(a, b, rtol=1e-9)
     assert len(one) < len(boxes)
     if compiler.cache_folder() is not None and compiler._compiler() is not None:
-        codes = machine.propagation._codes.values()
+        codes = machine.bounding.propagation._codes.values()
         assert all(code.compiled is not None for code in codes)
 
 
@@ -538,7 +538,7 @@ def test_boxes_around_feasible_designs_survive(family):
 
 def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(family):
     form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(6)
-    pivots = form.propagation.pivots
+    pivots = form.bounding.question.auxiliary
     assert pivots  # friction work sees the torque, which many variables and parts make together
     data = form.instance.data(family.combinations)
     values = family.model.program.compile(pivots)([*points.T, *data])

@@ -90,13 +90,13 @@ def test_a_spread_choice_takes_the_most_room_of_each_stretch():
 
 
 def test_weights_are_learned_for_each_set_of_objectives():
-    propagation = strut_form().propagation
-    cuts = len(propagation.cuts)
+    bounding = strut_form().bounding
+    cuts, branching = len(bounding.question.cuts), bounding.branching
     lessons = np.zeros((40, cuts + 3))
     lessons[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
     lessons[20:, [1, cuts + 1]] = 1.0, 1.0
-    propagation.learn(lessons, np.ones(40))
-    weights = propagation.weights
+    branching.learn(lessons, np.ones(40))
+    weights = branching.weights
     assert np.argmax(weights[1, :cuts]) == 0
     assert np.argmax(weights[2, :cuts]) == 1
     assert weights[1, cuts + 1] == weights[2, cuts] == 0.0  # an objective without a cap decides nothing
@@ -106,12 +106,12 @@ def test_weights_are_learned_for_each_set_of_objectives():
 
 
 def test_what_is_important_is_learned_most():
-    propagation = strut_form().propagation
-    cuts = len(propagation.cuts)
+    bounding = strut_form().bounding
+    cuts, branching = len(bounding.question.cuts), bounding.branching
     lessons = np.zeros((10, cuts + 3))
     lessons[:9, 0] = lessons[9:, 1] = 1.0
-    propagation.learn(lessons, np.array([1.0] * 9 + [91.0]))
-    assert propagation.weights[0, 1] == pytest.approx(0.91, abs=0.01)
+    branching.learn(lessons, np.array([1.0] * 9 + [91.0]))
+    assert branching.weights[0, 1] == pytest.approx(0.91, abs=0.01)
 
 
 def test_limits_that_exclude_each_other_teach_what_to_split():
@@ -119,7 +119,7 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     assert not len(form.archive)
     boxes = form.boxes.root()
     seeker(form).look(boxes)
-    assert form.propagation._lessons.sum() > 0
+    assert form.bounding.branching.learned > 0
 
 
 class Narrow(synth.DesignProblem):

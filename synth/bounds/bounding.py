@@ -1,0 +1,65 @@
+"""All that bounds and scores the boxes of one question: sound bounds, branching weights and compiled code together."""
+
+from __future__ import annotations
+
+import copy
+
+from synth.bounds.branching import BranchingWeights
+from synth.bounds.clusters import Cells
+from synth.bounds.compiled_propagation import CompiledPropagation
+from synth.bounds.influences import Influences
+from synth.bounds.propagation import Propagation
+from synth.bounds.question_bounds import QuestionBounds
+from synth.question.instance import Instance
+from synth.tuning import Tuning
+
+
+class Bounding:
+    """All that bounds the boxes of one question and says where to split them.
+
+    Parameters
+    ----------
+    question : QuestionBounds
+    compiled : bool
+        Whether code may be compiled for this question alone.
+    alike : int
+        How many questions of this kind are asked.
+    tuning : Tuning
+
+    Attributes
+    ----------
+    question : QuestionBounds
+        What holds everywhere in it: sound.
+    propagation : Propagation
+        What holds in boxes: sound.
+    branching : BranchingWeights
+        Where boxes are split: proves nothing.
+    compiled : CompiledPropagation
+        Both in compiled code.
+    goal_sizes : array (objectives,)
+        Median sizes of the objectives over the question.
+    """
+
+    def __init__(self, question: QuestionBounds, compiled: bool, alike: int, tuning: Tuning) -> None:
+        self._allowed, self._alike, self._tuning = compiled, alike, tuning
+        self._influences = Influences(question, tuning.branching)
+        self.goal_sizes = self._influences.goal_sizes
+        trees = [self._influences.clusters(factor) for factor in question.factors]
+        self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)))
+
+    def among(self, instance: Instance) -> Bounding | None:
+        """Return the same for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
+        question = self.question.among(instance)
+        if question is None:
+            return None
+        own = copy.copy(self)
+        own._begin(self.propagation.among(question, self._influences.clusters(question.factors[0])))
+        return own
+
+    def _begin(self, propagation: Propagation) -> None:
+        tuning = self._tuning
+        self.question, self.propagation = propagation.question, propagation
+        self.branching = BranchingWeights(self.question, propagation.cells.trees, self._influences, tuning.branching)
+        self.compiled = CompiledPropagation(
+            propagation, self.branching, self._allowed, self._alike, tuning.tolerances.margins, tuning.compiling
+        )
