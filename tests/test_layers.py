@@ -116,7 +116,8 @@ def test_imports_point_one_way() -> None:
 SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "question_bounds", "propagation"}
 STEERING = {"influences", "branching"}
 BOTH = {"compiled_rules", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
-OF_FORMULAS = {"structure", "curvature", "elementary"}  # what kind of function a formula is: not of the search
+# What kind of function a formula is: not of the search.
+OF_FORMULAS = {"structure", "shapes", "composition", "log_terms", "feasible_intervals", "curvature", "elementary"}
 
 
 def test_what_proves_does_not_know_what_steers() -> None:

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 
-from synth.bounds.structure import Shape, classify
+from synth.bounds.shapes import Shape
+from synth.bounds.structure import classify
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.model.problem import DesignProblem
 from synth.question.ranges import declared_ranges

@@ -12,7 +12,8 @@ from problems.mechanics.guide_friction import sum_geometric, sum_lipka
 from problems.mechanics.heat import peak_rise_per_work
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power
 from synth.bounds.elementary import LOG_BELOW_ONE, MIRRORED, OUTER
-from synth.bounds.structure import LONGEST, classify
+from synth.bounds.shapes import LONGEST
+from synth.bounds.structure import classify
 from synth.declaration import Declaration
 from synth.model.program import TEMPLATES
 from synth.question.catalogs import as_catalogs

@@ -1,0 +1,100 @@
+"""What is known of one quantity as a function of the inputs, and how it is said in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from synth.bounds.curvature import AFFINE, UNKNOWN
+
+NAMED = 4  # inputs that a text names per direction
+LONGEST = 100  # characters of a text
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What is known of one quantity, or of the quotient of both sides of a limit.
+
+    Parameters
+    ----------
+    sign : int
+        +1 or -1 where it surely has that sign, 0 where that is not known; then nothing else is known.
+    nonzero : bool
+        Whether it is surely not zero either, for no value of the inputs.
+    curvature : str
+        ``log-affine``, ``log-convex``, ``log-concave`` or ``unknown``: of the logarithm of its size.
+    elasticity : array (inputs, 2)
+        Least and largest d log / d log per input; of an input that it jumps with, everything.
+    text : str
+        The same for people, in short.
+    """
+
+    sign: int
+    nonzero: bool
+    curvature: str
+    elasticity: np.ndarray
+    text: str = ""
+
+    def rising(self) -> np.ndarray:
+        """Return which inputs it rises with."""
+        return (self.elasticity[:, 0] >= -ROUNDING) & (self.elasticity[:, 1] > 0)
+
+    def falling(self) -> np.ndarray:
+        """Return which inputs it falls with."""
+        return (self.elasticity[:, 1] <= ROUNDING) & (self.elasticity[:, 0] < 0)
+
+    def open(self) -> np.ndarray:
+        """Return the inputs with which it may rise or fall."""
+        return (self.elasticity[:, 0] < -ROUNDING) & (self.elasticity[:, 1] > ROUNDING)
+
+
+def worded(shape: Shape, named: Sequence[tuple[int, str]], equal: bool = False) -> Shape:
+    """Return a shape with its text."""
+    if shape.sign != 1:
+        text = "equality" if equal else "not surely positive"
+    elif equal:
+        text = f"equality, {AFFINE}" if shape.curvature == AFFINE and shape.nonzero else "equality"
+    else:
+        ending = "" if shape.nonzero else ", can be 0"
+        text = shape.curvature if shape.curvature != UNKNOWN else _directions(shape, named, LONGEST - len(ending))
+        text += ending
+    return replace(shape, text=text)
+
+
+def _directions(shape: Shape, named: Sequence[tuple[int, str]], longest: int) -> str:
+    """Say in which inputs a quantity is monotone, with as many names as there is room for."""
+    rising, falling, unknown = (
+        [label for k, label in named if which[k]] for which in (shape.rising(), shape.falling(), shape.open())
+    )
+    if not rising and not falling:
+        return UNKNOWN
+    for count in range(NAMED, -1, -1):
+        if not unknown:
+            ways = [("rises", rising), ("falls", falling)]
+            text = "monotone: " + ", ".join(f"{verb} with {_some(names, count)}" for verb, names in ways if names)
+        elif len(unknown) <= count:
+            text = f"monotone in all but {_some(unknown, count)}"
+        else:
+            text = f"monotone in {_some(rising + falling, count)}, unknown in {_some(unknown, count)}"
+        if len(text) <= longest:
+            break
+    return text
+
+
+def _some(names: Sequence[str], count: int) -> str:
+    """Return names as a list; all beyond ``count`` as a number.
+
+    Examples
+    --------
+    >>> _some(["a", "b", "c"], 2), _some(["a", "b", "c"], 3), _some(["a"], 0)
+    ('a, b and 1 more', 'a, b, c', '1 input')
+    """
+    rest = len(names) - count
+    if rest <= 0:
+        return ", ".join(names)
+    if not count:
+        return f"{rest} input{'s' if rest > 1 else ''}"
+    return f"{', '.join(names[:count])} and {rest} more"
