@@ -131,14 +131,14 @@ class JointHeuristics:
         ``as_made``: makeable values stay what they are to begin with.
         """
         form, k, known = rule.form, rule.columns[0], rule.known
-        seeker = PrimalHeuristics(form, rule, self.rng, False)
+        heuristics = PrimalHeuristics(form, rule, self.rng, False)
         keep = not_refused(form.instance, combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
         held = form.gridded & as_made
         low, high = np.where(held, start, form.lower), np.where(held, start, form.upper)
         if not form.n or not len(combinations):
-            return seeker.offer(start, combinations)
+            return heuristics.offer(start, combinations)
         weights = np.zeros((len(combinations), len(form.goals)))
         weights[:, k] = 1.0
         questions = self.codec.question(combinations)
@@ -154,10 +154,10 @@ class JointHeuristics:
         if not len(best):
             return 0
         if form.gridded.any() and not as_made:
-            new = seeker.round_off(form.boxes.leaves(combinations[best]), found.variables[best], tasks.take(best))
+            new = heuristics.round_off(form.boxes.leaves(combinations[best]), found.variables[best], tasks.take(best))
         else:
-            new = seeker.offer(found.variables[best], combinations[best])
-        seeker.settle_best(k, range(k + 1))
+            new = heuristics.offer(found.variables[best], combinations[best])
+        heuristics.polish_best(k, range(k + 1))
         if self.thorough and not as_made:
             # What a combination leaves of the grid may lie far from where it is best without one.
             left = best[found.phi[best, k] < rule.needed()[questions[best]]]
@@ -170,5 +170,5 @@ class JointHeuristics:
                     self.rng,
                     self.limits.settling_boxes * len(left),
                 )
-                seeker.settle_best(k, range(k + 1))
+                heuristics.polish_best(k, range(k + 1))
         return new

@@ -26,7 +26,7 @@ from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
 from synth.search.polishing import break_ties
 from synth.search.question import Question
-from synth.search.resolution import rounded_up, slack
+from synth.search.resolution import gap_tolerance, rounded_up
 from synth.search.sensitivity import elasticities
 
 
@@ -279,7 +279,7 @@ class JointSearch:
         """Return the gap as a distance in phi of an objective, per design."""
         form = self.form
         own = (form.objectives.log[k], form.objectives.finest[k])
-        return lambda phi: slack(self.gap, *own, np.abs(phi))
+        return lambda phi: gap_tolerance(self.gap, *own, np.abs(phi))
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:

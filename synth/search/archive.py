@@ -68,21 +68,21 @@ class Archive:
         keep = non_dominated(phi[:, self.columns])
         self.combination, self.variables, self.phi = combination[keep], variables[keep], phi[keep]
 
-    def cutoffs(self, lower: np.ndarray, slack: np.ndarray) -> np.ndarray:
+    def cutoffs(self, lower: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
         """Return, per box with lower bounds ``lower`` (boxes, columns), what a design must keep to be of use.
 
-        A known design covers what is not better by more than ``slack`` in any objective. Cap k is the least
-        value of objective k, less its slack, among the known designs that cover the box in all other objectives.
+        A known design covers what is not better by more than ``tolerance`` in any objective. Cutoff k is the least
+        value of objective k, less its tolerance, among the known designs that cover the box in all other objectives.
         """
         m = len(self.columns)
         result = np.full(lower.shape, np.inf)
-        known = self.phi[:, self.columns] - slack
+        known = self.phi[:, self.columns] - tolerance
         if not len(known):
             return result
         if m == 1:
             result[:, 0] = known[:, 0].min()
         elif m == 2:
-            for k, (at, least) in enumerate(self.covering(slack)):
+            for k, (at, least) in enumerate(self.covering(tolerance)):
                 place = np.searchsorted(at, lower[:, 1 - k], side="right")
                 result[:, k] = np.where(place > 0, least[place - 1], np.inf)
         else:
@@ -95,28 +95,28 @@ class Archive:
                     result[rows, k] = np.where(others, known[None, :, k], np.inf).min(axis=1)
         return result
 
-    def covering(self, slack: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    def covering(self, tolerance: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return, for each of two objectives, values of the other in order and the least that is covered from there."""
-        known = self.phi[:, self.columns] - slack
+        known = self.phi[:, self.columns] - tolerance
         orders = [np.argsort(known[:, 1 - k], kind="stable") for k in (0, 1)]
         return [(known[o, 1 - k], np.minimum.accumulate(known[o, k])) for k, o in enumerate(orders)]
 
 
 def distinct(
-    candidates: Sequence[Candidate], m: int, tuning: Tuning, alike: np.ndarray | float = 0.0
+    candidates: Sequence[Candidate], m: int, tuning: Tuning, equal: np.ndarray | float = 0.0
 ) -> list[Candidate]:
     """Return the designs that no other one equals or beats in the first objectives, but for rounding.
 
-    ``alike``: what else in phi counts as equal, per objective.
+    ``equal``: what else in phi counts as equal, per objective.
     """
     phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
     at_once = tuning.arrays.compared
-    room = np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), alike)
+    margin = np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), equal)
     number, gone = np.arange(len(phi)), np.zeros(len(phi), dtype=bool)
     for first in range(0, len(phi), at_once):
         own = slice(first, first + at_once)
-        beaten = np.all(phi[:, None, :] <= (phi + room)[None, own, :], axis=2)
-        beats = np.all(phi[None, own, :] <= (phi + room)[:, None, :], axis=2)
+        beaten = np.all(phi[:, None, :] <= (phi + margin)[None, own, :], axis=2)
+        beats = np.all(phi[None, own, :] <= (phi + margin)[:, None, :], axis=2)
         # Of those that beat each other by rounding alone the first stays.
         gone[own] = np.any(beaten & (~beats | (number[:, None] < number[None, own])), axis=0)
     return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]

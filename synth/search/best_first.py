@@ -1,8 +1,8 @@
-"""The tree that goes on where a first effort has left boxes open: what promises most comes first.
+"""The tree that goes on where a first search has left boxes open: what promises most comes first.
 
-A first effort takes the boxes that were split last, so that few wait at a time; what it leaves open tells little. Here
-the boxes from which a design could gain most are split first, so that the gap that is proven becomes smaller all the
-time, whenever it ends.
+The first search, depth first, takes the boxes that were split last, so that few wait at a time; what it leaves open
+tells little. Here the boxes from which a design could gain most are split first, so that the gap that is proven becomes
+smaller all the time, whenever it ends.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Progress:
     Parameters
     ----------
     highest : int
-        The level of the boxes with most room.
+        The level of the boxes with the largest possible gain.
     waiting : int
         Boxes that wait.
     extent : float
@@ -76,11 +76,11 @@ class OpenBoxes:
 
     def add(self, boxes: Boxes) -> None:
         """Take boxes; those of no use are dropped."""
-        room = self.rule.possible_gain(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
-        useful = room > 0
-        boxes, room = boxes.take(useful), room[useful]
+        gain = self.rule.possible_gain(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
+        useful = gain > 0
+        boxes, gain = boxes.take(useful), gain[useful]
         with np.errstate(all="ignore"):
-            doublings = np.log2(room / float(self.rule.tolerance.min()))
+            doublings = np.log2(gain / float(self.rule.tolerance.min()))
         highest = self.tree.levels - 1
         level = np.clip(
             np.nan_to_num(self.tree.levels_per_doubling * doublings, nan=highest, posinf=highest), 0, highest
@@ -94,7 +94,7 @@ class OpenBoxes:
                 self.levels[k] = [Boxes.joined(self.levels[k])]
 
     def next(self) -> Boxes:
-        """Take a batch of the boxes with most room; of those with least where too many wait."""
+        """Take a batch of the boxes with the largest possible gain; of those with the least where too many wait."""
         filled = np.flatnonzero(self.counts)
         taken, count = list[Boxes](), 0
         for k in (filled if len(self) > self.most else filled[::-1]).tolist():
@@ -122,7 +122,7 @@ class OpenBoxes:
 
     @property
     def highest(self) -> int:
-        """The level of the boxes with most room; -1 where none waits."""
+        """The level of the boxes with the largest possible gain; -1 where none waits."""
         return int(np.flatnonzero(self.counts).max(initial=-1))
 
 
@@ -132,7 +132,7 @@ def best_first(
     rule: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
-    effort: SearchEffort,
+    limits: SearchEffort,
     over: Callable[[], bool] | None = None,
 ) -> TreeOutcome:
     """Go on with boxes that are open until they are closed, no longer close, or the budget of time is spent.
@@ -140,37 +140,37 @@ def best_first(
     Parameters
     ----------
     form, boxes, rule, clock, rng
-        As for :func:`synth.search.branch_and_bound.cover`.
-    effort : SearchEffort
+        As for :func:`synth.search.branch_and_bound.branch_and_bound`.
+    limits : SearchEffort
     over : callable, optional
         Tells whether the budget is spent; by default it begins with the call.
 
     Returns
     -------
-    Covered
+    TreeOutcome
         ``spent`` where it was the budget that ended it.
     """
-    end = time.monotonic() + effort.seconds
+    end = time.monotonic() + limits.seconds
     over = (lambda: time.monotonic() > end) if over is None else over
     every = reaches_beyond(rule, form.bounded)
     form.boxes.focus(form.archive)
-    seeker, looked, spent = PrimalHeuristics(form, rule, rng, every), 0, False
+    heuristics, looked, spent = PrimalHeuristics(form, rule, rng, every), 0, False
     boxes = boxes if every else form.boxes.lean(boxes)
-    waiting, stuck = OpenBoxes(form, rule, effort.most_waiting), boxes.take(slice(0, 0))
+    waiting, stuck = OpenBoxes(form, rule, limits.most_waiting), boxes.take(slice(0, 0))
     waiting.add(boxes)
-    least, idle, mark = waiting.progress(), 0, effort.spell
+    least, idle, mark = waiting.progress(), 0, limits.spell
     while len(waiting):
         clock.check([*waiting.batches, stuck])
         if over():
             spent = True
             break
         if looked >= mark:
-            mark = looked + effort.spell
-            closed = waiting.progress().after(least, effort.closing)
+            mark = looked + limits.spell
+            closed = waiting.progress().after(least, limits.closing)
             idle, least = (idle + 1, least) if closed is None else (0, closed)
-            if idle >= effort.patience or len(stuck) > effort.most_stuck:
+            if idle >= limits.patience or len(stuck) > limits.most_stuck:
                 break
-        children, small, seen = further(form, waiting.next(), rule, seeker, every, np.inf)
+        children, small, seen = further(form, waiting.next(), rule, heuristics, np.inf)
         looked += seen
         waiting.add(children)
         stuck = Boxes.joined([stuck, small]) if len(small) else stuck

@@ -67,7 +67,7 @@ class BoxOperations:
         if self.bounding.question.root.empty or not self.instance.combinations.count:
             return boxes.take(np.zeros(0, dtype=np.int64))
         if self.bounding.compiled.at_once:
-            # The code that all other boxes are tightened with: caps of infinity say nothing.
+            # The code that all other boxes are tightened with: cutoffs of infinity say nothing.
             return self.contract(boxes, np.full(self.goals, np.inf), passes)
         return self.contract(boxes, None, passes, every_goal=True)
 
@@ -112,10 +112,10 @@ class BoxOperations:
 
     # -- tightening --------------------------------------------------------------------------------
 
-    def contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
+    def contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int = 2, every_goal: bool = False) -> Boxes:
         """Return what survives of the boxes, tightened and snapped to the grid.
 
-        ``caps`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
+        ``cutoffs`` bound phi: one row for all boxes, or a row per box. ``every_goal``: also those objectives
         that only settle ties.
         """
         if boxes.low.shape[1] < self.width:
@@ -126,16 +126,16 @@ class BoxOperations:
             boxes = replace(boxes, bounds=np.concatenate([boxes.bounds, unknown], axis=1))
         at_once = self.tuning.arrays.boxes
         if len(boxes) <= at_once:
-            return self._contract(boxes, caps, passes, every_goal) if len(boxes) else boxes
+            return self._contract(boxes, cutoffs, passes, every_goal) if len(boxes) else boxes
         kept = []
         for first in range(0, len(boxes), at_once):
             deadline.check()
             rows = slice(first, min(first + at_once, len(boxes)))
-            own = caps if caps is None or caps.ndim == 1 else caps[rows]
+            own = cutoffs if cutoffs is None or cutoffs.ndim == 1 else cutoffs[rows]
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
 
-    def grow(self, boxes: Boxes, caps: CapTables, levels: int, passes: int = 2) -> Subtrees | None:
+    def grow(self, boxes: Boxes, cutoffs: CapTables, levels: int, passes: int = 2) -> Subtrees | None:
         """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
 
         The boxes carry their auxiliary variables and the bounds of the first objectives alone.
@@ -146,7 +146,7 @@ class BoxOperations:
             boxes.high,
             boxes.bounds,
             boxes.tag,
-            caps,
+            cutoffs,
             passes,
             levels,
             self.workers,
@@ -167,9 +167,9 @@ class BoxOperations:
         )
         return replace(boxes, low=low, high=high)
 
-    def _contract(self, boxes: Boxes, caps: np.ndarray | None, passes: int, every: bool) -> Boxes:
+    def _contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Boxes:
         self.counters.contracted += len(boxes)
-        values = None if caps is None else self.objectives.values_of(caps)
+        values = None if cutoffs is None else self.objectives.values_of(cutoffs)
         packed = self.bounding.compiled.packed(
             boxes.cell,
             boxes.low,
@@ -208,7 +208,7 @@ class BoxOperations:
     def _snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
         alive = np.ones(len(low), dtype=bool)
-        # An active limit loosened by the slack must not cost a grid point or a pinned value.
+        # An active limit loosened by the margin must not cost a grid point or a pinned value.
         n = self.n
         np.maximum(low[:, :n], self.instance.lower, out=low[:, :n])
         np.minimum(high[:, :n], self.instance.upper, out=high[:, :n])

@@ -1,9 +1,9 @@
-"""The tree that proves: one best design, or a whole front at once.
+"""Branch and bound, depth first: the tree that proves one best design, or a whole front at once.
 
 Boxes of everything that may be designed are tightened, compared with the designs known, and split, until
 every box is empty or *covered*: no design in it could be better than each known design by more than the
-slack in some objective. What is then known is a front of which no design can be improved by more than the slack in
-every objective, because whatever improves it would itself be covered by a known design that dominates it.
+tolerance in some objective. What is then known is a front of which no design can be improved by more than the
+tolerance in every objective, because whatever improves it would itself be covered by a known design that dominates it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, r
 
 @dataclass(frozen=True)
 class TreeOutcome:
-    """What a cover left open, how many boxes were looked into, and why it stopped.
+    """What a tree left open, how many boxes were looked into, and why it stopped.
 
     ``full``: enough is known; ``spent``: its time was over.
     """
@@ -44,7 +44,7 @@ def branch_and_bound(
     rule: TabledPruningRule,
     clock: Clock,
     rng: np.random.Generator,
-    effort: float = np.inf,
+    node_limit: float = np.inf,
     enough: int | None = None,
 ) -> TreeOutcome:
     """Cover everything that boxes may hold by known designs.
@@ -58,22 +58,22 @@ def branch_and_bound(
         Feasible designs go there, and into the archive of the formulation.
     clock : Clock
     rng : Generator
-    effort : float
+    node_limit : float
         Boxes that may be looked into.
     enough : int, optional
         Stop when more designs than this are known.
 
     Returns
     -------
-    Covered
+    TreeOutcome
     """
     tree, every = form.tuning.tree, reaches_beyond(rule, form.bounded)
     form.boxes.focus(form.archive)
-    seeker, looked = PrimalHeuristics(form, rule, rng, every), 0
+    heuristics, looked = PrimalHeuristics(form, rule, rng, every), 0
     boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
     queue, fresh, stuck = nothing, [boxes], nothing
-    while (len(queue) or fresh) and looked <= effort:
+    while (len(queue) or fresh) and looked <= node_limit:
         if not len(queue):
             queue = _most_open(form, _latest(fresh, tree.generation), rule)
             if not len(queue):
@@ -82,7 +82,7 @@ def branch_and_bound(
         if enough is not None and len(form.archive) > enough:
             return TreeOutcome(Boxes.joined([queue, *fresh, stuck]), looked, True)
         batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
-        children, small, seen = further(form, batch, rule, seeker, every, effort - looked)
+        children, small, seen = further(form, batch, rule, heuristics, node_limit - looked)
         looked += seen
         if len(small):
             stuck = Boxes.joined([stuck, small])
@@ -93,7 +93,7 @@ def branch_and_bound(
 
 
 def further(
-    form: Formulation, batch: Boxes, rule: TabledPruningRule, seeker: PrimalHeuristics, every: bool, effort: float
+    form: Formulation, batch: Boxes, rule: TabledPruningRule, heuristics: PrimalHeuristics, node_limit: float
 ) -> tuple[Boxes, Boxes, int]:
     """Tighten boxes, look for designs in them and split them.
 
@@ -102,10 +102,8 @@ def further(
     form, rule
         As for :func:`branch_and_bound`.
     batch : Boxes
-    seeker : PrimalHeuristics
-    every : bool
-        Whether the rule speaks of more than the first objectives.
-    effort : float
+    heuristics : PrimalHeuristics
+    node_limit : float
         Boxes that may be looked into.
 
     Returns
@@ -114,32 +112,33 @@ def further(
         What is to be looked into next, what is open but too small to be split, and how many boxes were looked into.
     """
     looked, none = len(batch), batch.take(slice(0, 0))
-    batch = form.boxes.contract(batch, rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell), every_goal=every)
+    cutoffs = rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell)
+    batch = form.boxes.contract(batch, cutoffs, every_goal=heuristics.every_goal)
     batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
     if not len(batch):
         return none, none, looked
-    seeker.look(batch)
+    heuristics.look(batch)
     stuck = []
     for _ in range(2 if len(batch) < form.tuning.tree.small_batch else 1):
         # A small batch costs as much as a larger one, so that it is split twice at once.
         batch, small = form.boxes.split(batch)
         if len(small):
-            stuck.append(seeker.settle(small))
-    grown = _grown(form, batch, rule, seeker, effort - looked) if not every else None
+            stuck.append(heuristics.fathom(small))
+    grown = _grown(form, batch, rule, heuristics, node_limit - looked) if not heuristics.every_goal else None
     if grown is not None:
         looked += grown.looked
         batch = grown.halves
         if len(grown.small):
-            stuck.append(seeker.settle(grown.small))
+            stuck.append(heuristics.fathom(grown.small))
     return batch, Boxes.joined(stuck) if stuck else none, looked
 
 
 def _grown(
-    form: Formulation, boxes: Boxes, rule: TabledPruningRule, seeker: PrimalHeuristics, effort: float
+    form: Formulation, boxes: Boxes, rule: TabledPruningRule, heuristics: PrimalHeuristics, node_limit: float
 ) -> Subtrees | None:
     """Take boxes some generations further at once, where it hardly helps to look for designs in between."""
     levels = form.tuning.tree.generations
-    if not len(boxes) or not seeker.content or len(boxes) << levels > effort:
+    if not len(boxes) or not heuristics.content or len(boxes) << levels > node_limit:
         return None
     tables = rule.tables(form)
     return None if tables is None else form.boxes.grow(boxes, tables, levels)
@@ -149,23 +148,23 @@ def best(
     form: Formulation,
     boxes: Boxes,
     column: int,
-    plain: np.ndarray,
-    slack: float,
+    fixed_cutoffs: np.ndarray,
+    tolerance: float,
     clock: Clock,
     rng: np.random.Generator,
     start: Candidate | None = None,
-    effort: float = np.inf,
+    node_limit: float = np.inf,
 ) -> tuple[Candidate | None, TreeOutcome]:
-    """Find the least phi of one objective, the others capped, and prove it within the slack.
+    """Find the least phi of one objective under cutoffs of the others, and prove it within the tolerance.
 
     Designs of the archive of the formulation, and ``start``, are known already.
     """
-    rule = EpsilonCover([column], np.array([slack]), plain, form.new_archive([column]))
+    rule = EpsilonCover([column], np.array([tolerance]), fixed_cutoffs, form.new_archive([column]))
     if len(form.archive):
         rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
         rule.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
-    found = branch_and_bound(form, boxes, rule, clock, rng, effort)
+    found = branch_and_bound(form, boxes, rule, clock, rng, node_limit)
     return (rule.known[0] if len(rule.known) else None), found
 
 
@@ -183,12 +182,12 @@ def _latest(fresh: list[Boxes], generation: int) -> Boxes:
 
 
 def _most_open(form: Formulation, waiting: Boxes, rule: PruningRule) -> Boxes:
-    """Return boxes with most room first; covered ones are dropped."""
+    """Return boxes with the largest possible gain first; covered ones are dropped."""
     lower = form.objectives.phi_of(waiting.bounds)
-    space = rule.possible_gain(lower, waiting.cell)
-    keep = np.flatnonzero(space > 0)
-    # While no design is known, all room is infinite; then low bounds promise most.
+    gain = rule.possible_gain(lower, waiting.cell)
+    keep = np.flatnonzero(gain > 0)
+    # While no design is known, every possible gain is infinite; then low bounds promise most.
     low = lower[:, rule.columns].mean(axis=1)
-    key = np.where(np.isfinite(space), -space, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
+    key = np.where(np.isfinite(gain), -gain, np.where(np.isfinite(low), low, 0.0) - 1e6)[keep]
     order = keep[np.argsort(key, kind="stable")] if len(keep) > form.tuning.tree.batch else keep
     return waiting.take(order)

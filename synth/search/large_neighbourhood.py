@@ -19,7 +19,7 @@ from synth.search.refused_cells import not_refused
 
 
 def large_neighbourhood_search(
-    form: Formulation, columns: Sequence[int], slack: np.ndarray, clock: Clock, rng: np.random.Generator
+    form: Formulation, columns: Sequence[int], tolerance: np.ndarray, clock: Clock, rng: np.random.Generator
 ) -> None:
     """Improve the best design known in each objective in turn, until nothing better comes.
 
@@ -31,7 +31,7 @@ def large_neighbourhood_search(
         Its archive holds what is known, at least one design, and takes what is found.
     columns : list of int
         Numbers of the objectives that are traded off.
-    slack : array (columns,)
+    tolerance : array (columns,)
         In phi; less is no progress.
     clock : Clock
     rng : Generator
@@ -41,18 +41,20 @@ def large_neighbourhood_search(
         place = turn % len(columns)
         k = columns[place]
         best = form.archive.phi[:, k].min()
-        combinations = _promising(form, columns, k, float(slack[place]), rng)
+        combinations = _promising(form, columns, k, float(tolerance[place]), rng)
         if len(combinations):
             nothing_capped = np.full(len(form.goals), np.inf)
-            rule = EpsilonCover([k], slack[place : place + 1], nothing_capped, form.new_archive([k]))
+            rule = EpsilonCover([k], tolerance[place : place + 1], nothing_capped, form.new_archive([k]))
             rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
             branch_and_bound(form, form.boxes.leaves(combinations), rule, clock, rng, limits.boxes)
-        failures = 0 if form.archive.phi[:, k].min() < best - slack[place] else failures + 1
+        failures = 0 if form.archive.phi[:, k].min() < best - tolerance[place] else failures + 1
         if failures >= limits.patience * len(columns):
             return
 
 
-def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, rng: np.random.Generator) -> np.ndarray:
+def _promising(
+    form: Formulation, columns: Sequence[int], k: int, tolerance: float, rng: np.random.Generator
+) -> np.ndarray:
     """Return combinations near the designs known that could be better in one objective if all sizes were makeable.
 
     The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
@@ -66,7 +68,7 @@ def _promising(form: Formulation, columns: Sequence[int], k: int, slack: float, 
     tasks = Tasks(weights, np.zeros_like(weights), free, form.objectives.scales, 0.0)
     found = form.continuous.solve_many(tasks, combinations, start, rough=True)
     reach = np.where(found.violation <= form.tuning.nlp.missed, found.phi[:, k], np.nan)
-    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - slack)
+    good = np.flatnonzero(reach < form.archive.phi[:, k].min() - tolerance)
     if not len(good):
         return combinations[:0]
     good = good[np.argsort(reach[good], kind="stable")]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.search.resolution import goal_scales, slack
+from synth.search.resolution import gap_tolerance, goal_scales
 
 
 @dataclass(frozen=True)
@@ -73,4 +73,4 @@ class LogObjectives:
 
     def tolerance(self, gap: float, sizes: np.ndarray | None = None) -> np.ndarray:
         """Return a gap as a distance in phi, per objective; ``sizes`` in phi where it is no share of the value."""
-        return slack(gap, self.log, self.finest, np.ones(len(self.log)) if sizes is None else sizes)
+        return gap_tolerance(gap, self.log, self.finest, np.ones(len(self.log)) if sizes is None else sizes)

@@ -100,8 +100,8 @@ class PointEvaluation:
         _, phi = self.feasible_rows(variables.reshape(len(candidates), self.n), combinations)
         return [replace(c, phi=own) for c, own in zip(candidates, phi, strict=True)]
 
-    def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, caps: np.ndarray) -> np.ndarray:
-        """Tell which of many points may be feasible and keep caps of phi; ``feasible_rows`` has the last word.
+    def promising(self, variables: Sequence[np.ndarray], combinations: np.ndarray, cutoffs: np.ndarray) -> np.ndarray:
+        """Tell which of many points may be feasible and below cutoffs of phi; ``feasible_rows`` has the last word.
 
         What many points have in common is computed once for them, so this costs much less than to look at each.
 
@@ -109,23 +109,23 @@ class PointEvaluation:
         ----------
         variables, combinations : array per variable, array
             That broadcast to (designs, points of each).
-        caps : array (designs, objectives)
+        cutoffs : array (designs, objectives)
             Of the first objectives.
         """
         data = self.instance.data(combinations)
         keep = np.ones(np.broadcast_shapes(combinations.shape, *(x.shape for x in variables)), dtype=bool)
-        most = self.objectives.values_of(caps + 2 * self.margins.tie * np.maximum(np.abs(caps), 1.0))
+        most = self.objectives.values_of(cutoffs + 2 * self.margins.tie * np.maximum(np.abs(cutoffs), 1.0))
         limits = len(self._cuts)
         with np.errstate(all="ignore"):
             sides = self._screen([*variables, *data])
-            for k, sign in enumerate(self._signs[: caps.shape[1]]):
+            for k, sign in enumerate(self._signs[: cutoffs.shape[1]]):
                 keep &= sign * sides[2 * limits + k] <= most[:, k, None]
             for j, cut in enumerate(self._cuts):
                 value, limit = sides[j], sides[limits + j]
                 # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
-                room = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
-                kept = np.True_ if cut.sense == "at_least" else value <= limit + room
-                kept = kept if cut.sense == "at_most" else kept & (value >= limit - room)
+                margin = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
+                kept = np.True_ if cut.sense == "at_least" else value <= limit + margin
+                kept = kept if cut.sense == "at_most" else kept & (value >= limit - margin)
                 for k in self.constraints[j].void_without:
                     kept = kept | np.isnan(np.asarray(data[k], dtype=float))
                 keep &= kept

@@ -17,20 +17,20 @@ from synth.search.formulation import Formulation
 from synth.search.pruning import PruningRule
 
 
-def polish_extremes(form: Formulation, traded: int, slack: float) -> None:
+def polish_extremes(form: Formulation, traded: int, tolerance: float) -> None:
     """Make the design that is best in each objective exact: solve in all combinations that come near to it."""
     archive, ties = form.archive, form.tuning.heuristics.settle.ties
     for k in range(traded if form.n else 0):
-        near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * slack)
+        near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * tolerance)
         _, first = np.unique(archive.combination[near], return_index=True)
         chosen = [archive[int(near[i])] for i in np.sort(first)[:ties]]
         order = [k, *(j for j in range(traded) if j != k)]
-        exact = settle_discrete(form, polish_variables(form, chosen, 0, order), traded, order)
+        exact = polish_discrete(form, polish_variables(form, chosen, 0, order), traded, order)
         for c in polish_variables(form, exact, 0, order):
             archive.add(np.array([c.combination]), c.variables[None, :], c.phi[None, :])
 
 
-def settle_discrete(
+def polish_discrete(
     form: Formulation, candidates: Sequence[Candidate], traded: int, order: Sequence[int], parts: bool = True
 ) -> list[Candidate]:
     """Change one makeable value or part at a time while the objectives, compared in their order, become smaller.
@@ -165,8 +165,8 @@ def polish_variables(
     low = np.where(form.gridded, variables, form.lower)
     high = np.where(form.gridded, variables, form.upper)
     goals = len(form.goals)
-    caps = np.full(phi.shape, np.inf)
-    caps[:, :traded] = phi[:, :traded] + tie
+    cutoffs = np.full(phi.shape, np.inf)
+    cutoffs[:, :traded] = phi[:, :traded] + tie
     for j in range(goals) if order is None else order:
         moving = np.flatnonzero(np.any((high > low) & form.seen_by_goal[j], axis=1))
         if not len(moving):
@@ -174,7 +174,7 @@ def polish_variables(
         tasks = Tasks(
             weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
             slopes=np.zeros((len(moving), goals)),
-            caps=caps[moving],
+            caps=cutoffs[moving],
             goal_scales=form.objectives.scales,
             t_weight=0.0,
         )
@@ -182,9 +182,9 @@ def polish_variables(
         rows, found = form.points.feasible_rows(answer.variables, combinations[moving])
         for k in rows:
             own = moving[k]
-            if np.all(found[k] <= caps[own] + tie) and found[k, j] < phi[own, j] - tie:
+            if np.all(found[k] <= cutoffs[own] + tie) and found[k, j] < phi[own, j] - tie:
                 variables[own], phi[own] = answer.variables[k], found[k]
-        caps[:, j] = phi[:, j] + tie
+        cutoffs[:, j] = phi[:, j] + tie
     return [Candidate(int(c), x, p) for c, x, p in zip(combinations, variables, phi, strict=True)]
 
 
@@ -198,7 +198,7 @@ def break_ties(
     list of (Candidate, tuple of str)
         Per design the one that stands for it, and in what others that tie with it differ.
     """
-    chosen = settle_discrete(form, chosen, traded, range(len(form.goals)))
+    chosen = polish_discrete(form, chosen, traded, range(len(form.goals)))
     chosen = polish_variables(form, chosen, traded)
     result = []
     for candidate, ties in zip(chosen, same_designs(form, pool, chosen, traded), strict=True):
@@ -229,8 +229,8 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.settle.ties
     phi = np.array([c.phi for c in candidates])
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
-    caps = np.full(phi.shape, np.inf)
-    caps[:, :traded] = phi[:, :traded] + tie
+    cutoffs = np.full(phi.shape, np.inf)
+    cutoffs[:, :traded] = phi[:, :traded] + tie
     start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
     cell[:, :apart] = form.boxes.cell_of(own)[:, :apart]
@@ -238,7 +238,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     boxes = replace(start, cell=cell, low=points, high=points, tag=np.arange(len(candidates)))
     tags, combinations = [np.empty(0, dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     while len(boxes):
-        boxes = form.boxes.contract(boxes, caps[boxes.tag], passes=1)
+        boxes = form.boxes.contract(boxes, cutoffs[boxes.tag], passes=1)
         single = form.boxes.cells.single(boxes.cell)
         numbers = _members(form, boxes.cell[single], most)
         tags.append(np.repeat(boxes.tag[single], [len(n) for n in numbers]))

@@ -20,35 +20,49 @@ from synth.search.refused_cells import not_refused
 
 
 class PrimalHeuristics:
-    """Looks for designs in boxes that nothing known covers."""
+    """Looks for designs in boxes that nothing known covers; it proves nothing.
 
-    def __init__(self, form: Formulation, rule: PruningRule, rng: np.random.Generator, every: bool) -> None:
-        self.form, self.rule, self.rng, self.every = form, rule, rng, every
+    Parameters
+    ----------
+    form : Formulation
+        Designs go into its archive.
+    rule : PruningRule
+        Tells which designs are of use, and takes them.
+    rng : Generator
+    every_goal : bool
+        Whether boxes are bounded in all objectives, not only in the first ones.
+    """
+
+    def __init__(self, form: Formulation, rule: PruningRule, rng: np.random.Generator, every_goal: bool) -> None:
+        self.form, self.rule, self.rng, self.every_goal = form, rule, rng, every_goal
         self.limits = form.tuning.heuristics.seeker
         self.nlps = self.limits.most_problems // 4
         self.rounds = self.failures = 0
 
     def look(self, batch: Boxes) -> None:
-        """Try the boxes with most room, all along the front; after rounds without success, only now and then."""
+        """Try the boxes with the largest possible gain, all along the front.
+
+        After rounds without success this happens only now and then.
+        """
         self.rounds += 1
         limits, form = self.limits, self.form
         if self.failures >= limits.patience and self.rounds % (self.failures - limits.patience + 2):
             return
         if form.n and not len(form.archive):
-            self._conflicts(batch)
+            self._solve_elastic(batch)
         phi = form.objectives.phi_of(batch.bounds)
-        space, along = self.rule.possible_gain(phi, batch.cell), phi[:, self.rule.columns[0]]
-        found = self._probe(batch.take(spread_choice(along, space, limits.probes)))
+        gain, along = self.rule.possible_gain(phi, batch.cell), phi[:, self.rule.columns[0]]
+        found = self._probe(batch.take(spread_choice(along, gain, limits.probes)))
         if form.n and self._worth_solving():
             most = limits.most_problems if len(self.rule.columns) > 1 else limits.least_problems
-            chosen = batch.take(spread_choice(along, space, min(self.nlps, most)))
+            chosen = batch.take(spread_choice(along, gain, min(self.nlps, most)))
             chosen = chosen.take(self.rule.possible_gain(form.objectives.phi_of(chosen.bounds), chosen.cell) > 0)
             good = self._solve(chosen)
             more, fewer = min(2 * self.nlps, limits.most_problems), max(self.nlps // 2, limits.least_problems)
             self.nlps = more if 4 * good > len(chosen) else fewer
             found += good
         if found and len(self.rule.columns) == 1:
-            self.settle_best(0, self.rule.columns)
+            self.polish_best(0, self.rule.columns)
         self.failures = 0 if found else self.failures + 1
 
     def _worth_solving(self) -> bool:
@@ -78,7 +92,7 @@ class PrimalHeuristics:
         scarce = len(archive.columns) > 1 and len(archive) < self.limits.scarce
         return self._known_before or (self.failures >= self.limits.patience and not scarce)
 
-    def settle_best(self, traded: int, order: Sequence[int]) -> None:
+    def polish_best(self, traded: int, order: Sequence[int]) -> None:
         """Make what is best as good as its parts and makeable values allow: what was rounded may leave much.
 
         The first ``traded`` objectives stay as good as they are; the others follow in ``order``.
@@ -88,14 +102,14 @@ class PrimalHeuristics:
             combinations, points, _ = rows_of(exact)
             self.offer(points, combinations)
 
-    def _conflicts(self, batch: Boxes) -> None:
+    def _solve_elastic(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
         form = self.form
         boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
         combinations = form.boxes.combination(replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
-        caps = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
-        tasks = Tasks(nothing, nothing, caps, form.objectives.scales, elastic=1.0)
+        cutoffs = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
+        tasks = Tasks(nothing, nothing, cutoffs, form.objectives.scales, elastic=1.0)
         found = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5))
         # The closer limits come to agreeing, the more boxes it takes to show that they do not.
         form.continuous.learn(tasks, found, np.maximum(np.abs(found.t), self.limits.near) ** -2.0)
@@ -103,15 +117,15 @@ class PrimalHeuristics:
             self.offer(found.variables, combinations)
 
     def _learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
-        """Learn from optima; in conflict the closer they come to being of use, the more boxes they cost."""
+        """Learn from optima; in infeasibility mode the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
         if self.form.infeasibility:
-            room = self.rule.possible_gain(found.phi, self.form.boxes.cell_of(combinations))
-            excess = np.nan_to_num(-room, nan=np.inf, posinf=np.inf)
+            gain = self.rule.possible_gain(found.phi, self.form.boxes.cell_of(combinations))
+            excess = np.nan_to_num(-gain, nan=np.inf, posinf=np.inf)
             importance = np.maximum(excess, float(self.rule.tolerance.min())) ** -2.0
         self.form.continuous.learn(tasks, found, importance)
 
-    def settle(self, small: Boxes) -> Boxes:
+    def fathom(self, small: Boxes) -> Boxes:
         """Look into boxes too small to split; return those that may still hold something nothing known covers."""
         form = self.form
         self.offer(form.boxes.inside(small, 0.5), form.boxes.combination(small))
@@ -122,7 +136,7 @@ class PrimalHeuristics:
         # A single point is settled by its evaluation; a small box only nearly so.
         left = np.any(high - low > 1e-12 * np.abs(high), axis=1)
         phi = form.objectives.phi_of(rest.bounds)
-        # Whatever the slack, what a design gains by using up the tolerance is not worth telling apart.
+        # Whatever the tolerance of the rule, what a design gains by using up the tolerance is not worth telling apart.
         left[stood_for] = True
         worth = np.zeros(phi.shape[1])
         worth[self.rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.rule.tolerance, 0.0)
@@ -130,8 +144,8 @@ class PrimalHeuristics:
         return rest.take(left & (self.rule.possible_gain(phi, rest.cell) > 0))
 
     def _tightened(self, boxes: Boxes) -> Boxes:
-        caps = self.rule.cutoffs(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
-        return self.form.boxes.contract(boxes, caps, every_goal=self.every)
+        cutoffs = self.rule.cutoffs(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
+        return self.form.boxes.contract(boxes, cutoffs, every_goal=self.every_goal)
 
     def _probe(self, boxes: Boxes) -> int:
         """Evaluate points of a random combination of each box; gridded variables are fixed in its middle first."""
@@ -213,9 +227,9 @@ class PrimalHeuristics:
         rows, phi = form.points.edge_rows(points, combinations)
         if not len(rows):
             return 0, rows
-        space = self.rule.possible_gain(phi[rows], form.boxes.cell_of(combinations[rows]))
-        rows, space = rows[space > 0], space[space > 0]
-        rows = rows[spread_choice(phi[rows, columns[0]], space, most)]
+        gain = self.rule.possible_gain(phi[rows], form.boxes.cell_of(combinations[rows]))
+        rows, gain = rows[gain > 0], gain[gain > 0]
+        rows = rows[spread_choice(phi[rows, columns[0]], gain, most)]
         marks = [(int(c), x.tobytes()) for c, x in zip(combinations[rows], points[rows][:, form.gridded], strict=True)]
         fresh = {mark: row for mark, row in zip(marks, rows.tolist(), strict=True) if mark not in form.kept_closely}
         new = 0
@@ -315,8 +329,8 @@ class PrimalHeuristics:
                 weights = np.zeros((len(own), len(self.form.goals)))
                 weights[:, self.rule.columns] = self.limits.tie_weight
                 weights[:, k] = 1.0
-                caps = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
-                tasks = Tasks(weights, np.zeros_like(weights), caps, self.form.objectives.scales, 0.0)
+                cutoffs = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
+                tasks = Tasks(weights, np.zeros_like(weights), cutoffs, self.form.objectives.scales, 0.0)
                 found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
         return found
 
@@ -336,8 +350,8 @@ class PrimalHeuristics:
         phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
         good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
         cell = form.boxes.cell_of(combinations[good])
-        space, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
-        good = good[space > 0][spread_choice(along[space > 0], space[space > 0], self.limits.rounded_off)]
+        gain, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
+        good = good[gain > 0][spread_choice(along[gain > 0], gain[gain > 0], self.limits.rounded_off)]
         if not len(good):
             return 0
         return self.round_off(form.boxes.leaves(combinations[good]), found.variables[good], tasks.take(good))
@@ -347,16 +361,16 @@ class PrimalHeuristics:
         form, columns = self.form, self.rule.columns
         count, goals = len(base), len(form.goals)
         slopes, weights = np.zeros((count, goals)), np.zeros((count, goals))
-        caps = np.tile(self.rule.fixed_cutoffs, (count, 1))
+        cutoffs = np.tile(self.rule.fixed_cutoffs, (count, 1))
         if len(columns) == 1:
             weights[:, columns] = 1.0
         else:
             slope = self.rule.tolerance / self.rule.tolerance.max()
             known = np.isfinite(base)
-            caps[:, columns] = np.where(known, base, np.inf)
+            cutoffs[:, columns] = np.where(known, base, np.inf)
             slopes[:, columns] = np.where(known, slope, 0.0)
             weights[:, columns] = np.where(known, self.limits.tie_weight / slope, 1.0)
-        return Tasks(weights, slopes, caps, form.objectives.scales, 1.0 if len(columns) > 1 else 0.0)
+        return Tasks(weights, slopes, cutoffs, form.objectives.scales, 1.0 if len(columns) > 1 else 0.0)
 
     def _solve(self, boxes: Boxes) -> int:
         """Solve the continuous problems of a random combination of each box: straight up from its lower bounds."""
@@ -440,13 +454,13 @@ def corners(phi: np.ndarray, count: int) -> np.ndarray:
     return chosen
 
 
-def spread_choice(along: np.ndarray, space: np.ndarray, count: int) -> np.ndarray:
-    """Return positions of boxes with much room, spread along an objective."""
-    if len(space) <= count:
-        return np.arange(len(space))
+def spread_choice(along: np.ndarray, gain: np.ndarray, count: int) -> np.ndarray:
+    """Return positions of boxes with large possible gains, spread along an objective."""
+    if len(gain) <= count:
+        return np.arange(len(gain))
     order = np.argsort(along, kind="stable")
     group = np.arange(len(order)) * count // len(order)
-    by_space = np.lexsort((-space[order], group))
-    first = np.searchsorted(group[by_space], np.arange(count))
-    chosen: np.ndarray = order[by_space[first]]
+    by_gain = np.lexsort((-gain[order], group))
+    first = np.searchsorted(group[by_gain], np.arange(count))
+    chosen: np.ndarray = order[by_gain[first]]
     return chosen

@@ -13,17 +13,17 @@ ROWS = 4096  # boxes at a time; the result is the same for any number
 
 @dataclass(frozen=True)
 class Bound:
-    """What is proven of all designs: each lies in an open box, or a known design covers it within a slack.
+    """What is proven of all designs: each lies in an open box, or a known design covers it within a tolerance.
 
     Parameters
     ----------
-    slack : array (objectives,)
+    tolerance : array (objectives,)
         In phi.
     corners : array (boxes, objectives)
         Lower bounds of phi of the open boxes.
     """
 
-    slack: np.ndarray
+    tolerance: np.ndarray
     corners: np.ndarray
 
     def gaps(self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray) -> np.ndarray:
@@ -43,7 +43,7 @@ class Bound:
                 result: np.ndarray = np.where(logs, -np.expm1(-better), better / sizes)
             return result
 
-        worst = np.full(len(phi), share(self.slack).max())
+        worst = np.full(len(phi), share(self.tolerance).max())
         for first in range(0, len(self.corners), ROWS):
             corners = self.corners[first : first + ROWS]
             improved = share(phi[:, None, :] - corners[None, :, :]).min(axis=2)

@@ -1,4 +1,4 @@
-"""What a search is for: to cover everything by known designs, or to prove some designs."""
+"""Pruning rules: when a box is of no use, because known designs cover it or because it improves on no listed one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from synth.search.formulation import Formulation
 
 
 class PruningRule(Protocol):
-    """What a search is for: which designs would still be of use."""
+    """Says when a box is of no use, and which designs would still be of use."""
 
     columns: list[int]
     tolerance: np.ndarray
@@ -23,12 +23,12 @@ class PruningRule(Protocol):
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use.
 
-        ``cell`` (boxes, factors) tells which combinations a box holds; only where several questions are answered
-        together does it matter.
+        ``cell`` (boxes, factors) tells which combinations a box holds; only in a joint search
+        of several questions does it matter.
         """
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how much better than needed a box could be: the least distance to a cap, 0 if it is of no use."""
+        """Return how much better than needed a box could be: the least distance to a cutoff, 0 if it is of no use."""
 
     def leading(self, archive: Archive) -> list[Candidate]:
         """Return the designs that are best, where there is one objective: they are made as good as they can be."""
@@ -38,10 +38,10 @@ class PruningRule(Protocol):
 
 
 class TabledPruningRule(PruningRule, Protocol):
-    """A rule whose caps compiled code may read from tables."""
+    """A rule whose cutoffs compiled code may read from tables."""
 
     def tables(self, form: Formulation) -> CapTables | None:
-        """Return what :meth:`caps` and :meth:`room` say as tables; None where they cannot say it."""
+        """Return what :meth:`cutoffs` and :meth:`possible_gain` say as tables; None where they cannot say it."""
 
 
 class EpsilonCover:
@@ -54,7 +54,7 @@ class EpsilonCover:
     tolerance : array (columns,)
         In phi.
     fixed_cutoffs : array (objectives,)
-        Caps of phi that every design must keep; infinite where there is none.
+        Cutoffs of phi that every design must keep; infinite where there is none.
     known : Archive
         Designs known, no one better than another in all the objectives traded.
     """
@@ -99,7 +99,7 @@ class EpsilonCover:
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
     def tables(self, form: Formulation) -> CapTables | None:
-        """Return what the caps are as tables, for one objective or two."""
+        """Return what the cutoffs are as tables, for one objective or two."""
         columns, bounded = self.columns, form.bounded
         if reaches_beyond(self, bounded) or len(columns) > 2:
             return None
@@ -185,8 +185,8 @@ class NonImprovement:
         own = lower[:, self.columns]
         with np.errstate(all="ignore"):
             distance = (self.cutoffs(lower)[:, self.columns] - own).min(axis=1, initial=np.inf)
-        room: np.ndarray = np.maximum(distance, 0.0)
-        return room
+        gain: np.ndarray = np.maximum(distance, 0.0)
+        return gain
 
     def _below(self, own: np.ndarray) -> np.ndarray:
         """Return, per box, the largest step in each objective among those that the box could be below."""
@@ -216,7 +216,7 @@ class NonImprovement:
         return steps[:, 0], np.maximum.accumulate(steps[::-1, 1])[::-1]
 
     def tables(self, form: Formulation) -> CapTables | None:
-        """Return what the caps are as tables, for two objectives."""
+        """Return what the cutoffs are as tables, for two objectives."""
         columns = self.columns
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
@@ -243,7 +243,7 @@ class NonImprovement:
         return len(beaten)
 
     def leading(self, archive: Archive) -> list[Candidate]:
-        """Return nothing: a staircase is one of several objectives."""
+        """Return nothing: designs that are proven in several objectives at once have no single best one."""
         return []
 
 

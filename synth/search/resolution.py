@@ -56,7 +56,7 @@ def goal_scales(log: np.ndarray, sizes: np.ndarray, declared: Sequence[float | N
     return units, np.where(log, 0.0, finest)
 
 
-def slack(gap: float, log: np.ndarray, finest: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+def gap_tolerance(gap: float, log: np.ndarray, finest: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     """Return the gap as a distance in phi, per objective.
 
     Parameters

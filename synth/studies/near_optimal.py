@@ -35,7 +35,7 @@ from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.polishing import polish_variables, settle_discrete
+from synth.search.polishing import polish_discrete, polish_variables
 from synth.search.primal_heuristics import PrimalHeuristics, roundings
 from synth.search.pruning import EpsilonCover
 from synth.study_limits import NEAR, NearLimits
@@ -329,7 +329,7 @@ class _Enumeration:
     def _enumerate(self) -> bool:
         """Look at everything; tell whether every combination is decided."""
         form, near, batch_size = self.form, self.near, self.limits.batch
-        seeker = PrimalHeuristics(form, near, self.rng, every=False)
+        heuristics = PrimalHeuristics(form, near, self.rng, every_goal=False)
         caps = near.fixed_cutoffs[: form.bounded] + near.tie
         stack = [form.boxes.lean(form.boxes.root())]
         while stack:
@@ -348,7 +348,7 @@ class _Enumeration:
             batch = self._open(batch)
             batch, small = form.boxes.split(batch)
             if len(small):
-                left = self._open(seeker.settle(small))
+                left = self._open(heuristics.fathom(small))
                 self.undecided.update(form.boxes.cells.all_members(left.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
@@ -462,7 +462,7 @@ class _Enumeration:
         )
         worst = near.worse(rule.known.phi)
         best = rule.known[int(np.lexsort((*rule.known.phi.T[::-1], np.round(worst, 9)))[0])]
-        (better,) = settle_discrete(form, [best], m, range(len(form.goals)), parts=False)
+        (better,) = polish_discrete(form, [best], m, range(len(form.goals)), parts=False)
         (exact,) = polish_variables(form, [better], m)
         return exact
 

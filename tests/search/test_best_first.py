@@ -1,4 +1,4 @@
-"""The tree that goes on: it closes what a first effort leaves open, and else tells the gap that is proven."""
+"""The tree that goes on: it closes what a first search leaves open, and else tells the gap that is proven."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def form():
     return prepared()
 
 
-def whole(form, slack):
-    return EpsilonCover([0, 1], np.full(2, slack), np.full(2, np.inf), form.archive)
+def whole(form, tolerance):
+    return EpsilonCover([0, 1], np.full(2, tolerance), np.full(2, np.inf), form.archive)
 
 
 def test_it_closes_what_a_cover_leaves_open(form):
@@ -49,14 +49,14 @@ def test_it_closes_what_a_cover_leaves_open(form):
     assert not ended.spent
 
 
-def test_boxes_with_most_room_come_first_until_too_many_wait(form):
+def test_boxes_with_the_largest_possible_gain_come_first_until_too_many_wait(form):
     rule = whole(form, 0.01)
     branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 100)
     left = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 100).open
-    room = rule.possible_gain(form.objectives.phi_of(left.bounds))
-    assert room.min() < 0.01 < room.max() / 2
-    # Within a level what waits is in no order: levels are factors of the square root of 2, above the slack.
-    for most, low, high in ((10**6, room.max() / 2, room.max()), (0, 0.0, 0.01)):
+    gain = rule.possible_gain(form.objectives.phi_of(left.bounds))
+    assert gain.min() < 0.01 < gain.max() / 2
+    # Within a level what waits is in no order: levels are factors of the square root of 2, above the tolerance.
+    for most, low, high in ((10**6, gain.max() / 2, gain.max()), (0, 0.0, 0.01)):
         waiting = OpenBoxes(form, rule, most)
         waiting.add(left)
         assert len(waiting) == len(left) == sum(len(b) for b in waiting.batches)
@@ -67,11 +67,11 @@ def test_boxes_with_most_room_come_first_until_too_many_wait(form):
 
 
 def test_what_does_not_close_ends_by_the_count_of_boxes(form):
-    effort = SearchEffort(seconds=np.inf, spell=200, patience=2, most_waiting=500, most_stuck=5)
+    limits = SearchEffort(seconds=np.inf, spell=200, patience=2, most_waiting=500, most_stuck=5)
     ends = []
     for own in (prepared(), prepared()):
         rule = whole(own, 1e-9)  # less than numbers can tell
-        found = best_first(own, own.boxes.root(), rule, Clock(), np.random.default_rng(0), effort)
+        found = best_first(own, own.boxes.root(), rule, Clock(), np.random.default_rng(0), limits)
         ends.append((found.looked, len(found.open)))
     assert ends[0] == ends[1]
     assert ends[0][1] > 0
@@ -100,8 +100,8 @@ def test_boxes_close_where_fewer_wait_or_promise_less_or_hold_less():
 def test_what_waits_holds_less_the_more_is_closed(form):
     rule = whole(form, 0.01)
 
-    def left(effort: int) -> Boxes:
-        return branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), effort).open
+    def left(node_limit: int) -> Boxes:
+        return branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), node_limit).open
 
     extents = [form.boxes.extent(boxes) for boxes in (form.boxes.root(), left(50), left(100), left(200))]
     assert extents == sorted(extents, reverse=True)
@@ -180,7 +180,7 @@ def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
         time_limit=600,  # however busy the machine is
     )
     assert front.certificate.kind == "global"
-    assert front.statistics["boxes"] > TUNING.tree.boxes_of_many  # more than a first effort
+    assert front.statistics["boxes"] > TUNING.tree.boxes_of_many  # more than a first search
 
 
 @pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
@@ -189,7 +189,7 @@ def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(objectives
     soon = dict.fromkeys(trees, 50 if len(objectives) > 1 else 1)
     ask = {"objectives": objectives, "catalogs": {"rods": RODS}, "points": 5}
     proven = synthesize(tuned(tree=soon), Strut(), NEEDED, **ask)
-    assert proven.certificate.kind == "global"  # what the first effort leaves open is closed
+    assert proven.certificate.kind == "global"  # what the first search leaves open is closed
     left = synthesize(tuned(tree={**soon, "further": SearchEffort(seconds=0.0)}), Strut(), NEEDED, **ask)
     assert left.certificate.kind == "exhaustive"
     assert left.certificate.budget == 0.0

@@ -37,45 +37,45 @@ def archive_of(phi, m):
     return archive
 
 
-def cap_by_hand(known, slack, lower, k):
-    """Return the least value of objective k, less its slack, among those that cover the box in all others."""
+def cutoff_by_hand(known, tolerance, lower, k):
+    """Return the least value of objective k, less its tolerance, among those that cover the box in all others."""
     others = [j for j in range(len(lower)) if j != k]
-    caps = [p[k] - slack[k] for p in known if all(p[j] - slack[j] <= lower[j] for j in others)]
-    return min(caps, default=np.inf)
+    cutoffs = [p[k] - tolerance[k] for p in known if all(p[j] - tolerance[j] <= lower[j] for j in others)]
+    return min(cutoffs, default=np.inf)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
-def test_caps_and_room_of_a_cover_against_brute_force(m, seed):
+def test_cutoffs_and_possible_gain_of_a_cover_against_brute_force(m, seed):
     rng = np.random.default_rng(seed)
     archive = archive_of(some_phi(rng, int(rng.integers(0, 30))), m)
-    slack = np.round(rng.uniform(0.0, 0.3, m), 2)
-    plain = np.where(rng.random(WIDTH) < 0.3, 0.7, np.inf)
+    tolerance = np.round(rng.uniform(0.0, 0.3, m), 2)
+    fixed_cutoffs = np.where(rng.random(WIDTH) < 0.3, 0.7, np.inf)
     lower = some_phi(rng, 50)
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    rule = EpsilonCover(range(m), slack, plain, archive)
-    caps, room = rule.cutoffs(lower), rule.possible_gain(lower)
-    for own, cap, space in zip(lower, caps, room, strict=True):
-        by_hand = [cap_by_hand(archive.phi[:, :m], slack, own[:m], k) for k in range(m)]
-        expected = plain + TIE
+    rule = EpsilonCover(range(m), tolerance, fixed_cutoffs, archive)
+    cutoffs, gain = rule.cutoffs(lower), rule.possible_gain(lower)
+    for own, cutoff, own_gain in zip(lower, cutoffs, gain, strict=True):
+        by_hand = [cutoff_by_hand(archive.phi[:, :m], tolerance, own[:m], k) for k in range(m)]
+        expected = fixed_cutoffs + TIE
         expected[:m] = np.minimum(expected[:m], by_hand)
-        np.testing.assert_array_equal(cap, expected)
+        np.testing.assert_array_equal(cutoff, expected)
         least = min(np.inf if np.isnan(c - o) else c - o for c, o in zip(by_hand, own[:m], strict=True))
-        assert space == (0.0 if np.any(own > plain + TIE) else least)
+        assert own_gain == (0.0 if np.any(own > fixed_cutoffs + TIE) else least)
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
-def test_a_box_without_room_is_covered_and_caps_cut_off_only_what_is_covered(m, seed):
+def test_a_box_without_possible_gain_is_covered_and_cutoffs_exclude_only_what_is_covered(m, seed):
     rng = np.random.default_rng(seed)
     archive = archive_of(rng.uniform(0, 1, (20, WIDTH)), m)
-    slack = rng.uniform(0, 0.1, m)
-    rule = EpsilonCover(range(m), slack, np.full(WIDTH, np.inf), archive)
+    tolerance = rng.uniform(0, 0.1, m)
+    rule = EpsilonCover(range(m), tolerance, np.full(WIDTH, np.inf), archive)
     lower = rng.uniform(0, 1, (60, WIDTH))
     design = lower + rng.exponential(0.1, lower.shape)  # anything the box may hold
-    known = archive.phi[:, :m] - slack
+    known = archive.phi[:, :m] - tolerance
     covered = np.all(known[None] <= design[:, None, :m], axis=2).any(axis=1)
     assert covered[rule.possible_gain(lower) <= 0].all()
     assert np.any(rule.possible_gain(lower) > 0) == (
@@ -88,26 +88,26 @@ def test_a_cover_takes_what_no_known_design_covers():
     archive = archive_of(np.array([[0.5, 0.5, 0, 0]]), 2)
     rule = EpsilonCover([0, 1], np.array([0.1, 0.1]), np.array([np.inf, np.inf, 0.6, np.inf]), archive)
     phi = np.array([[0.45, 0.45, 0, 0], [0.3, 0.9, 0, 0], [0.1, 0.1, 0.9, 0]])
-    # The first is better by less than the slack: kept, but of no use; the last breaks a cap.
+    # The first is better by less than the tolerance: kept, but of no use; the last breaks a cutoff.
     assert rule.take(np.arange(3), np.empty((3, 0)), phi) == 1
     assert sorted(archive.phi[:, 0]) == [0.3, 0.45]
     assert rule.take(np.arange(0), np.empty((0, 0)), phi[:0]) == 0
 
 
-def staircase(rng, m):
-    """Return a staircase over some designs of a random front, the front, and the slack."""
+def non_improvement(rng, m):
+    """Return the rule that proves some designs of a random front, these designs, and the tolerance."""
     archive = archive_of(some_phi(rng, 25), m)
     chosen = rng.choice(len(archive), size=int(rng.integers(1, len(archive) + 1)), replace=False)
     designs = [archive[int(k)] for k in chosen]
-    slack = np.round(rng.uniform(0.01, 0.2, m), 2)
+    tolerance = np.round(rng.uniform(0.01, 0.2, m), 2)
     proven = {c.phi.tobytes() for c in designs if rng.random() < 0.3}
-    return NonImprovement(designs, range(m), slack, archive, proven), designs, slack, archive, proven
+    return NonImprovement(designs, range(m), tolerance, archive, proven), designs, tolerance, archive, proven
 
 
-def steps_by_hand(designs, slack, proven, m):
-    steps = [c.phi[:m] - slack for c in designs if c.phi.tobytes() not in proven]
+def steps_by_hand(designs, tolerance, proven, m):
+    steps = [c.phi[:m] - tolerance for c in designs if c.phi.tobytes() not in proven]
     for k in range(m):
-        best_one = min(c.phi[k] for c in designs) - slack[k]
+        best_one = min(c.phi[k] for c in designs) - tolerance[k]
         steps.append(np.array([best_one if j == k else np.inf for j in range(m)]))
     return steps
 
@@ -115,23 +115,23 @@ def steps_by_hand(designs, slack, proven, m):
 @pytest.mark.parametrize("m", [1, 2, 3])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
-def test_caps_and_room_of_a_staircase_against_brute_force(m, seed):
+def test_cutoffs_and_possible_gain_of_non_improvement_against_brute_force(m, seed):
     rng = np.random.default_rng(seed)
-    rule, designs, slack, archive, proven = staircase(rng, m)
-    steps = steps_by_hand(designs, slack, proven, m)
+    rule, designs, tolerance, archive, proven = non_improvement(rng, m)
+    steps = steps_by_hand(designs, tolerance, proven, m)
     lower = some_phi(rng, 50) - 0.1
     lower[rng.random(lower.shape) < 0.1] = -np.inf
-    for own, cap, space in zip(lower[:, :m], rule.cutoffs(lower), rule.possible_gain(lower), strict=True):
-        known = [cap_by_hand(archive.phi[:, :m], slack, own, k) for k in range(m)]
+    for own, cutoff, own_gain in zip(lower[:, :m], rule.cutoffs(lower), rule.possible_gain(lower), strict=True):
+        known = [cutoff_by_hand(archive.phi[:, :m], tolerance, own, k) for k in range(m)]
         below = [s for s in steps if np.all(own < s)]
         expected = [min(max((s[k] for s in below), default=-np.inf), known[k]) for k in range(m)]
-        np.testing.assert_array_equal(cap[:m], expected)
-        assert np.all(np.isinf(cap[m:]))
-        covered = any(np.all(p[:m] - slack <= own) for p in archive.phi)
+        np.testing.assert_array_equal(cutoff[:m], expected)
+        assert np.all(np.isinf(cutoff[m:]))
+        covered = any(np.all(p[:m] - tolerance <= own) for p in archive.phi)
         if below and not covered:
-            assert space == min(np.array(expected) - own) > 0
+            assert own_gain == min(np.array(expected) - own) > 0
         else:
-            assert not space > 0
+            assert not own_gain > 0
 
 
 def test_a_design_that_is_beaten_is_replaced():
@@ -176,10 +176,10 @@ def test_distinct_leaves_designs_of_which_none_beats_another_and_drops_only_what
         assert any(np.all(a.phi <= c.phi) for a in kept)
 
 
-def test_boxes_are_chosen_along_the_front_and_by_room():
-    along, space = np.arange(10.0)[::-1], np.array([0, 1, 0, 0, 0, 5, 4, 0, 3, 0.0])
-    assert sorted(spread_choice(along, space, 2)) == [1, 5]
-    assert spread_choice(along, space, 10).tolist() == list(range(10))
+def test_boxes_are_chosen_along_the_front_and_by_possible_gain():
+    along, gain = np.arange(10.0)[::-1], np.array([0, 1, 0, 0, 0, 5, 4, 0, 3, 0.0])
+    assert sorted(spread_choice(along, gain, 2)) == [1, 5]
+    assert spread_choice(along, gain, 10).tolist() == list(range(10))
 
 
 # -- a small question --------------------------------------------------------------------------------
@@ -198,9 +198,9 @@ def sampled(form, rng, count=20000):
     return feasible_candidates(form, points, rng.integers(form.instance.combinations.count, size=count))
 
 
-def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
-    slack = np.array([0.02, 0.02])
-    rule = EpsilonCover([0, 1], slack, np.full(2, np.inf), form.archive)
+def test_a_cover_closes_and_no_design_is_better_by_more_than_the_tolerance(form):
+    tolerance = np.array([0.02, 0.02])
+    rule = EpsilonCover([0, 1], tolerance, np.full(2, np.inf), form.archive)
     outcome = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 1e6)
     assert outcome.closed
     assert outcome.looked > 0
@@ -208,7 +208,7 @@ def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
     assert len(rows) == len(form.archive) > 3
     others = sampled(form, np.random.default_rng(1))
     assert len(others) > 500
-    known = form.archive.phi - slack
+    known = form.archive.phi - tolerance
     for c in others:
         assert np.any(np.all(known <= c.phi + 1e-6, axis=1))
 
@@ -217,13 +217,13 @@ def test_a_cover_closes_and_no_design_is_better_by_more_than_the_slack(form):
 def test_the_best_design_is_proven(form, column):
     others = sampled(form, np.random.default_rng(2))
     form.archive.__init__([0, 1], form.n, 2)
-    plain = np.full(2, np.inf)
-    found, outcome = best(form, form.boxes.root(), column, plain, 1e-3, Clock(), np.random.default_rng(0))
+    fixed_cutoffs = np.full(2, np.inf)
+    found, outcome = best(form, form.boxes.root(), column, fixed_cutoffs, 1e-3, Clock(), np.random.default_rng(0))
     assert outcome.closed
     assert found.phi[column] <= min(c.phi[column] for c in others) + 1e-3
 
 
-def test_effort_and_time_end_a_cover(form):
+def test_the_node_limit_and_time_end_a_tree(form):
     rule = EpsilonCover([0, 1], np.array([1e-4, 1e-4]), np.full(2, np.inf), form.archive)
     outcome = branch_and_bound(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0), 1)
     assert not outcome.closed

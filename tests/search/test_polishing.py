@@ -7,7 +7,7 @@ import synth
 from synth import DesignProblem
 from synth.parametric.joint_search import JointSearch
 from synth.search.archive import Candidate
-from synth.search.polishing import settle_discrete
+from synth.search.polishing import polish_discrete
 from synth.tuning import TUNING, SettleLimits
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut, feasible_candidates
@@ -76,7 +76,7 @@ def forms(tuning=TUNING):
 
 
 FORMS = forms()
-AT_ONCE = 7  # points that are evaluated at a time where designs settle piece by piece
+AT_ONCE = 7  # points that are evaluated at a time where designs are polished piece by piece
 IN_PIECES = forms(tuned(heuristics={"settle": SettleLimits(tried_at_once=300, evaluated_at_once=AT_ONCE)}))
 
 
@@ -100,7 +100,7 @@ def step(form, own, trials, combinations, traded, order):
     return Candidate(int(combinations[left[0]]), trials[left[0]], phi[left[0]]) if gains and gains[0] > 0 else own
 
 
-def settled_alone(form, own, traded, order, parts):
+def polished_alone(form, own, traded, order, parts):
     """Return what a design becomes that takes its steps alone, all points of each looked at."""
     for _ in range(TUNING.heuristics.settle.moves):
         before = own
@@ -120,11 +120,11 @@ def settled_alone(form, own, traded, order, parts):
 @pytest.mark.parametrize("which", FORMS)
 @pytest.mark.parametrize("parts", [True, False])
 @pytest.mark.parametrize(("traded", "order"), [(0, [0, 1, 2]), (1, [1, 0]), (2, [0, 1, 2]), (2, [1])])
-def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, traded, order, monkeypatch):
+def test_designs_that_are_polished_at_once_go_where_each_goes_alone(which, parts, traded, order, monkeypatch):
     form = FORMS[which]
     designs = some_designs(form, 60)
-    together = settle_discrete(form, designs, traded, order, parts)
-    alone = [settled_alone(form, own, traded, order, parts) for own in designs]
+    together = polish_discrete(form, designs, traded, order, parts)
+    alone = [polished_alone(form, own, traded, order, parts) for own in designs]
     if traded == 0 or (parts and 0 in order):
         assert any(a is not own for a, own in zip(alone, designs, strict=True))
     pieces, sizes = IN_PIECES[which], []
@@ -135,7 +135,7 @@ def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, tra
         return evaluated(points, own)
 
     monkeypatch.setattr(pieces.points, "feasible_rows", counted)
-    in_pieces = settle_discrete(pieces, designs, traded, order, parts)
+    in_pieces = polish_discrete(pieces, designs, traded, order, parts)
     assert 0 < max(sizes) <= AT_ONCE
     for found in (together, in_pieces):
         assert [c.combination for c in found] == [c.combination for c in alone]
@@ -143,8 +143,8 @@ def test_designs_that_settle_together_go_where_each_goes_alone(which, parts, tra
         np.testing.assert_array_equal([c.phi for c in found], [c.phi for c in alone])
 
 
-def test_no_designs_settle_to_none():
-    assert settle_discrete(FORMS["one question"], [], 1, [0]) == []
+def test_no_designs_are_polished_to_none():
+    assert polish_discrete(FORMS["one question"], [], 1, [0]) == []
 
 
 @pytest.mark.parametrize("which", FORMS)
@@ -153,14 +153,14 @@ def test_what_is_feasible_and_as_good_is_promising(which):
     rng = np.random.default_rng(3)
     combinations = rng.integers(0, form.instance.combinations.count, (40, 1))
     points = form.lower + (form.upper - form.lower) * rng.random((40, form.n))
-    caps = np.array([c.phi[:2] for c in some_designs(form, 40)])
+    cutoffs = np.array([c.phi[:2] for c in some_designs(form, 40)])
     grid = np.linspace(form.lower[0], form.upper[0], 50)
     columns = [grid[None, :], *points.T[1:, :, None]]
-    keep = form.points.promising(columns, combinations, caps)
+    keep = form.points.promising(columns, combinations, cutoffs)
     every = np.repeat(points, 50, axis=0)
     every[:, 0] = np.tile(grid, 40)
     rows, phi = form.points.feasible_rows(every, np.repeat(combinations[:, 0], 50))
-    good = rows[np.all(phi[rows, :2] <= np.repeat(caps, 50, axis=0)[rows] + TIE, axis=1)]
+    good = rows[np.all(phi[rows, :2] <= np.repeat(cutoffs, 50, axis=0)[rows] + TIE, axis=1)]
     assert len(good)
     assert keep.ravel()[good].all()
     assert keep.mean() < 0.5

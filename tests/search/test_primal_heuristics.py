@@ -25,9 +25,9 @@ def strut_form(traded=2, grid=False):
     return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, traded)
 
 
-def seeker(form, slack=1e-3):
+def heuristics(form, tolerance=1e-3):
     m = len(form.archive.columns)
-    rule = EpsilonCover(range(m), np.full(m, slack), np.full(len(form.goals), np.inf), form.archive)
+    rule = EpsilonCover(range(m), np.full(m, tolerance), np.full(len(form.goals), np.inf), form.archive)
     return PrimalHeuristics(form, rule, np.random.default_rng(0), False)
 
 
@@ -48,7 +48,7 @@ def test_exchanging_parts_finds_what_solving_everything_finds(grid):
     rows, phi = form.points.feasible_rows(form.points.makeable(points), own)
     first_design(form, int(own[rows[int(np.argmax(phi[rows, 0]))]]), rng)
     before = form.archive.phi[0, 0]
-    seeker(form).beside(Clock())
+    heuristics(form).beside(Clock())
     assert form.archive.phi[0, 0] < before - 0.1
     assert form.archive.phi[0, 0] <= phi[rows, 0].min() + 1e-9
 
@@ -59,7 +59,7 @@ def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
     own = rng.choice(form.instance.combinations.count, len(points))
     rows, phi = form.points.feasible_rows(points, own)
     first_design(form, int(own[rows[0]]), rng)
-    seeker(form).beside(Clock())
+    heuristics(form).beside(Clock())
     archive = form.archive
     assert len(archive) > 10
     assert len(form.points.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
@@ -68,7 +68,7 @@ def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
 
 def test_nothing_is_looked_for_where_nothing_is_known():
     form = strut_form()
-    seeker(form).beside(Clock())
+    heuristics(form).beside(Clock())
     assert form.counters.nlp_solves == 0
 
 
@@ -79,7 +79,7 @@ def test_corners_lie_below_two_neighbours_where_the_steps_are_widest():
     assert corners(phi[:1], 5).tolist() == [[0.0, 10.0]]
 
 
-def test_a_spread_choice_takes_the_most_room_of_each_stretch():
+def test_a_spread_choice_takes_the_largest_gain_of_each_stretch():
     rng = np.random.default_rng(1)
     along, space = rng.random(103), rng.random(103)
     chosen = spread_choice(along, space, 10)
@@ -118,7 +118,7 @@ def test_limits_that_exclude_each_other_teach_what_to_split():
     form = strut_form()
     assert not len(form.archive)
     boxes = form.boxes.root()
-    seeker(form).look(boxes)
+    heuristics(form).look(boxes)
     assert form.bounding.branching.learned > 0
 
 
@@ -143,7 +143,7 @@ def test_what_no_point_hits_is_solved_for():
     tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.objectives.scales, 0.0)
     optimum = form.continuous.solve_many(tasks, combination, np.array([[50.0, 50.0, 2.0]]))
     assert optimum.variables[0, 0] == pytest.approx(100 / 3.2**2, rel=1e-6)
-    assert seeker(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks) > 0
+    assert heuristics(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks) > 0
     assert form.archive.variables[0, 0] == 10
     assert len(form.points.feasible_rows(form.archive.variables, form.archive.combination)[0]) == 1
 
@@ -164,13 +164,13 @@ def test_boxes_are_split_along_what_matters_at_the_designs_known():
     rows = pd.DataFrame({"designation": list("abcd"), "size [-]": [1.0, 1.1, 1.3, 1.6]})
     problem = Lidded()
     form = Formulation(instance_of(problem, {}, catalogs_for(problem, {"rows": rows})), {"mass": "min"}, 1)
-    caps = np.array([np.inf])
-    before = form.boxes.contract(form.boxes.root(), caps)
+    cutoffs = np.array([np.inf])
+    before = form.boxes.contract(form.boxes.root(), cutoffs)
     point, combination = np.array([[1.5]]), np.array([0])
     feasible, phi = form.points.feasible_rows(point, combination)
     form.archive.add(combination[feasible], point[feasible], phi[feasible])
     form.boxes.focus(form.archive)
-    after = form.boxes.contract(form.boxes.root(), caps)
+    after = form.boxes.contract(form.boxes.root(), cutoffs)
     assert before.scores[0, 0] > before.scores[0, 1]
     assert after.scores[0, 0] < before.scores[0, 0]
     assert after.scores[0, 1] > before.scores[0, 1]

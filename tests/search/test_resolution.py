@@ -11,7 +11,7 @@ import synth
 from synth.declaration import DeclarationError
 from synth.results.certificate import in_words
 from synth.search import resolution
-from synth.search.resolution import FINEST, goal_scales, ranges, rounded_up, slack
+from synth.search.resolution import FINEST, gap_tolerance, goal_scales, ranges, rounded_up
 
 
 class Fit(synth.DesignProblem):
@@ -137,7 +137,7 @@ def test_no_claim_is_finer_than_what_settling_ties_gives_away():
     units, finest = goal_scales(log, sizes, [1e-3, None, 1e-12])
     assert finest.tolist() == [0.0, FINEST, FINEST]
     assert np.allclose(units * finest, [0.0, 5 * FINEST, 1e-12])
-    distance = slack(1e-3, log, finest, np.array([1.0, 0.0, 1e3]))
+    distance = gap_tolerance(1e-3, log, finest, np.array([1.0, 0.0, 1e3]))
     assert distance == pytest.approx([-math.log1p(-1e-3), FINEST - resolution.ROOM, 1.0 - resolution.ROOM], rel=1e-12)
     assert ranges(np.array([[1.0, 2.0], [4.0, 2.0]])).tolist() == [3.0, 2.0]
 
