@@ -12,6 +12,7 @@ from synth.feasibility import Status, utilisation
 from synth.model.model import Evaluation
 from synth.question.count_domain import stated
 from synth.question.instance import Instance
+from synth.question.search_space import SearchSpace
 from synth.results import Design, Frame, PartRow
 from synth.results.statistics import SearchStatistics
 from synth.results.told import UNTOLD
@@ -30,12 +31,12 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
             name: o.chosen for name, o in d.options.items() if o.chosen != o.default or name in instance.problem.options
         },
         requirements={
-            name: format_quantity(instance.requirements[name], d.requirements[name].unit, None)
+            name: format_quantity(instance.values.requirements[name], d.requirements[name].unit, None)
             for name in d.requirements
-            if name in instance.given
+            if name in instance.values.given
         },
-        requirement_values=dict(instance.requirements),
-        not_asked=tuple(instance.not_asked),
+        requirement_values=dict(instance.values.requirements),
+        not_asked=tuple(instance.values.not_asked),
         objectives=dict(objectives),
         units=dict(model.units),
         kinds={name: kind for name, _, kind in d.quantities()},
@@ -48,8 +49,8 @@ def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
 def _restated(instance: Instance) -> dict[str, Any]:
     """Return the limits and own tables that a check of a design needs; tables in memory cannot be repeated."""
     restated: dict[str, Any] = dict(instance.problem.restated)
-    if instance.asked_limits:
-        restated["limits"] = stated(instance.asked_limits)
+    if instance.limits.as_typed:
+        restated["limits"] = stated(instance.limits.as_typed)
     files = instance.catalogs.files()
     if files:
         restated["catalogs"] = files
@@ -98,7 +99,7 @@ def design_of(
     return Design(frame=frame, parts=dict(parts), choices=dict(choices), objectives=objectives, **known)
 
 
-def told_by(instance: Instance, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
+def told_by(instance: SearchSpace, result: Evaluation, points: np.ndarray, rows: Sequence[int]) -> list[dict[str, Any]]:
     """Return the fields of Design that an evaluation tells, for some of its designs with these variables."""
     model, own = instance.model, np.asarray(rows, dtype=np.int64)
     count = len(own)
@@ -164,8 +165,8 @@ def offered(instance: Instance) -> SearchStatistics:
         counts={n: len(v) for n, v in selection.counts.items()},
         choices={n: len(v) for n, v in selection.choices.items()},
         rows_left_out=selection.left_out,
-        combinations_left_out=instance.combinations_left_out if instance.compared else UNTOLD,
-        not_asked=list(instance.not_asked),
+        combinations_left_out=instance.selection.combinations_left_out if instance.compared else UNTOLD,
+        not_asked=list(instance.values.not_asked),
     )
 
 

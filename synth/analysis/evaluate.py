@@ -16,6 +16,7 @@ from synth.question.inputs import inputs_of_design, part_value
 from synth.question.instance import Instance
 from synth.question.names import as_mapping
 from synth.question.objectives import chosen_objectives
+from synth.question.offers import offers
 from synth.question.request import Request
 from synth.question.search_range import outside, refuse_not_computable, refuse_other_sign, shown_range, widened
 from synth.results import Design
@@ -93,7 +94,7 @@ def _evaluate(
     model = instance.model
     rows = _chosen_rows(instance, parts)
     known, choices, derived = _read_values(model, values, in_si)
-    instance.state_limits_on_unknowns(known)
+    instance.limits.judge_unknowns(known)
     data = _data(instance, rows, known, choices)
     remarks = _refuse_discrete(instance, data, rows)
     variables = _complete_variables(model, known, derived, data)
@@ -163,7 +164,7 @@ def _data(
             raise InputError(f"parts: {entry.name}", table.designations[index], right, ("parts", entry.name))
         return value
 
-    return inputs_of_design(instance.model, instance.requirements, instance.row_values, known, choices, part)
+    return inputs_of_design(instance.model, instance.values.requirements, instance.values.rows, known, choices, part)
 
 
 def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[str, tuple[Any, int]]) -> tuple[str, ...]:
@@ -182,7 +183,7 @@ def _refuse_discrete(instance: Instance, data: Sequence[float], rows: Mapping[st
     remarks = []
     for slot, (table, index) in rows.items():
         part = model.declaration.slots[slot]
-        if not instance.offers(part, table)[index]:
+        if not offers(part, table)[index]:
             remarks.append(f"unusual_part: {slot} {table.designations[index]} does not meet {' and '.join(part.where)}")
     return tuple(remarks)
 

@@ -13,6 +13,7 @@ import numpy as np
 from synth.declaration import Refusal
 from synth.model.numbers import numeric
 from synth.question.instance import Instance
+from synth.question.requirement_values import RequirementValues
 from synth.special import expanded
 from synth.units import format_quantity, outward, parse_quantity
 
@@ -88,7 +89,7 @@ def fired_guards(instance: Instance) -> list[FiredGuard]:
     for refusal, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True):
         if len(kinds) <= 1:
             one = _RefusedChoices(instance, refusal, next(iter(kinds), ""))
-            if one.fires(instance):
+            if one.fires(instance.values):
                 found.append(one.told())
     return found
 
@@ -120,9 +121,10 @@ class _RefusedChoices:
         self.pairs = [tuple(numeric(expanded(x, calls)) for x in (w.smaller, w.larger)) for w in self.wanted]
         self.slot = next((s for s in instance.selection.slots if s.slot == name), None)
 
-    def _places(self, instance: Instance) -> Iterator[dict[str, float]]:
+    def _places(self, requirements: RequirementValues) -> Iterator[dict[str, float]]:
         """Yield the values of all symbols: once, or for every row, count or choice that is offered."""
-        known = instance.symbol_values()
+        instance = self.instance
+        known = requirements.by_symbol(instance.model)
         if self.slot is not None:
             columns = instance.model.declaration.slots[self.name].columns
             for k in range(len(self.slot.rows)):
@@ -134,13 +136,13 @@ class _RefusedChoices:
         else:
             yield known
 
-    def fires(self, instance: Instance) -> bool:
-        """Tell whether nothing that is offered escapes."""
-        return all(_at(self.when, values) > 0.5 for values in self._places(instance))
+    def fires(self, requirements: RequirementValues) -> bool:
+        """Tell whether nothing that is offered escapes with these values of the requirements."""
+        return all(_at(self.when, values) > 0.5 for values in self._places(requirements))
 
     def told(self) -> FiredGuard:
         """Return it with its amounts."""
-        places = list(self._places(self.instance))
+        places = list(self._places(self.instance.values))
         # The row that comes nearest, and of it what is missed by most.
         gaps = [[_gap(*(_at(x, values) for x in pair)) for pair in self.pairs] for values in places]
         nearest = min(range(len(places)), key=lambda k: max(gaps[k], default=0.0))
@@ -183,7 +185,7 @@ class _RefusedChoices:
 
     def _lift(self, name: str) -> str:
         """Return the nearest value of a requirement with which this refusal is gone; nothing where there is none."""
-        r, value = self.instance.model.declaration.requirements[name], self.instance.requirements[name]
+        r, value = self.instance.model.declaration.requirements[name], self.instance.values.requirements[name]
         if not value > 0:
             return ""
         found: list[tuple[float, str]] = []
@@ -205,12 +207,15 @@ class _RefusedChoices:
         return min(found)[1] if found else ""
 
     def _fires_at(self, name: str, change: float) -> bool:
-        return self.fires(self.instance.shifted(name, self.instance.requirements[name] * math.exp(change)))
+        return self._fires_with(name, self.instance.values.requirements[name] * math.exp(change))
 
     def _fires_text(self, name: str, text: str) -> bool:
         r = self.instance.model.declaration.requirements[name]
         value = parse_quantity(text, r.unit, name)
-        return not r.lower <= value <= r.upper or self.fires(self.instance.shifted(name, value))
+        return not r.lower <= value <= r.upper or self._fires_with(name, value)
+
+    def _fires_with(self, name: str, value: float) -> bool:
+        return self.fires(self.instance.values.moved(self.instance.model, name, value))
 
 
 def _at(made: tuple[Any, list[str]], values: Mapping[str, float]) -> float:

@@ -108,7 +108,7 @@ def curves(
     catalogs = catalogs_for(problem, catalogs)
     if design is None and values is None:
         instance = Instance(Request(problem=problem, requirements=requirements, catalogs=catalogs), restrict=False)
-        spec = {**instance.requirements, **dict.fromkeys(instance.not_asked)}
+        spec = {**instance.values.requirements, **dict.fromkeys(instance.values.not_asked)}
         return _checked(problem, "curves", "curves", problem.curves(spec))
     evaluated = evaluate(problem, requirements, design, values=values, parts=parts, catalogs=catalogs)
     return _checked(problem, "curves", "curves", problem.curves(requirements_of(evaluated), evaluated))

@@ -10,7 +10,7 @@ from synth.bounds.compiled_propagation import CompiledPropagation
 from synth.bounds.influences import Influences
 from synth.bounds.propagation import Propagation
 from synth.bounds.question_bounds import QuestionBounds
-from synth.question.instance import Instance
+from synth.question.search_space import SearchSpace
 from synth.tuning import Tuning
 
 
@@ -47,7 +47,7 @@ class Bounding:
         trees = [self._influences.clusters(factor) for factor in question.factors]
         self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)))
 
-    def among(self, instance: Instance) -> Bounding | None:
+    def among(self, instance: SearchSpace) -> Bounding | None:
         """Return the same for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
         question = self.question.among(instance)
         if question is None:

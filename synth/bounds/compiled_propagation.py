@@ -138,8 +138,8 @@ class CompiledPropagation:
             constants=np.array(question.constants[every]),
             rights=np.array(question.right_sides),
             root=question.root,
-            lower=np.concatenate([instance.lower, question.low[n:]]),
-            upper=np.concatenate([instance.upper, question.high[n:]]),
+            lower=np.concatenate([instance.ranges.lower, question.low[n:]]),
+            upper=np.concatenate([instance.ranges.upper, question.high[n:]]),
             spans=self._branching.spans,
             steep=self._branching.tables.steep,
             spreads=self._branching.tables.spreads,
@@ -152,7 +152,7 @@ class CompiledPropagation:
         if self._halved is None:
             question, trees = self._propagation.question, self._propagation.cells.trees
             ranges = np.concatenate(
-                [question.instance.upper - question.instance.lower, np.zeros(len(question.auxiliary))]
+                [question.instance.ranges.upper - question.instance.ranges.lower, np.zeros(len(question.auxiliary))]
             )
             self._halved = Halves([t.left for t in trees], [t.right for t in trees], ranges)
         return self._halved

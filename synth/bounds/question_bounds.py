@@ -19,7 +19,7 @@ from synth.bounds.clusters import Factor
 from synth.bounds.contractor import INNER, Contractor, MovingInputs, Root
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SPECIAL
-from synth.question.instance import Instance
+from synth.question.search_space import SearchSpace
 from synth.special import SpecialCall, expanded
 from synth.tuning import BranchingSettings
 
@@ -32,7 +32,7 @@ class QuestionBounds:
 
     Parameters
     ----------
-    instance : Instance
+    instance : SearchSpace
     cuts : list of NodeConstraint
         Limits, with the constant right sides of this question.
     goals : list of Goal
@@ -64,7 +64,7 @@ class QuestionBounds:
 
     def __init__(
         self,
-        instance: Instance,
+        instance: SearchSpace,
         cuts: Sequence[NodeConstraint],
         goals: Sequence[Goal],
         bounded: int,
@@ -92,14 +92,14 @@ class QuestionBounds:
         ends = [self._range_of_variable(i) for i in range(self.n)] + [self.range_of(k) for k in self.auxiliary]
         self.low, self.high = np.array([a for a, _ in ends]), np.array([b for _, b in ends])
         self.positive = self.low > 0
-        self.grids = [*instance.grids(), *(np.empty(0) for _ in self.auxiliary)]
+        self.grids = [*instance.ranges.grids(), *(np.empty(0) for _ in self.auxiliary)]
 
-    def among(self, instance: Instance) -> QuestionBounds | None:
+    def among(self, instance: SearchSpace) -> QuestionBounds | None:
         """Return the same for other rows of the first factor: what holds over all rows here is not sought again.
 
         Parameters
         ----------
-        instance : Instance
+        instance : SearchSpace
             Like that of this question but for the first factor.
 
         Returns
@@ -155,7 +155,7 @@ class QuestionBounds:
         instance, model, wanted = self.instance, self.model, self.sides()
         needed = set(model.program.needed(wanted)) if wanted else set()
         read = {k for k, node in enumerate(model.program.input_nodes[self.n :]) if node in needed}
-        for refusal in instance.joint_refusals:
+        for refusal in instance.selection.joint_refusals:
             symbols = model.function(("symbols", id(refusal)), partial(_symbols, refusal.when, model.calls))
             read |= {k for k, e in enumerate(model.data_inputs) if str(e.sx) in symbols}
         return read
@@ -163,7 +163,8 @@ class QuestionBounds:
     def _factor(self, f: int, name: str, owner: Sequence[int]) -> Factor:
         """Return a factor with the numbers of its rows that anything depends on."""
         instance = self.instance
-        inputs, caps = tuple(k for k, own in enumerate(owner) if own == f and k in self._read), instance.caps(f)
+        inputs = tuple(k for k, own in enumerate(owner) if own == f and k in self._read)
+        caps = instance.cutoffs if f < instance.scenario_factors else {}
         columns = np.empty((instance.combinations.radix[f], len(inputs) + len(caps)))
         for position, column in enumerate([*(instance.column(k) for k in inputs), *caps.values()]):
             columns[:, position] = column
@@ -198,7 +199,7 @@ class QuestionBounds:
     def _root(self, values: Sequence[np.ndarray]) -> Root:
         """Return what holds everywhere; objectives that only settle ties cut nothing off, so that they may count."""
         hull = (np.array([np.min(v) for v in values]), np.array([np.max(v) for v in values]))
-        lower, upper = self.instance.lower, self.instance.upper
+        lower, upper = self.instance.ranges.lower, self.instance.ranges.upper
         return self.contractors[True].root(lower, upper, hull, self.constants[True], self.right_sides)
 
     def _auxiliary(self, settings: BranchingSettings) -> tuple[int, ...]:
@@ -225,7 +226,7 @@ class QuestionBounds:
         return tuple(sorted(result[: settings.most_pivots]))
 
     def _range_of_variable(self, position: int) -> tuple[float, float]:
-        low, high = float(self.instance.lower[position]), float(self.instance.upper[position])
+        low, high = float(self.instance.ranges.lower[position]), float(self.instance.ranges.upper[position])
         node, root = self.model.program.input_nodes[position], self.root
         if node in self.contractors[True].order and not root.empty:
             low, high = max(low, float(root.low[node])), min(high, float(root.high[node]))

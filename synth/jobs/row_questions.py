@@ -432,7 +432,7 @@ class Questioner:
                 asked = {name: question[name] for name in (REQUIREMENTS, PARTS, LIMITS, FIX)}
                 grid = self.settings["grid"]
                 instance = Instance(Request(problem=problem, catalogs=catalogs, grid=grid, **asked))
-                instance.grids()
+                instance.ranges.grids()
                 if given not in variant.checked:
                     chosen_objectives(instance.model, self.settings["objectives"])
                     variant.checked.add(given)

@@ -15,6 +15,7 @@ from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
 from synth.model.constraint import SIGNS, Constraint
+from synth.model.numbers import numeric
 from synth.model.program import Program
 from synth.special import SpecialCall, expanded
 from synth.units import format_quantity
@@ -361,6 +362,23 @@ class Model:
                 held[name] = held[name] | void[name]
                 feasible &= held[name]
         return Evaluation(values, limits, residuals, held, void, advice, feasible)
+
+    def number(self, expression: Any, values: Mapping[str, float]) -> float:
+        """Return the value of an expression of the declaration that no variable is in.
+
+        What evaluates it is built once per model, not once per question.
+
+        Parameters
+        ----------
+        expression : symbol or expression
+        values : mapping
+            Symbol -> SI value.
+        """
+        made: tuple[Any, list[str]] = self.function(
+            ("number", id(expression)), lambda: numeric(expanded(expression, self.calls))
+        )
+        function, names = made
+        return float(function.call([values[name] for name in names])[0])
 
     def refused(self, refusal: Refusal) -> Any:
         """Return the function that evaluates a refusal for batches of inputs."""

@@ -153,8 +153,8 @@ class JointFrontSearch:
             Where to look first.
         """
         positions = np.repeat(numbers, levels.shape[1])
-        caps = {0: self.first.form.objectives.signed(0, levels.ravel())}
-        search = self._search(positions, self.wider, sought=1, caps=caps)
+        cutoffs = {0: self.first.form.objectives.signed(0, levels.ravel())}
+        search = self._search(positions, self.wider, sought=1, cutoffs=cutoffs)
         self.others.append((search, positions))
         search.look.starts = {self.first.together.combinations.own(c.combination): c.variables for c in known}
         return search

@@ -14,9 +14,12 @@ from typing import Any
 import numpy as np
 
 from synth.bounds.compiled_subtrees import CapTables
+from synth.model.model import DataInput
 from synth.question.combinations import JointCombinations
 from synth.question.inputs import inputs_of_combination
 from synth.question.instance import Instance
+from synth.question.requirement_values import RequirementValues
+from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive, Candidate
 from synth.search.boxes import Boxes
 from synth.search.formulation import Formulation
@@ -25,8 +28,10 @@ from synth.search.question import Question
 from synth.tuning import TUNING, Tuning
 
 
-class JointInstance(Instance):
+class JointInstance(SearchSpace):
     """Several questions as one: the first digit of a combination tells which.
+
+    What they have in common is that of the first.
 
     Parameters
     ----------
@@ -34,70 +39,67 @@ class JointInstance(Instance):
         That are alike, as :func:`alike` tells.
     moving : collection of str, optional
         Requirements that may differ although they do not here, so that code is compiled once for several searches.
-    caps : mapping, optional
+    cutoffs : mapping, optional
         Number of an objective -> the most that it may be in each question, as a value with its sign: it tells
         questions apart.
     """
 
+    scenario_factors = 1
     combinations: JointCombinations
 
     def __init__(
-        self, each: Sequence[Instance], moving: Collection[str] = (), caps: Mapping[int, np.ndarray] | None = None
+        self, each: Sequence[Instance], moving: Collection[str] = (), cutoffs: Mapping[int, np.ndarray] | None = None
     ) -> None:
-        self.__dict__.update(each[0].__dict__)
-        self.each, self._caps = list(each), dict(caps or {})
-        names = {*moving, *different(each)}
-        self.moving = {n: np.array([i.requirements[n] for i in each]) for n in self.requirements if n in names}
-        self.apart = 1
-        self.combinations = JointCombinations([i.combinations for i in each])
+        self.each, self.first, self.cutoffs = list(each), each[0], dict(cutoffs or {})
+        first, codec = self.first, JointCombinations([i.combinations for i in each])
+        super().__init__(first.model, first.ranges, first.limits, first.selection, codec)
+        names, asked = {*moving, *different(each)}, [i.values.requirements for i in each]
+        self.moving = {n: np.array([own[n] for own in asked]) for n in asked[0] if n in names}
 
     def owners(self) -> tuple[int, ...]:
-        """Return, per data input of the model, the number of the factor it belongs to."""
+        """Return, per data input of the model, the number of the factor it belongs to; -1: all questions fix it."""
         inputs = zip(super().owners(), self.model.data_inputs, strict=True)
         return tuple(0 if self._moves(entry) else own for own, entry in inputs)
-
-    def caps(self, f: int) -> dict[int, np.ndarray]:
-        """Return what each question allows objectives to be, by the number of the objective."""
-        return self._caps if f == 0 else {}
-
-    def of(self, combination: int) -> Instance:
-        """Return the question that a combination belongs to."""
-        return self.each[self.combinations.question(combination)]
-
-    def data(self, combinations: np.ndarray) -> list[Any]:
-        """Return the data inputs of the model for combinations given by number."""
-        every = np.asarray(combinations, dtype=np.int64)
-        question = self.combinations.question(every)
-        requirements = {**self.requirements, **{name: values[question] for name, values in self.moving.items()}}
-        return inputs_of_combination(self.model, requirements, self.row_values, self.combinations, every)
 
     def column(self, position: int) -> np.ndarray:
         """Return data input number ``position`` for every alternative of the factor it belongs to."""
         entry = self.model.data_inputs[position]
         return self.moving[entry.name] if self._moves(entry) else super().column(position)
 
-    def _moves(self, entry: Any) -> bool:
+    def data(self, combinations: np.ndarray) -> list[Any]:
+        """Return the data inputs of the model for combinations given by number."""
+        every, fixed = np.asarray(combinations, dtype=np.int64), self.first.values
+        question = self.combinations.question(every)
+        requirements = {**fixed.requirements, **{name: values[question] for name, values in self.moving.items()}}
+        return inputs_of_combination(self.model, requirements, fixed.rows, self.combinations, every)
+
+    def values_of(self, combination: int) -> RequirementValues:
+        """Return the requirement values of the question that a combination belongs to."""
+        return self.each[self.combinations.question(combination)].values
+
+    def _moves(self, entry: DataInput) -> bool:
         return entry.kind == "requirement" and entry.name in self.moving
 
 
 def different(each: Sequence[Instance]) -> list[str]:
     """Return the requirements that are not the same in all of some questions."""
     # Options may leave out requirements.
-    names = dict.fromkeys(n for i in each for n in i.requirements)
-    return [n for n in names if len({i.requirements[n] for i in each if n in i.requirements}) > 1]
+    asked = [i.values.requirements for i in each]
+    names = dict.fromkeys(n for own in asked for n in own)
+    return [n for n in names if len({own[n] for own in asked if n in own}) > 1]
 
 
 def alike(question: Question) -> tuple[Any, ...]:
     """Return what questions must have in common to be answered together."""
     instance, settings = question.instance, question.settings
-    selection = instance.selection
+    ranges, selection = instance.ranges, instance.selection
     return (
         instance.model,
-        instance.grid,
-        instance.lower.tobytes(),
-        instance.upper.tobytes(),
-        instance.pinned.tobytes(),
-        tuple(instance.own),
+        ranges.grid,
+        ranges.lower.tobytes(),
+        ranges.upper.tobytes(),
+        ranges.pinned.tobytes(),
+        tuple(instance.limits.judging),
         tuple((s.slot, tuple(s.table.hashes[int(r)] for r in s.rows)) for s in selection.slots),
         tuple((n, v.tobytes()) for n, v in (*selection.counts.items(), *selection.choices.items())),
         tuple(question.chosen.items()),

@@ -106,7 +106,7 @@ class JointSearch:
         Of questions that these are among.
     sought : int
         Number of the objective that is sought.
-    caps : mapping, optional
+    cutoffs : mapping, optional
         As for :class:`JointInstance`.
     """
 
@@ -119,19 +119,20 @@ class JointSearch:
         ideas: Sequence[Design] = (),
         wider: SharedBounds | None = None,
         sought: int = 0,
-        caps: Mapping[int, np.ndarray] | None = None,
+        cutoffs: Mapping[int, np.ndarray] | None = None,
     ) -> None:
         self.started = time.monotonic()
         self.questions, self.progress = list(questions), progress
         first = questions[0]
         self.tuning, self.joint = first.tuning, first.tuning.joint
         self.wider, self.workers, self.sought = wider, workers, sought
-        self.together = JointInstance([q.instance for q in questions], () if wider is None else wider.moving, caps)
+        moving = () if wider is None else wider.moving
+        self.together = JointInstance([q.instance for q in questions], moving, cutoffs)
         self.gap = first.settings.gap
         self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
         self.form = self._prepared()
         self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
-        for k, values in (caps or {}).items():
+        for k, values in (cutoffs or {}).items():
             self.plain[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
         self.known = self._none_known()
         self.form.archive = self.known
@@ -139,7 +140,7 @@ class JointSearch:
         self.rng = np.random.default_rng(first.settings.seed)
         self.pool = self.form.boxes.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
-        self.look = JointHeuristics(self.together, self.clock, self.rng, bool(caps), self.tuning.heuristics.joint)
+        self.look = JointHeuristics(self.together, self.clock, self.rng, bool(cutoffs), self.tuning.heuristics.joint)
         self.look.starts = self._starts(ideas)
 
     def answers(self) -> list[ParetoFront | None]:
@@ -394,12 +395,10 @@ class JointSearch:
         # The objective may be positive in some questions although it is not in all.
         result = []
         for c in designs:
-            own = self.together.combinations.own(c.combination)
-            form, number = (
-                Formulation(self.together.of(c.combination), self.goals, 1, tuning=self.tuning),
-                np.array([own]),
-            )
-            _, phi = form.points.feasible_rows(c.variables[None, :], number)
+            codec = self.together.combinations
+            question, own = codec.question(c.combination), codec.own(c.combination)
+            form = Formulation(self.together.each[question], self.goals, 1, tuning=self.tuning)
+            _, phi = form.points.feasible_rows(c.variables[None, :], np.array([own]))
             result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
 

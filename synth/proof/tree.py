@@ -95,8 +95,8 @@ class ProofTree:
         model = instance.model
         sides: list[Any] = [model.quantity_sx[name] for name in objectives]
         sides += [side for limit in model.limits for side in (limit.value, limit.limit)]
-        sides += [model.quantity_sx[x.quantity] for x in instance.own]
-        sides += [refusal.when for refusal in instance.joint_refusals]
+        sides += [model.quantity_sx[x.quantity] for x in instance.limits.judging]
+        sides += [refusal.when for refusal in instance.selection.joint_refusals]
         self.program = Program(model.inputs, sides, model.calls)
         self._used = set(self.program.needed(self.program.outputs))
         self._coordinates: list[Coordinate] = []
@@ -120,8 +120,8 @@ class ProofTree:
         """Return, per input of the program, the number of its coordinate, or its value where it has but one."""
         instance, model = self.instance, self.instance.model
         inputs: list[int | float] = [math.nan] * self.program.n_inputs
-        for k, grid in enumerate(instance.grids()):
-            low, high = float(instance.lower[k]), float(instance.upper[k])
+        for k, grid in enumerate(instance.ranges.grids()):
+            low, high = float(instance.ranges.lower[k]), float(instance.ranges.upper[k])
             if len(grid):
                 inputs[k] = self._ladder(k, grid)
             elif low == high or not self._matters(k):
@@ -134,9 +134,9 @@ class ProofTree:
         first = len(model.variables)
         for k, entry in enumerate(model.data_inputs, start=first):
             if entry.kind == "requirement":
-                inputs[k] = float(instance.requirements[entry.name])
+                inputs[k] = float(instance.values.requirements[entry.name])
             elif entry.kind == "row":
-                inputs[k] = float(instance.row_values[str(entry.sx)])
+                inputs[k] = float(instance.values.rows[str(entry.sx)])
             elif entry.kind == "part":
                 slots[entry.name].append(k)
             else:
@@ -181,7 +181,7 @@ class ProofTree:
             if not any(isinstance(x, float) and math.isnan(x) for x in optional):  # else void whatever is chosen
                 void = tuple(x for x in optional if isinstance(x, int) and self._lacks(x))
                 self._limits.append(LimitSides(value, bound, limit.sense, limit.scale, void, limit.guard))
-        for x in self.instance.own:
+        for x in self.instance.limits.judging:
             self._limits.append(LimitSides(next(outputs), float(x.bound), x.sense, NO_SCALE))
         self._refusals = list(outputs)
 

@@ -4,40 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from synth.errors import InputError
+from synth.question.selection import Selection
 from synth.tables.table import Table
 
 if TYPE_CHECKING:
     from synth.results import Design
 
 Numbers = TypeVar("Numbers", int, np.ndarray)
-
-
-@dataclass(frozen=True)
-class SlotRows:
-    """The rows of a table that may fill a slot, and their numbers for the model."""
-
-    slot: str
-    table: Table
-    rows: np.ndarray
-    columns: dict[str, np.ndarray]
-
-
-@dataclass
-class Selection:
-    """What remains of the discrete unknowns, and why the rest was left out."""
-
-    slots: list[SlotRows] = field(default_factory=list)
-    counts: dict[str, np.ndarray] = field(default_factory=dict)
-    choices: dict[str, np.ndarray] = field(default_factory=dict)
-    left_out: list[dict[str, str]] = field(default_factory=list)
-    offered: dict[str, int] = field(default_factory=dict)
 
 
 class MixedRadix:

@@ -9,7 +9,7 @@ import numpy as np
 from synth.declaration import Declaration
 from synth.model.model import DataInput, Model
 from synth.question.inputs import fixed_designation, part_value
-from synth.question.instance import Instance
+from synth.question.offers import offers
 from synth.tables.catalogs import Catalogs
 
 
@@ -47,7 +47,7 @@ def _data_range(entry: DataInput, d: Declaration, tables: Catalogs) -> tuple[flo
     else:
         part = d.slots[entry.name]
         table = tables.table(part.table)
-        rows = np.flatnonzero(Instance.offers(part, table))
+        rows = np.flatnonzero(offers(part, table))
     values = part_value(table, rows, entry.columns)
     present = values[~np.isnan(values)]
     return (float(present.min()), float(present.max())) if len(present) else (math.nan, math.nan)

@@ -56,7 +56,7 @@ class Rater:
         self.model, self.asked = self.instance.model, asked
         d = self.model.declaration
         self.things = scattered(asked, d)
-        check_values(self.things, d, self.instance.requirements)
+        check_values(self.things, d, self.instance.values.requirements)
         self.units = {x.name: x.unit for x in self.things}
         known = self.model.input_number
         moving = [(j, m, known[m.key]) for j, x in enumerate(self.things) for m in x.members if m.key in known]
@@ -201,7 +201,7 @@ class Rater:
 
     def _nominal(self, design: Design, member: Member) -> float:
         if member.kind == "requirement":
-            return self.instance.requirements[member.name]
+            return self.instance.values.requirements[member.name]
         if member.kind == "variable":
             return float(design.values[member.name])
         return self._cell(design, member.name, member.column)
@@ -230,8 +230,8 @@ class Rater:
         instance = self.instance
         return inputs_of_design(
             self.model,
-            instance.requirements,
-            instance.row_values,
+            instance.values.requirements,
+            instance.values.rows,
             design.values,
             design.choices,
             lambda entry: float(first_value([self._cells(design, entry.name, c) for c in entry.columns])[0]),

@@ -22,7 +22,7 @@ from synth.question.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
 if TYPE_CHECKING:
-    from synth.question.combinations import SlotRows
+    from synth.question.selection import SlotRows
 
 CATALOGUE, NEW_AND_WORN = "catalogue range", "new and worn"
 # Columns of a table of friction pairs: what slides, and the ends of its scatter; mu_static moves with it in proportion.

@@ -53,10 +53,10 @@ class BoxOperations:
         self.n, self.goals = len(instance.model.variables), len(question.goals)
         self.cells, self.width = bounding.propagation.cells, question.width
         self.refused_cells = RefusedCells(instance, self.cells, tuning.arrays.pairs)
-        self.grids = instance.grids()
+        self.grids = instance.ranges.grids()
         auxiliary = np.zeros(self.width - self.n)
         self._gridded = np.concatenate([[len(g) > 0 for g in self.grids], auxiliary]).astype(bool)
-        self._span = np.concatenate([instance.upper - instance.lower, auxiliary])
+        self._span = np.concatenate([instance.ranges.upper - instance.ranges.lower, auxiliary])
         self._focused: np.ndarray | None = None
 
     # -- boxes of some combinations ----------------------------------------------------------------
@@ -197,7 +197,7 @@ class BoxOperations:
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
         """Return the boxes that may hold a combination that no refusal over several slots forbids."""
-        if not self.instance.joint_refusals:
+        if not self.instance.selection.joint_refusals:
             return boxes
         boxes = boxes.take(self.refused_cells.may_be_allowed(boxes.cell))
         keep = ~self.cells.single(boxes.cell)
@@ -210,8 +210,8 @@ class BoxOperations:
         alive = np.ones(len(low), dtype=bool)
         # An active limit loosened by the margin must not cost a grid point or a pinned value.
         n = self.n
-        np.maximum(low[:, :n], self.instance.lower, out=low[:, :n])
-        np.minimum(high[:, :n], self.instance.upper, out=high[:, :n])
+        np.maximum(low[:, :n], self.instance.ranges.lower, out=low[:, :n])
+        np.minimum(high[:, :n], self.instance.ranges.upper, out=high[:, :n])
         margins = self.tuning.tolerances.margins
         for k, grid in enumerate(self.grids):
             if len(grid):

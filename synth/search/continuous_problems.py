@@ -44,7 +44,7 @@ def rows_of_question(question: QuestionBounds, log_goals: Sequence[bool]) -> Row
         goals=tuple(question.goals),
         log_cuts=tuple(c.sense != "equal" and both_positive(c) for c in cuts),
         log_goals=tuple(bool(x) for x in log_goals),
-        log_variables=tuple(bool(x > 0) for x in question.instance.lower),
+        log_variables=tuple(bool(x > 0) for x in question.instance.ranges.lower),
     )
 
 
@@ -143,8 +143,8 @@ class ContinuousProblems:
         data = self.instance.data(combinations) if data is None else data
         self.counters.solved_combinations.update(np.unique(combinations).tolist())
         self.counters.nlp_solves += count
-        low = np.broadcast_to(self.instance.lower, (count, self.n)) if low is None else low
-        high = np.broadcast_to(self.instance.upper, (count, self.n)) if high is None else high
+        low = np.broadcast_to(self.instance.ranges.lower, (count, self.n)) if low is None else low
+        high = np.broadcast_to(self.instance.ranges.upper, (count, self.n)) if high is None else high
         void = void_limits(self.constraints, data, count)
         void = void if skipped is None else void | skipped
         start, bounds, workers = np.clip(start, low, high), self.question.right_sides, self.execution.workers

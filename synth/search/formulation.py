@@ -11,7 +11,8 @@ import numpy as np
 from synth.bounds.bounding import Bounding
 from synth.bounds.question_bounds import QuestionBounds
 from synth.model.constraint import Goal, NodeConstraint
-from synth.question.instance import Instance
+from synth.question.requirement_values import RequirementValues
+from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive
 from synth.search.box_operations import BoxOperations
 from synth.search.continuous_problems import ContinuousProblems, open_kinks, rows_of_question
@@ -31,7 +32,7 @@ class Formulation:
 
     Parameters
     ----------
-    instance : Instance
+    instance : SearchSpace
     objectives : mapping
         All objectives of interest with their sense: those to trade off first, then those that settle ties.
     traded : int
@@ -47,7 +48,7 @@ class Formulation:
 
     def __init__(
         self,
-        instance: Instance,
+        instance: SearchSpace,
         objectives: Mapping[str, str],
         traded: int,
         infeasibility: bool = False,
@@ -67,7 +68,8 @@ class Formulation:
         self.bounds = [cut.bound for cut in self.cuts]
         # A single objective needs bounds of the next one as well, which settles ties.
         self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
-        self.lower, self.upper, self.grids = instance.lower, instance.upper, instance.grids()
+        ranges = instance.ranges
+        self.lower, self.upper, self.grids = ranges.lower, ranges.upper, ranges.grids()
         self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
         self.infeasibility = infeasibility
         moved = [model.program.dependence([k]) for k in range(self.n)]
@@ -80,12 +82,12 @@ class Formulation:
         self._kinks = open_kinks(question, self._rows)
         self._begin(SearchCounters() if counters is None else counters)
 
-    def among(self, instance: Instance, workers: int = 1) -> Formulation | None:
+    def among(self, instance: SearchSpace, workers: int = 1) -> Formulation | None:
         """Return the same for some of the questions it was made for, whose numbers lie within those known here.
 
         Parameters
         ----------
-        instance : Instance
+        instance : SearchSpace
             As for :meth:`QuestionBounds.among`.
         workers : int
             Threads.
@@ -107,7 +109,7 @@ class Formulation:
         """Know no design yet, and count from here."""
         self.counters = counters
         self.archive = self.new_archive(range(self.traded))
-        self.followers: dict[int, dict[str, dict[str, float]]] = {}  # of each question, by its identity
+        self.followers: dict[RequirementValues, dict[str, dict[str, float]]] = {}  # of each question
         # By combination and makeable values, where the full tolerance was needed: whether something does without it.
         self.kept_closely: dict[tuple[int, bytes], bool] = {}
         self.boxes = BoxOperations(

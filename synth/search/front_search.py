@@ -52,7 +52,7 @@ def _effort(instance: Instance, objectives: int, limits: TreeLimits) -> int:
     not close soon, limits leave a sliver that they hardly ever close on.
     """
     few = instance.combinations.count <= limits.few_combinations
-    if int(np.sum(instance.lower < instance.upper)) < limits.many_variables:
+    if int(np.sum(instance.ranges.lower < instance.ranges.upper)) < limits.many_variables:
         return limits.boxes_of_many if objectives == 1 and few else limits.boxes
     return limits.boxes_of_few_parts if few else limits.boxes_of_many
 

@@ -158,11 +158,11 @@ def difference(front: ParetoFront, question: Question) -> str:
     if dict(instance.problem.options) != dict(frame.options):
         return f"the options: {dict(frame.options)} there, {dict(instance.problem.options)} here"
     for key, value in frame.requirement_values.items():
-        own = instance.requirements.get(key, math.nan)
+        own = instance.values.requirements.get(key, math.nan)
         if not (own == value or math.isclose(own, value, rel_tol=SAME)):
             return f"requirement {key}: {value:.12g} there, {own:.12g} here (SI)"
-    if set(instance.requirements) != set(frame.requirement_values):
-        more = sorted(set(instance.requirements) ^ set(frame.requirement_values))
+    if set(instance.values.requirements) != set(frame.requirement_values):
+        more = sorted(set(instance.values.requirements) ^ set(frame.requirement_values))
         return f"requirement {more[0]}, which only one of them has"
     if dict(question.chosen) != dict(frame.objectives):
         return f"the objectives: {', '.join(frame.objectives)} there, {', '.join(question.chosen)} here"

@@ -16,7 +16,7 @@ from synth.feasibility import TOLERANCE, holds, residual
 from synth.margins import below
 from synth.model.constraint import Constraint, Goal, NodeConstraint, void_limits
 from synth.model.model import Evaluation
-from synth.question.instance import Instance
+from synth.question.search_space import SearchSpace
 from synth.search.archive import Candidate, rows_of
 from synth.search.log_objectives import LogObjectives
 from synth.search.refused_cells import not_refused
@@ -28,7 +28,7 @@ class PointEvaluation:
 
     Parameters
     ----------
-    instance : Instance
+    instance : SearchSpace
     constraints : list of Constraint
     goals : list of Goal
     objectives : LogObjectives
@@ -40,7 +40,7 @@ class PointEvaluation:
 
     def __init__(
         self,
-        instance: Instance,
+        instance: SearchSpace,
         constraints: Sequence[Constraint],
         goals: Sequence[Goal],
         objectives: LogObjectives,
@@ -49,7 +49,7 @@ class PointEvaluation:
     ) -> None:
         self.instance, self.constraints, self.objectives = instance, constraints, objectives
         self.margins = tuning.tolerances
-        self.n, self.grids = len(instance.model.variables), instance.grids()
+        self.n, self.grids = len(instance.model.variables), instance.ranges.grids()
         self._cuts = cuts = [NodeConstraint.of(x) for x in constraints]
         self._signs = np.array([float(g.sign) for g in goals])
         kinds = [(c.sense, c.guard) for c in cuts]
@@ -163,7 +163,7 @@ class PointEvaluation:
                 r = residual(sides[rows], sides[limits + rows], sense, self._scales[rows, None])
                 held[rows] |= holds(r, guard, tolerances[rows, None])
         feasible = held.all(axis=0) & np.all(np.isfinite(phi), axis=1) & not_refused(self.instance, combinations)
-        feasible &= np.all(variables >= below(self.instance.lower, self.margins.pinned), axis=1)
+        feasible &= np.all(variables >= below(self.instance.ranges.lower, self.margins.pinned), axis=1)
         return phi, feasible
 
     def _screen(self, inputs: Sequence[Any]) -> list[Any]:

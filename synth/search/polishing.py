@@ -9,7 +9,7 @@ import numpy as np
 
 from synth import deadline
 from synth.nlp.batch import Tasks
-from synth.question.instance import Instance
+from synth.question.search_space import SearchSpace
 from synth.search.archive import Candidate
 from synth.search.boxes import Boxes
 from synth.search.budget import Clock
@@ -208,7 +208,7 @@ def break_ties(
     return result
 
 
-def _difference(instance: Instance, combination: int, other: int) -> str:
+def _difference(instance: SearchSpace, combination: int, other: int) -> str:
     """Return in words in what another combination differs."""
     own, its = instance.combinations.describe(combination), instance.combinations.describe(other)
     words = []
@@ -231,7 +231,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     cutoffs = np.full(phi.shape, np.inf)
     cutoffs[:, :traded] = phi[:, :traded] + tie
-    start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.apart
+    start, apart = pool.take(np.zeros(len(candidates), dtype=np.int64)), form.instance.scenario_factors
     cell, own = np.zeros_like(start.cell), np.array([c.combination for c in candidates])
     cell[:, :apart] = form.boxes.cell_of(own)[:, :apart]
     questions = form.instance.combinations.digits(own)[:apart]

@@ -14,7 +14,8 @@ from synth.bounds.intervals import FORWARD, Interval
 from synth.declaration import Refusal
 from synth.model.model import Model
 from synth.model.program import COMPARISONS, Program
-from synth.question.instance import Instance
+from synth.question.refusals import allowed_rows
+from synth.question.search_space import SearchSpace
 
 EXACT = COMPARISONS | {ca.OP_INPUT, ca.OP_CONST}
 
@@ -23,7 +24,7 @@ def _program(model: Model, refusal: Refusal) -> Program:
     return Program(model.inputs, [refusal.when], model.calls)
 
 
-def _pairs(instance: Instance, cells: Cells, refusal: Refusal, factors: Sequence[int]) -> np.ndarray:
+def _pairs(instance: SearchSpace, cells: Cells, refusal: Refusal, factors: Sequence[int]) -> np.ndarray:
     """Return which clusters of two factors hold a pair of rows that a refusal allows (clusters, clusters)."""
     model, owner = instance.model, instance.owners()
     shape = tuple(instance.combinations.radix[f] for f in factors)
@@ -49,23 +50,17 @@ def _over_clusters(tree: ClusterTree, rows: np.ndarray) -> np.ndarray:
     return found
 
 
-def not_refused(instance: Instance, combinations: np.ndarray, every: bool = False) -> np.ndarray:
+def not_refused(space: SearchSpace, combinations: np.ndarray) -> np.ndarray:
     """Tell which combinations no refusal over several slots forbids.
 
     Parameters
     ----------
-    instance : Instance
+    space : SearchSpace
     combinations : array (combinations,)
-    every : bool
-        Ask refusals over one slot as well. Rows that those exclude are left out where a question is posed, but not
-        where one of its requirements has been moved since.
     """
-    model, keep = instance.model, np.ones(len(combinations), dtype=bool)
-    declared = zip(model.declaration.refusals, model.refusal_kinds, strict=True)
-    for refusal in [r for r, kinds in declared if kinds] if every else instance.joint_refusals:
-        inputs = [None] * len(model.variables) + instance.data(combinations)
-        keep &= ~(np.asarray(model.refused(refusal)(inputs)[0]) > 0.5)
-    return keep
+    refusals, count = space.selection.joint_refusals, len(combinations)
+    data = space.data(combinations) if refusals else []
+    return allowed_rows(space.model, refusals, data, count)
 
 
 class RefusedCells:
@@ -77,21 +72,21 @@ class RefusedCells:
 
     Parameters
     ----------
-    instance : Instance
+    instance : SearchSpace
     cells : Cells
         The clusters; rows of a leaf are equal in all that refusals read.
     most_pairs : int
         Of rows, for which a table is made.
     """
 
-    def __init__(self, instance: Instance, cells: Cells, most_pairs: int) -> None:
+    def __init__(self, instance: SearchSpace, cells: Cells, most_pairs: int) -> None:
         self._refused: list[tuple[Program, int]] = []
         self._tables: list[tuple[int, int, np.ndarray]] = []  # two factors, and which clusters of them go together
         self._ends: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}  # by data input: factor, ends per cluster
         self._fixed: dict[int, float] = {}
         model, owner = instance.model, instance.owners()
         first = len(model.variables)
-        for refusal in instance.joint_refusals:
+        for refusal in instance.selection.joint_refusals:
             program = model.function(("refusal program", id(refusal)), partial(_program, model, refusal))
             nodes = [program.nodes[k] for k in program.needed(program.outputs)]
             read = {int(node.constant) - first for node in nodes if node.op == ca.OP_INPUT}

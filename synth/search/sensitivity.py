@@ -13,7 +13,7 @@ from synth.feasibility import residual
 from synth.model.model import Evaluation, Model
 from synth.model.numbers import numeric
 from synth.nlp.batch import Tasks
-from synth.question.instance import Instance
+from synth.question.requirement_values import RequirementValues
 from synth.search.archive import Candidate
 from synth.search.formulation import Formulation
 from synth.special import expanded
@@ -168,14 +168,14 @@ def requirement_positions(form: Formulation) -> dict[str, int]:
 
 def _shares(form: Formulation, combinations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return by how much requirements move with each, and whether they do (combinations, requirements, that move)."""
-    questions: dict[int, int] = {}
+    questions: dict[RequirementValues, int] = {}
     kinds, numbers = list[dict[str, dict[str, float]]](), list[int]()
     for combination in combinations.tolist():
-        instance = form.instance.of(combination)
-        if id(instance) not in questions:
-            questions[id(instance)] = len(kinds)
-            kinds.append(_followers_of(form, instance))
-        numbers.append(questions[id(instance)])
+        values = form.instance.values_of(combination)
+        if values not in questions:
+            questions[values] = len(kinds)
+            kinds.append(_followers_of(form, values))
+        numbers.append(questions[values])
     place = {name: q for q, name in enumerate(requirement_positions(form))}
     share = np.zeros((len(kinds), len(place), len(place)))
     follows = np.zeros(share.shape, dtype=bool)
@@ -199,23 +199,23 @@ def _sum_of_shares(share: np.ndarray, slopes: np.ndarray) -> np.ndarray:
     return total
 
 
-def _followers_of(form: Formulation, instance: Instance) -> dict[str, dict[str, float]]:
+def _followers_of(form: Formulation, values: RequirementValues) -> dict[str, dict[str, float]]:
     """Return what moves with each requirement of a question; worked out once."""
-    known = form.followers.get(id(instance))
+    known = form.followers.get(values)
     if known is None:
-        known = form.followers[id(instance)] = followers(instance)
+        known = form.followers[values] = followers(form.model, values)
     return known
 
 
-def followers(instance: Instance) -> dict[str, dict[str, float]]:
+def followers(model: Model, known: RequirementValues) -> dict[str, dict[str, float]]:
     """Return, per requirement, what moves with it and by how much: itself, and those whose default is made of it."""
-    model, declared = instance.model, instance.model.declaration.requirements
+    declared = model.declaration.requirements
     active = {name: r for name, r in declared.items() if r.sx is not None}
     moved: dict[str, dict[str, float]] = {name: {name: 1.0} for name in active}
-    values = {**{str(active[n].sx): v for n, v in instance.requirements.items()}, **instance.row_values}
+    values = known.by_symbol(model)
     slopes: dict[str, list[tuple[str, Any, list[str]]]] = model.function("slopes of defaults", lambda: _slopes(model))
     for name, made in slopes.items():
-        if name in instance.given:
+        if name in known.given:
             continue
         for other, function, names in made:
             slope = float(function.call([values[n] for n in names])[0])

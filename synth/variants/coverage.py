@@ -174,11 +174,10 @@ def _inputs(
     variables = np.tile(columns.values, (questions, 1))
     for k, variable in enumerate(model.variables):
         if variable.name in used:
-            variables[:, k] = np.repeat([i.lower[k] for i in instances], count)
-    requirements = {
-        name: np.repeat([i.requirements[name] for i in instances], count) for name in instances[0].requirements
-    }
-    rows = {name: np.repeat([i.row_values[name] for i in instances], count) for name in instances[0].row_values}
+            variables[:, k] = np.repeat([i.ranges.lower[k] for i in instances], count)
+    values = [i.values for i in instances]
+    requirements = {n: np.repeat([v.requirements[n] for v in values], count) for n in values[0].requirements}
+    rows = {n: np.repeat([v.rows[n] for v in values], count) for n in values[0].rows}
     return variables, inputs_of(model, requirements, rows, lambda entry: np.tile(columns.column(entry), questions))
 
 
@@ -201,11 +200,11 @@ def _serves(
             allowed &= (np.abs(own[:, None] - values[None, :]) < SAME).any(axis=1)
         for k, variable in enumerate(model.variables):
             if variable.name not in used:
-                low, high = instance.lower[k], instance.upper[k]
+                low, high = instance.ranges.lower[k], instance.ranges.upper[k]
                 own = columns.values[:, k]
                 allowed &= (own >= low - SAME * abs(low)) & (own <= high + SAME * abs(high))
         pairs = slice(q * count, (q + 1) * count)
-        allowed &= evaluation.take(pairs).also(instance.own).feasible
+        allowed &= evaluation.take(pairs).also(instance.limits.judging).feasible
         compared = columns.of(instance.model)
         allowed &= compared.complete & ~_refused(instance.model, instance, compared, used)
         serves[pairs] &= allowed
@@ -215,11 +214,11 @@ def _serves(
 def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: frozenset[str]) -> NDArray[np.bool_]:
     """Tell which variants a refusal over several parts or counts forbids."""
     refused = np.zeros(columns.count, dtype=bool)
-    if not instance.joint_refusals:
+    if not instance.selection.joint_refusals:
         return refused
     _, data = _inputs(model, [instance], columns, used)
     known = {str(e.sx): np.asarray(v, dtype=float) for e, v in zip(model.data_inputs, data, strict=True)}
-    for refusal in instance.joint_refusals:
+    for refusal in instance.selection.joint_refusals:
         made = _refusal(model, refusal.when)
         function, names = made
         found = np.asarray(function.call([known[name][None, :] for name in names])[0].full()).ravel()
@@ -234,8 +233,8 @@ def _refusal(model: Model, when: Any) -> tuple[Any, list[str]]:
 
 def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:
     """Say what the nearest variant misses: that whose worst residual is least."""
-    own = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.own)
-    names = [limit.name for limit in (*model.constraints, *instance.own)]
+    own = evaluation.take(slice(q * columns.count, (q + 1) * columns.count)).also(instance.limits.judging)
+    names = [limit.name for limit in (*model.constraints, *instance.limits.judging)]
     missed = np.array([np.nan_to_num(own.residuals[name], nan=0.0) for name in names])
     worst = np.where(columns.complete, missed.max(axis=0, initial=0.0), np.inf)
     nearest = int(np.argmin(worst))

@@ -223,10 +223,10 @@ class VerificationRun:
 
     def _frame(self) -> None:
         frame, model = self.front.frame, self.model
-        for name, value in self.instance.requirements.items():
+        for name, value in self.instance.values.requirements.items():
             if not _same(frame.requirement_values.get(name, math.nan), value):
                 self.find(f"requirement_values_si: {name} is not what the requirements say")
-        own = self.instance.own
+        own = self.instance.limits.judging
         limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in own}
         units = {x.name: x.unit for x in model.limits} | {x.name: x.unit for x in own}
         kinds = {name: kind for name, _, kind in model.declaration.quantities()}
@@ -239,7 +239,7 @@ class VerificationRun:
         for name, (saved, right) in told.items():
             if dict(saved) != right:
                 self.find(f"{name}: they are not those of the problem")
-        if list(frame.not_asked) != list(self.instance.not_asked):
+        if list(frame.not_asked) != list(self.instance.values.not_asked):
             self.find("not_asked: other requirements were left out")
 
     def _design(self, design: Design) -> None:
@@ -289,8 +289,8 @@ class VerificationRun:
         slots = {s.slot: s for s in selection.slots}
         data = inputs_of_design(
             self.model,
-            self.instance.requirements,
-            self.instance.row_values,
+            self.instance.values.requirements,
+            self.instance.values.rows,
             design.values,
             design.choices,
             lambda entry: float(slots[entry.name].columns[entry.column][rows[entry.name]]),
@@ -326,10 +326,10 @@ class VerificationRun:
 
     def _bounds(self, design: Design, label: str, point: Point) -> None:
         instance = self.instance
-        for k, (v, grid) in enumerate(zip(self.model.variables, instance.grids(), strict=True)):
+        for k, (v, grid) in enumerate(zip(self.model.variables, instance.ranges.grids(), strict=True)):
             x = float(point.variables[k])
-            reach = SAME * max(abs(instance.lower[k]), abs(instance.upper[k]))
-            if not instance.lower[k] - reach <= x <= instance.upper[k] + reach:
+            reach = SAME * max(abs(instance.ranges.lower[k]), abs(instance.ranges.upper[k]))
+            if not instance.ranges.lower[k] - reach <= x <= instance.ranges.upper[k] + reach:
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
             elif len(grid) and not np.any(np.abs(grid - x) <= SAME * np.abs(grid)):
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
@@ -344,7 +344,7 @@ class VerificationRun:
         for x in self.model.limits:
             void = any(math.isnan(point.data[k]) for k in self._void_without[x.name])
             yield _LimitReading(x.name, *limits[x.name], x.sense, x.scale, x.guard, void)
-        for own in self.instance.own:
+        for own in self.instance.limits.judging:
             yield _LimitReading(own.name, values[own.quantity], float(own.bound), own.sense, NO_SCALE)
 
     def _refusals(self, point: Point) -> Iterator[tuple[str, bool]]:
@@ -595,7 +595,7 @@ def _refusal_functions(instance: Instance) -> list[tuple[str, list[int], Any]]:
     """Return the refusals over several slots: code, positions of the inputs they read, and the condition."""
     place = {str(symbol): k for k, symbol in enumerate(instance.model.inputs)}
     functions = []
-    for refusal in instance.joint_refusals:
+    for refusal in instance.selection.joint_refusals:
         when = expanded(refusal.when, instance.model.calls)
         used = ca.symvar(when)
         functions.append((refusal.code, [place[str(s)] for s in used], ca.Function("refused", used, [when])))

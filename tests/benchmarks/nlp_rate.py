@@ -48,7 +48,7 @@ class Workload:
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
             log_cuts=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),
-            log_variables=tuple(bool(x > 0) for x in instance.lower),
+            log_variables=tuple(bool(x > 0) for x in instance.ranges.lower),
         )
         self.bounds = [0.0] * len(self.rows.cuts)
         rng = np.random.default_rng(seed)
@@ -60,8 +60,8 @@ class Workload:
         chosen = rng.choice(feasible, count)
         point = points[chosen]
         self.data = instance.data(combinations[chosen])
-        self.low = np.maximum(point / SPREAD, instance.lower)
-        self.high = np.minimum(point * SPREAD, instance.upper)
+        self.low = np.maximum(point / SPREAD, instance.ranges.lower)
+        self.high = np.minimum(point * SPREAD, instance.ranges.upper)
         self.start = np.sqrt(self.low * self.high)
         values = model.evaluate(point, self.data).values
         caps = np.log(np.stack([values[name] for name in OBJECTIVES], axis=1)) + rng.normal(0.0, 0.2, (count, 2))

@@ -47,8 +47,11 @@ class Vectorised:
         self.instance, self.objectives, self.checkpoints = instance, list(objectives), list(checkpoints)
         self.discrete = len(instance.combinations.radix)
         self._orders = [np.argsort(next(iter(s.columns.values())), kind="stable") for s in instance.selection.slots]
-        self.logs = instance.lower > 0
-        low, high = (np.where(self.logs, np.log(np.maximum(b, 1e-300)), b) for b in (instance.lower, instance.upper))
+        self.logs = instance.ranges.lower > 0
+        low, high = (
+            np.where(self.logs, np.log(np.maximum(b, 1e-300)), b)
+            for b in (instance.ranges.lower, instance.ranges.upper)
+        )
         self.low = np.concatenate([np.zeros(self.discrete), low])
         self.high = np.concatenate([np.array(instance.combinations.radix) - 1.0, high])
         self.limits = len(instance.model.limits)
@@ -71,7 +74,7 @@ class Vectorised:
             numbers = numbers * size + digits[:, k]
         raw = x[:, self.discrete :]
         variables = np.where(self.logs, np.exp(np.where(self.logs, raw, 0.0)), raw)
-        return np.clip(variables, self.instance.lower, self.instance.upper), self.instance.data(numbers)
+        return np.clip(variables, self.instance.ranges.lower, self.instance.ranges.upper), self.instance.data(numbers)
 
     def evaluate(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return objectives (rows, objectives) and limits (rows, limits), which hold where not positive.
@@ -236,7 +239,7 @@ def ipopt(
     rng = np.random.default_rng(seed)
     numbers = rng.integers(instance.combinations.count, size=sample)
     data = instance.data(numbers)
-    low, high = np.log(instance.lower), np.log(instance.upper)
+    low, high = np.log(instance.ranges.lower), np.log(instance.ranges.upper)
     spread = np.exp(low + (high - low) * rng.random((sample, n)))
     seen = model.evaluate(spread, data)
     y, cap = ca.SX.sym("y", n), ca.SX.sym("cap")

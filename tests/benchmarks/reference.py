@@ -57,7 +57,9 @@ class Enumeration:
         self.n = len(model.variables)
         cuts = tuple(NodeConstraint.of(x) for x in model.constraints)
         goals = tuple(Goal(model.quantity_node[name]) for name in objectives)
-        rows = Rows(cuts, goals, self._positive(), (True,) * len(goals), tuple(bool(x > 0) for x in instance.lower))
+        rows = Rows(
+            cuts, goals, self._positive(), (True,) * len(goals), tuple(bool(x > 0) for x in instance.ranges.lower)
+        )
         self.solver = BatchNlp(model.program, self.n, rows)
         self.bounds = [0.0] * len(cuts)
         self.solves = 0
@@ -74,7 +76,7 @@ class Enumeration:
         )
 
     def _between(self, share: np.ndarray) -> np.ndarray:
-        low, high = self.instance.lower, self.instance.upper
+        low, high = self.instance.ranges.lower, self.instance.ranges.upper
         return np.asarray(low * (high / low) ** share)
 
     def _evaluate(self, numbers: np.ndarray, variables: np.ndarray) -> Evaluation:
@@ -104,7 +106,9 @@ class Enumeration:
                 np.broadcast_to(np.asarray(weights), (len(some), 2)), np.zeros((len(some), 2)), caps, np.ones(2), 0.0
             )
             data = self.instance.data(some)
-            low, high = (np.broadcast_to(x, shape).copy() for x in (self.instance.lower, self.instance.upper))
+            low, high = (
+                np.broadcast_to(x, shape).copy() for x in (self.instance.ranges.lower, self.instance.ranges.upper)
+            )
             for k in held:
                 low[:, k] = high[:, k] = begin[:, k]
             void = np.stack([x.void(data, (len(some),)) for x in self.model.constraints], axis=1)
@@ -238,7 +242,7 @@ class Makeable:
         return rings[keep]
 
     def _with(self, rings: np.ndarray) -> np.ndarray:
-        middle = np.sqrt(self.all.instance.lower * self.all.instance.upper)
+        middle = np.sqrt(self.all.instance.ranges.lower * self.all.instance.ranges.upper)
         variables = np.broadcast_to(middle, (len(rings), self.all.n)).copy()
         variables[:, self.stepped] = rings
         return variables
@@ -285,7 +289,7 @@ def enumerate_all(size: str, grid: bool) -> tuple[np.ndarray, str]:
         f"{BOUNDS} bounds on the force"
     )
     if grid:
-        makeable = Makeable(enumeration, instance.grids())
+        makeable = Makeable(enumeration, instance.ranges.grids())
         points = makeable.front()
         how += f",\nthen every makeable ring of the {makeable.considered} combinations that came near the best"
     took = f"{enumeration.solves} problems, {enumeration.missed} left without a solution, {_seconds_since(begin)}"

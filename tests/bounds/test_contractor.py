@@ -521,7 +521,7 @@ def family(request):
 
 def test_boxes_around_feasible_designs_survive(family):
     form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(5)
-    lower, upper = family.instance.lower, family.instance.upper
+    lower, upper = family.instance.ranges.lower, family.instance.ranges.upper
     for scale in (3.0, 1.0, 0.3, 0.1, 0.02, 0.0):
         boxes = around(form, rng, points, family.combinations, 0.0)
         if scale < 0.2:
@@ -552,8 +552,8 @@ def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(fa
             most = held * np.exp(width * rng.random(held.shape))
             carrying = replace(
                 boxes,
-                low=np.concatenate([np.maximum(low, family.instance.lower), least], axis=1),
-                high=np.concatenate([np.minimum(high, family.instance.upper), most], axis=1),
+                low=np.concatenate([np.maximum(low, family.instance.ranges.lower), least], axis=1),
+                high=np.concatenate([np.minimum(high, family.instance.ranges.upper), most], axis=1),
             )
             assert_kept(form.boxes.contract(carrying, None, 3), points, phi, form)
             assert_kept(form.boxes.contract(carrying, phi + TIE * (1 + np.abs(phi)), 2), points, phi, form)

@@ -61,7 +61,7 @@ class Family:
 
 def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
     """Return variables with rings of a sensible ratio and forces of a sensible size."""
-    low, high = instance.lower, instance.upper
+    low, high = instance.ranges.lower, instance.ranges.upper
     x = low * (high / low) ** rng.random((count, len(low)))
     names = [v.name for v in instance.model.variables]
     outer = rng.uniform(0.14, 0.5, count)
@@ -74,7 +74,7 @@ def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.
 
 def sound_discs(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
     """Return variables with the narrow rings of disc clutches."""
-    low, high = instance.lower, instance.upper
+    low, high = instance.ranges.lower, instance.ranges.upper
     x = low * (high / low) ** rng.random((count, len(low)))
     names = [v.name for v in instance.model.variables]
     outer = rng.uniform(0.15, 0.4, count)
@@ -87,7 +87,7 @@ def sound_discs(rng: np.random.Generator, instance: Instance, count: int) -> np.
 
 def sound_cones(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
     """Return variables with cones of a sensible ratio and forces of a sensible size."""
-    low, high = instance.lower, instance.upper
+    low, high = instance.ranges.lower, instance.ranges.upper
     x = low * (high / low) ** rng.random((count, len(low)))
     names = [v.name for v in instance.model.variables]
     mean = rng.uniform(0.15, 0.45, count)
@@ -748,7 +748,7 @@ def known_design(family: str, name: str, optional: bool) -> tuple[np.ndarray, li
         parts={slot: [row] for slot, row in design.parts.items()},
     )
     data = [np.broadcast_to(np.asarray(x, dtype=float), (2,)) for x in instance.data(np.zeros(2, dtype=int))]
-    return np.tile(instance.lower, (2, 1)), data
+    return np.tile(instance.ranges.lower, (2, 1)), data
 
 
 def answer(family: str, case: Case, **more: Any) -> synth.ParetoFront:

@@ -49,11 +49,11 @@ class Enumeration:
             FAMILY, requirements, as_catalogs(None), parts=SETTINGS["parts"], limits=limits
         )
         assert 50 <= instance.combinations.count <= 500
-        outer, inner = instance.grids()[:2]
+        outer, inner = instance.ranges.grids()[:2]
         least, most = 0.099, 0.251  # a little beyond the range of the ring ratio
         pairs = [(a, b) for a in outer for b in inner if least <= (a - b) / (a + b) <= most]
         rings = np.array(pairs)
-        ladder = np.geomspace(instance.lower[3], instance.upper[3], ramps)
+        ladder = np.geomspace(instance.ranges.lower[3], instance.ranges.upper[3], ramps)
         which, t_r = (x.ravel() for x in np.meshgrid(np.arange(len(rings)), ladder, indexing="ij"))
         self.found = []
         names = ("mass", "actuation_force", "friction_work", "outer_diameter")
@@ -66,7 +66,9 @@ class Enumeration:
                 carries = 1e4 * base.values["required_torque"] / base.values["torque"]
             for factor in forces:
                 trial = x.copy()
-                trial[:, 2] = np.clip(np.nan_to_num(carries, nan=1.0) * factor, instance.lower[2], instance.upper[2])
+                trial[:, 2] = np.clip(
+                    np.nan_to_num(carries, nan=1.0) * factor, instance.ranges.lower[2], instance.ranges.upper[2]
+                )
                 result = instance.evaluate(trial, data)
                 feasible = result.feasible
                 values = np.stack([result.values[n][feasible] for n in names], axis=1)

@@ -109,8 +109,8 @@ def enumerate_all(case):
     instance = instance_of(problem, requirements, as_catalogs(None), parts=parts, limits=limits, fix=pins)
     names = [v.name for v in instance.model.variables]
     axes = []
-    for k, (name, grid) in enumerate(zip(names, instance.grids(), strict=True)):
-        low, high = instance.lower[k], instance.upper[k]
+    for k, (name, grid) in enumerate(zip(names, instance.ranges.grids(), strict=True)):
+        low, high = instance.ranges.lower[k], instance.ranges.upper[k]
         if name in ladders:
             axes.append(np.linspace(low, high, ladders[name]))
         elif low == high or not len(grid):

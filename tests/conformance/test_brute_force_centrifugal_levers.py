@@ -53,10 +53,10 @@ def enumerate_all(family):
     names = [v.name for v in instance.model.variables]
     grids = [
         np.array([1.0]) if name == "flyweight_mass" else grid if len(grid) else np.array([low])
-        for name, grid, low in zip(names, instance.grids(), instance.lower, strict=True)
+        for name, grid, low in zip(names, instance.ranges.grids(), instance.ranges.lower, strict=True)
     ]
     points = np.stack([x.ravel() for x in np.meshgrid(*grids, indexing="ij")], axis=1)
-    mass, asked, found = names.index("flyweight_mass"), instance.requirements, []
+    mass, asked, found = names.index("flyweight_mass"), instance.values.requirements, []
     for combination in range(instance.combinations.count):
         data = instance.data(np.array([combination]))
         unit = instance.model.evaluate(points, data).values
@@ -65,7 +65,7 @@ def enumerate_all(family):
             (unit["full_clamp_speed"] / asked["full_torque_speed"]) ** 2,
         )
         lightest = points.copy()
-        lightest[:, mass] = np.clip(least, instance.lower[mass], instance.upper[mass])
+        lightest[:, mass] = np.clip(least, instance.ranges.lower[mass], instance.ranges.upper[mass])
         result = instance.evaluate(lightest, data)
         feasible = result.feasible
         found.append(np.stack([result.values[n][feasible] for n in OBJECTIVES], axis=1))

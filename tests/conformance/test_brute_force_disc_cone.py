@@ -68,7 +68,9 @@ def dimensions(instance):
     names = [v.name for v in instance.model.variables]
     axes = {
         name: grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
-        for name, grid, low, high in zip(names, instance.grids(), instance.lower, instance.upper, strict=True)
+        for name, grid, low, high in zip(
+            names, instance.ranges.grids(), instance.ranges.lower, instance.ranges.upper, strict=True
+        )
     }
     if "ring_inner_diameter" in axes:
         first, second, ratio = "ring_outer_diameter", "ring_inner_diameter", lambda a, b: (a - b) / (a + b)

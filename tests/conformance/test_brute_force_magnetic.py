@@ -34,7 +34,7 @@ def enumerated():
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
-        for grid, low, high in zip(instance.grids(), instance.lower, instance.upper, strict=True)
+        for grid, low, high in zip(instance.ranges.grids(), instance.ranges.lower, instance.ranges.upper, strict=True)
     ]
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     radius, pole = points[:, names.index("gap_radius")], points[:, names.index("pole_length")]
@@ -122,7 +122,7 @@ def test_no_makeable_magnet_beats_the_front():
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
-        for grid, low, high in zip(instance.grids(), instance.lower, instance.upper, strict=True)
+        for grid, low, high in zip(instance.ranges.grids(), instance.ranges.lower, instance.ranges.upper, strict=True)
     ]
     points = np.stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")], axis=1)
     found = []

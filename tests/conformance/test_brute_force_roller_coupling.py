@@ -54,8 +54,8 @@ def enumerate_all(case):
     instance = instance_of(
         synth.load("roller_coupling", **options), requirements, as_catalogs(None), parts=parts, limits=limits
     )
-    arms, halves, lengths, rims, _ = instance.grids()
-    asked = instance.requirements
+    arms, halves, lengths, rims, _ = instance.ranges.grids()
+    asked = instance.values.requirements
     effective = np.hypot(asked["offset"], asked["float_distance"] * np.tan(asked["shaft_angle"]))
     chi = asked["guide_angle"]
     grid = np.meshgrid(arms, halves, lengths, rims, indexing="ij")

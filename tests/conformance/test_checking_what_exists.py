@@ -9,6 +9,7 @@ import pytest
 
 import synth
 from synth.question.catalogs import as_catalogs
+from synth.question.refusals import allowed_together
 from synth.special import expanded
 from synth.units import format_quantity
 from tests.asking import instance_of
@@ -33,9 +34,9 @@ def by_casadi(instance, design):
             given = [row[c] for c in entry.columns if row.get(c) is not None]
             inputs.append(given[0] if given else math.nan)
         elif entry.kind == "requirement":
-            inputs.append(instance.requirements[entry.name])
+            inputs.append(instance.values.requirements[entry.name])
         elif entry.kind == "row":
-            inputs.append(instance.row_values[str(entry.sx)])
+            inputs.append(instance.values.rows[str(entry.sx)])
         elif entry.kind == "choice":
             inputs.append(d.choices[entry.name].labels.index(design.choices[entry.name]))
         else:
@@ -161,7 +162,7 @@ def test_slots_that_share_a_column_may_be_compared(found):
         )
         slots = {s.slot: s for s in posed.selection.slots}
         refusal = posed.model.declaration.refusals[-1]
-        return posed, posed.allowed_together(refusal, [slots[one], slots[two]]), slots
+        return posed, allowed_together(posed.model, refusal, [slots[one], slots[two]]), slots
 
     posed, allowed, slots = left(text)
     a, b = (slots[name].table.number(column)[slots[name].rows] for name in (one, two))
@@ -171,7 +172,7 @@ def test_slots_that_share_a_column_may_be_compared(found):
     )
     assert allowed.any(axis=0).all()
     assert allowed.any(axis=1).all()
-    assert posed.combinations_left_out
+    assert posed.selection.combinations_left_out
     assert str(design.parts[one]) in {slots[one].table.designations[r] for r in slots[one].rows}
     _, others, _ = left(f"{column} {against} {two}.{column}")
     assert others.any()

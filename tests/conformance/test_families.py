@@ -203,8 +203,8 @@ def test_limits_of_optional_requirements_are_not_asked_without_them():
     for family, data in CASES.items():
         without = question(family, {}, optional=False)
         with_all = question(family, {}, optional=True)
-        assert set(without.not_asked) == set(data.optional)
-        assert with_all.not_asked == []
+        assert set(without.values.not_asked) == set(data.optional)
+        assert with_all.values.not_asked == ()
         assert {x.name for x in without.model.limits} < {x.name for x in with_all.model.limits}
 
 
@@ -239,7 +239,7 @@ def test_the_search_calls_feasible_what_the_evaluation_does(example):
     variables = np.repeat(designs, POINTS // len(designs), axis=0)
     # On and near the designs, where some limit is just kept or just missed.
     variables *= np.exp(rng.normal(0, 1e-3, variables.shape) * (rng.random(variables.shape) < 0.2))
-    variables = np.clip(variables, instance.lower, instance.upper)
+    variables = np.clip(variables, instance.ranges.lower, instance.ranges.upper)
     combinations = rng.integers(0, instance.combinations.count, len(variables))
     close, edge = (
         form.points.feasible_rows(variables, combinations)[0],

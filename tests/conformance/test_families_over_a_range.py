@@ -22,8 +22,8 @@ def block_of(instance):
     columns = {c for p in slots for c in p.columns if c.startswith("mu_")}
     if columns and not columns & {LEAST, MOST}:
         block["friction"] = CATALOGUE
-    for name in sorted(instance.given):
-        r, value = d.requirements[name], instance.requirements[name]
+    for name in sorted(instance.values.given):
+        r, value = d.requirements[name], instance.values.requirements[name]
         inside = r.lower <= 0.97 * value and 1.03 * value <= r.upper
         if inside and value > 0 and "degC" not in r.unit and len(block) < 3:
             block[name] = "+-3 %"

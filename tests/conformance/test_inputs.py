@@ -25,7 +25,7 @@ def by_hand(instance: Instance, parts: Any, counts: Any, choices: Any) -> list[f
     found = []
     for entry in instance.model.data_inputs:
         if entry.kind == "requirement":
-            found.append(instance.requirements[entry.name])
+            found.append(instance.values.requirements[entry.name])
         elif entry.kind == "count":
             found.append(counts[entry.name])
         elif entry.kind == "choice":
@@ -48,7 +48,7 @@ def from_design(instance: Instance, design: Design) -> list[float]:
         return float(first_value([np.array([math.nan if x is None else float(x)]) for x in cells])[0])
 
     return inputs_of_design(
-        instance.model, instance.requirements, instance.row_values, design.values, design.choices, part
+        instance.model, instance.values.requirements, instance.values.rows, design.values, design.choices, part
     )
 
 
@@ -62,7 +62,7 @@ def test_all_readers_agree_on_random_designs(family: str, structure: str, option
     for k, owner in enumerate(owners):
         if owner >= 0:
             np.testing.assert_array_equal(instance.column(k)[digits[owner]], columns[k])
-    sizes = np.sqrt(np.clip(instance.lower, 1e-9, None) * np.clip(instance.upper, 1e-9, None))
+    sizes = np.sqrt(np.clip(instance.ranges.lower, 1e-9, None) * np.clip(instance.ranges.upper, 1e-9, None))
     variants = []
     for row, number in enumerate(numbers.tolist()):
         parts, counts, choices = combinations.describe(number)

@@ -98,10 +98,10 @@ def test_a_request_is_read_again_as_it_was(family: str, data: st.DataObject) -> 
     assert first.record() == second.record()
     assert first.chosen == second.chosen
     one, two = first.instance, second.instance
-    assert one.requirements == two.requirements
+    assert one.values.requirements == two.values.requirements
     assert one.problem.name == two.problem.name
-    for own, other in ((one.lower, two.lower), (one.upper, two.upper), (one.pinned, two.pinned)):
-        assert np.array_equal(own, other)
+    for end in ("lower", "upper", "pinned"):
+        assert np.array_equal(getattr(one.ranges, end), getattr(two.ranges, end))
     assert [x.name for x in one.constraints] == [x.name for x in two.constraints]
     assert one.combinations.count == two.combinations.count
 

@@ -30,10 +30,10 @@ def front(request):
 def movable(instance):
     """Return the names of the limits that a continuous variable enters which is neither pinned nor gridded."""
     model = instance.model
-    ends = zip(instance.lower, instance.upper, instance.grids(), strict=True)
+    ends = zip(instance.ranges.lower, instance.ranges.upper, instance.ranges.grids(), strict=True)
     free = [v.sx for v, (low, high, grid) in zip(model.variables, ends, strict=True) if low < high and not len(grid)]
     sides = {x.name: [x.value, x.limit] for x in model.limits}
-    sides |= {x.name: [model.quantity_sx[x.quantity]] for x in instance.own}
+    sides |= {x.name: [model.quantity_sx[x.quantity]] for x in instance.limits.judging}
     return {
         name
         for name, own in sides.items()

@@ -93,9 +93,9 @@ def test_a_default_may_follow_an_earlier_requirement():
         d.variable("x", "mm", 1, 2)
 
     instance = instance_of(problem(declare)(), {"force": "2 kN"}, CATALOGS)
-    assert instance.requirements == {"force": 2000.0, "peak": 5000.0, "most": 10000.0}
+    assert instance.values.requirements == {"force": 2000.0, "peak": 5000.0, "most": 10000.0}
     instance = instance_of(problem(declare)(), {"force": 2, "peak": "20000 N"}, CATALOGS)
-    assert instance.requirements == {"force": 2000.0, "peak": 20000.0, "most": 20000.0}
+    assert instance.values.requirements == {"force": 2000.0, "peak": 20000.0, "most": 20000.0}
 
 
 # -- options ---------------------------------------------------------------------------------------
@@ -380,7 +380,7 @@ def test_a_fixed_row_gives_its_columns():
         d.objective("length")
 
     instance = instance_of(problem(declare)(), {}, Catalogs())
-    assert instance.requirements == {"transfer": 50.0, "bonus": 1.0}
+    assert instance.values.requirements == {"transfer": 50.0, "bonus": 1.0}
     with pytest.raises(synth.InputError, match="storm"):
         declaration().row("cooling_options", "storm")
 

@@ -110,8 +110,10 @@ def question(problem, requirements, catalogs, objectives, sound, rng, **restrict
 
 def inside(instance, rng):
     """Return makeable points of a question at random."""
-    points = instance.lower + (instance.upper - instance.lower) * rng.random((POINTS, len(instance.lower)))
-    for k, grid in enumerate(instance.grids()):
+    points = instance.ranges.lower + (instance.ranges.upper - instance.ranges.lower) * rng.random(
+        (POINTS, len(instance.ranges.lower))
+    )
+    for k, grid in enumerate(instance.ranges.grids()):
         if len(grid):
             points[:, k] = rng.choice(grid, POINTS)
     return points
@@ -134,8 +136,8 @@ def of_family(family):
     restricted = {name: case.settings[name] for name in ("limits", "fix", "parts", "grid") if name in case.settings}
 
     def sound(instance):
-        points = np.clip(data.sound(rng, instance, POINTS), instance.lower, instance.upper)
-        for k, grid in enumerate(instance.grids()):
+        points = np.clip(data.sound(rng, instance, POINTS), instance.ranges.lower, instance.ranges.upper)
+        for k, grid in enumerate(instance.ranges.grids()):
             if len(grid):
                 points[:, k] = grid[np.argmin(np.abs(grid - points[:, [k]]), axis=1)]
         return points
@@ -159,11 +161,11 @@ def same(found, expected, where):
 
 
 def test_limits_of_family_and_user_are_one_list_in_the_order_of_reports(asked):
-    instance, own = asked.instance, asked.instance.own
+    instance, own = asked.instance, asked.instance.limits.judging
     assert [x.name for x in instance.constraints] == [x.name for x in (*instance.model.limits, *own)]
     derived = instance.model.declaration.derived
     assert {x.quantity for x in own} == set(asked.limits) & set(derived)
-    assert {x.quantity for x in instance.bounding} <= set(asked.limits) - set(derived)
+    assert {x.quantity for x in instance.limits.bounding} <= set(asked.limits) - set(derived)
     for x in own:
         assert (x.origin, x.scale, x.guard, x.void_without) == (Origin.USER, SMALLEST, False, ())
     result = asked.result
@@ -175,12 +177,12 @@ def test_limits_of_family_and_user_are_one_list_in_the_order_of_reports(asked):
 
 def test_a_limit_on_a_variable_bounds_the_search_and_is_judged_in_a_given_design(asked):
     instance = asked.instance
-    for x in instance.bounding:
+    for x in instance.limits.bounding:
         for k, v in enumerate(instance.model.variables):
             if v.name == x.quantity:
-                assert x.sense == "at_least" or instance.upper[k] <= x.bound
-                assert x.sense == "at_most" or instance.lower[k] >= x.bound
-    given = {x.name for x in instance.bounding}
+                assert x.sense == "at_least" or instance.ranges.upper[k] <= x.bound
+                assert x.sense == "at_most" or instance.ranges.lower[k] >= x.bound
+    given = {x.name for x in instance.limits.bounding}
     for _, design in asked.designs():
         assert given <= set(design.residuals)
         assert not given & set(design.violated)
@@ -255,7 +257,7 @@ def test_verification_reads_limits_by_itself_and_alike(asked):
 def test_what_explains_keeps_the_same_limits_where_nothing_gives_way(asked):
     instance, result = asked.instance, asked.result
     variables = {v.name for v in instance.model.variables}
-    own = [*instance.own, *(x for x in instance.bounding if x.quantity in variables)]
+    own = [*instance.limits.judging, *(x for x in instance.limits.bounding if x.quantity in variables)]
     names = [x.name for x in (*instance.model.constraints, *own)]
     model = Relaxed(instance, own, {}, names).model(frozenset(), instance.catalogs)
     assert model.variables[-1].name == AMOUNT
@@ -340,7 +342,9 @@ def test_what_a_user_limits_must_have_a_value():
     assert result.holds["life >= 2"].tolist() == [True, False]
     form = Formulation(instance, {}, 0)
     assert form.points.feasible_rows(np.full((2, 1), 1.5), np.arange(2))[0].tolist() == [0]
-    relaxed = Relaxed(instance, instance.own, {}, [x.name for x in instance.constraints]).model(frozenset(), None)
+    relaxed = Relaxed(instance, instance.limits.judging, {}, [x.name for x in instance.constraints]).model(
+        frozenset(), None
+    )
     both = relaxed.evaluate(np.array([[1.5, 0.0], [1.5, 0.0]]), instance.data(np.arange(2)))
     assert both.feasible.tolist() == [True, False]
 

@@ -55,7 +55,7 @@ class Traced:
         self.instance = instance_of(synth.load("multi_plate_clutch", **options), requirements, as_catalogs(None))
         self.model = self.instance.model
         rng = np.random.default_rng(7)
-        low, high = self.instance.lower, self.instance.upper
+        low, high = self.instance.ranges.lower, self.instance.ranges.upper
         self.variables = low * (high / low) ** rng.random((points, len(low)))
         # A third of the points have a sound ring, so that the formulas behind the guards are seen too.
         third = points // 3

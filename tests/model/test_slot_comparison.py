@@ -100,7 +100,7 @@ def test_the_combinations_left_are_those_of_a_plain_loop(text):
     instance = instance_of(Stack(), {}, catalogs_for(Stack(), CATALOGS), parts={"one": text})
     allowed = pairs(CONDITIONS[text])
     assert offered(instance) == set(allowed)
-    (told,) = instance.combinations_left_out
+    (told,) = instance.selection.combinations_left_out
     assert told == f"one: {text}: {instance.combinations.count - 3 * len(allowed)} of {instance.combinations.count}"
     for slot, rows in zip(instance.selection.slots, zip(*allowed, strict=True), strict=True):
         assert {slot.table.designations[k] for k in slot.rows} == set(rows)  # none without a partner

@@ -436,7 +436,7 @@ class Clutch:
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
             log_cuts=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),
-            log_variables=tuple(bool(x > 0) for x in self.instance.lower),
+            log_variables=tuple(bool(x > 0) for x in self.instance.ranges.lower),
         )
         self.bounds = [0.0] * len(self.rows.cuts)
         rng = np.random.default_rng(seed)
@@ -448,8 +448,8 @@ class Clutch:
         combination, point = combination[chosen], point[chosen]
         self.data = self.instance.data(combination)
         spread = rng.uniform(1.3, 2.5, (count, self.n))
-        self.low = np.maximum(point / spread, self.instance.lower)
-        self.high = np.minimum(point * spread, self.instance.upper)
+        self.low = np.maximum(point / spread, self.instance.ranges.lower)
+        self.high = np.minimum(point * spread, self.instance.ranges.upper)
         if kind == "pinned":
             self.low[:, 3] = self.high[:, 3] = point[:, 3]
         self.start = np.sqrt(self.low * self.high)

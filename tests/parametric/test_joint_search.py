@@ -158,10 +158,10 @@ def check_ropes(
     grid: bool = True,
 ) -> None:
     questions = asked(problem, requirements, [objective], catalogs, grid=grid)
-    best: list[Made | None] = [best_ropes(problem, q.instance.requirements, catalogs, grid) for q in questions]
+    best: list[Made | None] = [best_ropes(problem, q.instance.values.requirements, catalogs, grid) for q in questions]
 
     def value(k: int) -> float | None:
-        own, income = best[k], questions[k].instance.requirements["income"]
+        own, income = best[k], questions[k].instance.values.requirements["income"]
         if own is None:
             return None
         return {"cost": own.cost, "gain": income - own.cost, "loss": own.cost - income}[objective]
@@ -212,7 +212,7 @@ def test_an_objective_is_made_large_where_it_is_asked_for() -> None:
     questions = asked(GIVEN, loads(10, 22, 40), {"cost": "max"}, dearest)
     costs: list[float] = []
     for q in questions:
-        load = q.instance.requirements["load"] / 1e3
+        load = q.instance.values.requirements["load"] / 1e3
         rows = [(10, 2, 20), (20, 1, 60)]
         found = [
             f * n * e + r * load
@@ -315,7 +315,7 @@ def test_that_there_is_no_design_is_proven(problem: DesignProblem, at: tuple[int
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     questions = asked(problem, loads(*at), catalogs=weak)
     for (design, proven), question in zip(JointSearch(questions).best(range(len(at))), questions, strict=True):
-        true = best_ropes(problem, question.instance.requirements, weak)
+        true = best_ropes(problem, question.instance.values.requirements, weak)
         assert proven
         assert (design is None) == (true is None)
         if design is not None and true is not None:
@@ -327,7 +327,7 @@ def test_ideas_prove_nothing() -> None:
     bad = [pose(FREE, own, ["cost"], 1, FOUR, {"rope": ["rope d"]}, fix={"end": "clamp"}) for own in loads(4, 8, 24)]
     ideas = [d for q in bad for d in q.answer().designs]
     assert len(ideas) == 3
-    best = [best_ropes(FREE, q.instance.requirements, FOUR) for q in questions]
+    best = [best_ropes(FREE, q.instance.values.requirements, FOUR) for q in questions]
     for front, own in zip(JointSearch(questions, ideas=ideas).answers(), best, strict=True):
         assert front is not None
         assert own is not None
@@ -361,7 +361,7 @@ STRUT, STRUTS = Strut(), Catalogs({"rods": RODS})
 
 def lightest(question: Question) -> float | None:
     """Return the least mass of a strut from its formulas."""
-    r, grid = question.instance.requirements, question.instance.grid
+    r, grid = question.instance.values.requirements, question.instance.ranges.grid
     found = []
     for n, t, row in product((1, 2, 3, 4), plates(), RODS.to_dict("records")):
         allowed = row["stress_allow [N/mm2]"] * 1e6
@@ -410,7 +410,7 @@ def test_brakes_whose_limits_are_not_monotone() -> None:
     questions = asked(brake, varied, ["force"], tables)
 
     def least(k: int) -> float | None:
-        r = questions[k].instance.requirements
+        r = questions[k].instance.values.requirements
         radius = np.linspace(0.02, 0.2, 200_001)
         found = []
         for row in PAIRS.to_dict("records"):
@@ -574,7 +574,7 @@ def test_combinations_mean_what_they_mean_in_their_question(together: JointInsta
     for row, number in enumerate(numbers):
         question, own = divmod(number, 24)
         alone = together.each[question]
-        assert together.of(number) is alone
+        assert together.values_of(number) is alone.values
         assert together.combinations.question(combinations)[row] == question
         assert together.combinations.describe(number) == alone.combinations.describe(own)
         its = alone.combinations.digits(np.array([own]))

@@ -7,7 +7,7 @@ from tests.asking import instance_of
 def requirements_in_si(problem, requirements):
     """Return all requirements as simulations and curves take them: in SI, None where an optional one is not given."""
     instance = instance_of(problem, requirements, as_catalogs(None))
-    return {name: instance.requirements.get(name) for name in instance.model.declaration.requirements}
+    return {name: instance.values.requirements.get(name) for name in instance.model.declaration.requirements}
 
 
 def remarks(found):

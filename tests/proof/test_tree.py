@@ -135,8 +135,8 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed):
     instance = instance_of(problem, {}, THINGS_CATALOG)
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values()}
     rng = np.random.default_rng(seed)
-    x = instance.lower + (instance.upper - instance.lower) * rng.random((3000, 3))
-    x[:, 2] = rng.choice(instance.grids()[2], len(x))
+    x = instance.ranges.lower + (instance.ranges.upper - instance.ranges.lower) * rng.random((3000, 3))
+    x[:, 2] = rng.choice(instance.ranges.grids()[2], len(x))
     data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations.count, len(x)))
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
@@ -159,7 +159,9 @@ def test_no_feasible_design_of_a_family_is_lost(family):
         data, values, feasible = sample(instance, x, rng.integers(0, instance.combinations.count, len(x)))
     else:  # around a design whose parts fit each other
         x = np.clip(
-            known[0][:1] * np.exp(rng.normal(0, 0.02, (4000, instance.lower.size))), instance.lower, instance.upper
+            known[0][:1] * np.exp(rng.normal(0, 0.02, (4000, instance.ranges.lower.size))),
+            instance.ranges.lower,
+            instance.ranges.upper,
         )
         data = [np.full(len(x), column[0]) for column in known[1]]
         result = instance.model.evaluate(x, data)
@@ -301,7 +303,7 @@ class Pairs(synth.DesignProblem):
 
 def test_refusals_over_two_slots_are_kept():
     instance, tree = tree_of(Pairs(), {"gain": "max"}, catalogs={"things": THINGS})
-    assert len(instance.joint_refusals) == 1
+    assert len(instance.selection.joint_refusals) == 1
     u = THINGS["u [-]"].to_numpy()
     gains = np.subtract.outer(u, u)
     best = gains[gains <= 0.4].max()
@@ -359,7 +361,7 @@ class Beyond(synth.DesignProblem):
 @pytest.mark.parametrize("seed", range(30))
 def test_single_designs_are_settled_by_their_evaluation_also_where_formulas_do_not_exist(seed):
     instance, tree = tree_of(Beyond(seed), {"cost": "min"}, catalogs={"things": THINGS})
-    makeable = np.stack([m.ravel() for m in np.meshgrid(*instance.grids(), indexing="ij")], axis=1)
+    makeable = np.stack([m.ravel() for m in np.meshgrid(*instance.ranges.grids(), indexing="ij")], axis=1)
     x = np.tile(makeable, (instance.combinations.count, 1))
     _, values, feasible = sample(instance, x, np.repeat(np.arange(instance.combinations.count), len(makeable)))
     cost = np.where(feasible, values["cost"], np.inf)

@@ -39,14 +39,14 @@ def designations(question, slot):
 def test_requirements_by_name_or_symbol_with_units_or_bare():
     for given in ({"load": "20 kN"}, {"F": 20}, {"load": "20000 N"}, {"F": "20"}, {"load": 20.0}):
         question = instance(given)
-        assert question.requirements == {"load": 20000.0, "safety": 1.5}
-        assert question.given == {"load"}
-        assert question.not_asked == ["room"]
+        assert question.values.requirements == {"load": 20000.0, "safety": 1.5}
+        assert question.values.given == {"load"}
+        assert question.values.not_asked == ("room",)
 
 
 def test_none_means_not_given():
-    assert instance({"load": 20, "room": None}).not_asked == ["room"]
-    assert instance({"load": 20, "room": "50 mm"}).not_asked == []
+    assert instance({"load": 20, "room": None}).values.not_asked == ("room",)
+    assert instance({"load": 20, "room": "50 mm"}).values.not_asked == ()
 
 
 @pytest.mark.parametrize(
@@ -73,24 +73,24 @@ def test_requirements_that_cannot_be(given, words):
 
 
 def test_the_ends_of_a_range_are_inside():
-    assert instance({"load": "1 kN"}).requirements["load"] == 1000.0
-    assert instance({"load": 20, "safety": 10}).requirements["safety"] == 10.0
+    assert instance({"load": "1 kN"}).values.requirements["load"] == 1000.0
+    assert instance({"load": 20, "safety": 10}).values.requirements["safety"] == 10.0
 
 
 # -- limits ------------------------------------------------------------------------------------------
 
 
 def test_limits_of_a_variable_narrow_its_range():
-    assert instance(limits={"width": "<= 60 mm"}).upper[0] == 0.06
-    assert instance(limits={"b": ">= 6 cm"}).lower[0] == 0.06
+    assert instance(limits={"width": "<= 60 mm"}).ranges.upper[0] == 0.06
+    assert instance(limits={"b": ">= 6 cm"}).ranges.lower[0] == 0.06
     both = instance(limits={"width": "20 mm .. 60 mm"})
-    assert (both.lower[0], both.upper[0]) == (0.02, 0.06)
+    assert (both.ranges.lower[0], both.ranges.upper[0]) == (0.02, 0.06)
     listed = instance(limits={"width": [">= 20 mm", "<= 0.06 m", "< 70"]})
-    assert (listed.lower[0], listed.upper[0]) == (0.02, 0.06)
+    assert (listed.ranges.lower[0], listed.ranges.upper[0]) == (0.02, 0.06)
     pinned = instance(limits={"length": "== 150 mm"})
-    assert (pinned.lower[1], pinned.upper[1]) == (0.15, 0.15)
+    assert (pinned.ranges.lower[1], pinned.ranges.upper[1]) == (0.15, 0.15)
     wide = instance(limits={"width": "<= 900 mm"})
-    assert wide.upper[0] == 0.2  # a limit never widens
+    assert wide.ranges.upper[0] == 0.2  # a limit never widens
 
 
 def test_limits_of_a_count_leave_values_out():
@@ -101,7 +101,7 @@ def test_limits_of_a_count_leave_values_out():
 
 def test_limits_of_a_derived_quantity_are_limits_of_the_question():
     question = instance(limits={"mass": ["<= 2 kg", ">= 100 g"], "A": "= 300 mm2"})
-    assert [(x.quantity, x.sense, x.bound, x.name) for x in question.own] == [
+    assert [(x.quantity, x.sense, x.bound, x.name) for x in question.limits.judging] == [
         ("mass", "at_most", 2.0, "mass <= 2 kg"),
         ("mass", "at_least", 0.1, "mass >= 0.1 kg"),
         ("area", "equal", pytest.approx(3e-4), "area == 300 mm2"),
@@ -134,8 +134,8 @@ def test_limits_that_cannot_be(limits, words):
 def test_limits_that_hold_no_makeable_value():
     question = instance(limits={"width": "60.2 mm .. 60.8 mm"})
     with pytest.raises(synth.InputError, match=r"a range that holds a makeable value \(or grid: false\)"):
-        question.grids()
-    assert not len(instance(limits={"width": "60.2 mm .. 60.8 mm"}, grid=False).grids()[0])
+        question.ranges.grids()
+    assert not len(instance(limits={"width": "60.2 mm .. 60.8 mm"}, grid=False).ranges.grids()[0])
 
 
 # -- fix ---------------------------------------------------------------------------------------------
@@ -143,13 +143,13 @@ def test_limits_that_hold_no_makeable_value():
 
 def test_fix_pins_every_kind_of_unknown():
     question = instance(fix={"width": "50.5 mm", "n": 2, "end": "eye", "plate": "core 2", "mass": "1 kg"})
-    assert (question.lower[0], question.upper[0]) == (0.0505, 0.0505)
-    assert question.pinned.tolist() == [True, False]
-    assert not len(question.grids()[0])  # a pinned value need not be on the grid
+    assert (question.ranges.lower[0], question.ranges.upper[0]) == (0.0505, 0.0505)
+    assert question.ranges.pinned.tolist() == [True, False]
+    assert not len(question.ranges.grids()[0])  # a pinned value need not be on the grid
     assert question.selection.counts["plates"].tolist() == [2]
     assert question.selection.choices["end"].tolist() == [1]
     assert designations(question, "plate") == ("core 2",)
-    assert [(x.quantity, x.sense, x.bound) for x in question.own] == [("mass", "equal", 1.0)]
+    assert [(x.quantity, x.sense, x.bound) for x in question.limits.judging] == [("mass", "equal", 1.0)]
     assert question.combinations.count == 3
 
 

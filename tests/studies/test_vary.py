@@ -95,7 +95,7 @@ def test_values_of_a_requirement(values: Any, unit: str, numbers: Sequence[float
     assert varied.numeric
     factor = {"kN": 1e3, "N": 1.0, "N*m/m": 1.0}[unit]
     for question, number in zip(steps({"load": values}).questions, numbers, strict=True):
-        assert question.instance.requirements["load"] == pytest.approx(number * factor)
+        assert question.instance.values.requirements["load"] == pytest.approx(number * factor)
 
 
 @pytest.mark.parametrize(
@@ -229,10 +229,10 @@ def test_what_cannot_be_varied(vary: Any, words: Sequence[str]) -> None:
 
 def test_a_value_takes_the_place_of_what_was_said() -> None:
     by_symbol = steps({"load": "7 kN"}, {"F": "10 kN", "share": 2}).questions[0]
-    assert by_symbol.instance.requirements["load"] == pytest.approx(7000)
-    assert by_symbol.instance.requirements["share"] == 2
+    assert by_symbol.instance.values.requirements["load"] == pytest.approx(7000)
+    assert by_symbol.instance.values.requirements["share"] == 2
     unset = steps({"load": "7, 9 kN"}, {"share": 2})
-    assert [q.instance.requirements["load"] for q in unset.questions] == pytest.approx([7000, 9000])
+    assert [q.instance.values.requirements["load"] for q in unset.questions] == pytest.approx([7000, 9000])
     weights = steps({"weights.bulk": "0.5, 4"}, weights={"cost": 3, "bulk": 7})
     assert [dict(q.weights) for q in weights.questions] == [
         {"cost": 3, "bulk": 0.5},
@@ -264,7 +264,7 @@ def test_a_limit_leaves_those_that_point_another_way(limits: Any, vary: str, kep
     study = steps({vary: "40, 50"}, limits=limits)
     sense = "at_most" if "<" in vary else "at_least"
     for (value,), question in zip(study.values, study.questions, strict=True):
-        extra = [(x.sense, x.bound) for x in question.instance.own]
+        extra = [(x.sense, x.bound) for x in question.instance.limits.judging]
         assert isinstance(value, float)
         assert sorted(extra) == sorted([*kept, (sense, value)])
 

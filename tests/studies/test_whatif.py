@@ -77,7 +77,7 @@ def test_steps_with_one_objective_are_those_asked_alone(problem: Ropes) -> None:
     for step, load in zip(fronts_of(found), (4, 14, 34, 390), strict=True):
         own = alone({"load": f"{load} kN", "most_cost": 200}, problem)
         check_same(step, own)
-        true = best_ropes(problem, own.question.requirements, FOUR)
+        true = best_ropes(problem, own.question.values.requirements, FOUR)
         if load == 390:
             assert true is None
             assert not step.designs

@@ -391,8 +391,9 @@ class _Explaining:
         self.names = d.names()
         variables = {v.name for v in model.variables}
         # What is asked of counts bounds them here as well; limits on variables may give way.
-        self.own = [*self.instance.own, *(x for x in self.instance.bounding if x.quantity in variables)]
-        self.bounded = {name: asked for name, asked in self.instance.limited.items() if name in d.counts}
+        limits = self.instance.limits
+        self.own = [*limits.judging, *(x for x in limits.bounding if x.quantity in variables)]
+        self.bounded = {name: asked for name, asked in limits.asked.items() if name in d.counts}
         kept = model.by_name(request.fix, "fix", list(self.names.values()), "a name")
         self.fix = {name: value for name, value in kept.items() if name not in d.derived}
         self.parts = model.by_name(request.parts, "parts", list(d.slots), "a slot")
@@ -410,8 +411,8 @@ class _Explaining:
         self.columns = {f"{part.slot}.{key}": part for part in slots for key in part.columns}
         self.given = {
             name: Quantity(value, d.requirements[name].unit)
-            for name, value in self.instance.requirements.items()
-            if name in self.instance.given
+            for name, value in self.instance.values.requirements.items()
+            if name in self.instance.values.given
         }
         if not fired_guards(self.instance):
             # What is refused only because several refusals leave out all rows between them.
@@ -422,10 +423,10 @@ class _Explaining:
         model, found = self.instance.model, dict[str, _Pin]()
         for k, variable in enumerate(model.variables):
             if variable.name in fix:
-                value = float(self.instance.lower[k])
+                value = float(self.instance.ranges.lower[k])
                 found[variable.name] = _Pin(variable.name, "fix", value, value, variable.unit)
         # A set of values is kept as it is: between them lies nothing that would be nearer.
-        sets = {name for name, _ in self.instance.count_sets}
+        sets = {name for name, _ in self.instance.limits.count_sets}
         for name, left in self.instance.selection.counts.items():
             if name not in sets and len(left) < len(model.declaration.counts[name].values):
                 found[name] = _Pin(name, "fix" if name in fix else "limits", float(left[0]), float(left[-1]), "-")
@@ -490,7 +491,7 @@ class _Explaining:
         if fired:
             moving = dict.fromkeys(name for guard in fired for name in requirements_of(self.instance, guard.name))
             columns = dict.fromkeys(name for guard in fired for name in columns_of(self.instance, guard.name))
-            requirements = [name for name in moving if self.instance.requirements[name] > 0]
+            requirements = [name for name in moving if self.instance.values.requirements[name] > 0]
         else:
             bound = [*conflict, *self.guards]
             requirements, columns = self.moving(REQUIREMENT, bound), dict.fromkeys(self.moving(COLUMN, bound))
@@ -517,9 +518,9 @@ class _Explaining:
         kinds = {REQUIREMENT: "requirement", COLUMN: "part"}
         sides = {x.name: x.nodes for x in self.constraints}
         nodes = [k for x in limits for k in sides[x]]
-        names = []
+        names, values = [], self.instance.values.requirements
         for k, entry in enumerate(model.data_inputs):
-            if entry.kind != kinds[kind] or (kind == REQUIREMENT and not self.instance.requirements[entry.name] > 0):
+            if entry.kind != kinds[kind] or (kind == REQUIREMENT and not values[entry.name] > 0):
                 continue
             marked = model.program.dependence(self._followers(k))
             if any(marked[node] for node in nodes):
@@ -533,7 +534,7 @@ class _Explaining:
         found = [first + position]
         for j, other in enumerate(model.data_inputs if entry.kind == "requirement" else ()):
             default = model.declaration.requirements[other.name].default if other.kind == "requirement" else None
-            if other.name not in self.instance.given and isinstance(default, ca.SX):
+            if other.name not in self.instance.values.given and isinstance(default, ca.SX):
                 used = {str(s) for s in ca.symvar(expanded(default, model.calls))}
                 found += [first + j] if str(entry.sx) in used else []
         return found
@@ -624,7 +625,7 @@ class _Explaining:
 
     def _room(self, name: str, sign: float) -> float:
         """Return how far a requirement may move before it leaves its declared range."""
-        r, value = self.instance.model.declaration.requirements[name], self.instance.requirements[name]
+        r, value = self.instance.model.declaration.requirements[name], self.instance.values.requirements[name]
         end = r.upper if sign > 0 else r.lower
         if not (end > 0 and math.isfinite(end)):
             return MOST
@@ -637,7 +638,7 @@ class _Explaining:
         model = self.instance.model
         patch: Mapping[str, Any] | None = None
         if kind == REQUIREMENT:
-            given, unit = self.instance.requirements[name], model.declaration.requirements[name].unit
+            given, unit = self.instance.values.requirements[name], model.declaration.requirements[name].unit
             patch, needed = self._first_that_works(
                 lambda text: self._requirement_patch(name, text), given * factor, unit, up, found.design
             )
@@ -754,7 +755,7 @@ class _Explaining:
 
     def _direction(self, name: str, single: Sequence[Relaxation], conflict: Sequence[str]) -> float:
         """Return which way a requirement asks less: as it helps alone, as a limit, or by the signs of all limits."""
-        if not self.instance.requirements[name] > 0:
+        if not self.instance.values.requirements[name] > 0:
             return 0.0
         alone = [way for way in single if way.kind == "requirement" and way.name == name]
         if alone:
@@ -787,7 +788,7 @@ class _Explaining:
         assert found.design is not None
         declared, changes = self.instance.model.declaration.requirements, list[_Change]()
         for name, sign in signs.items():
-            r, given = declared[name], self.instance.requirements[name]
+            r, given = declared[name], self.instance.values.requirements[name]
             needed = min(max(given * math.exp(sign * min(found.amount, rooms[name])), r.lower), r.upper)
             texts = tuple(outward(needed, r.unit, up=sign > 0))
             changes.append(_Change(REQUIREMENT, name, name, texts, format_quantity(given, r.unit)))
@@ -894,7 +895,7 @@ class _Explaining:
         slack = self.ways.slack
         inside = all(
             low - slack * abs(low) <= x <= high + slack * abs(high)
-            for x, low, high in zip(values, instance.lower, instance.upper, strict=True)
+            for x, low, high in zip(values, instance.ranges.lower, instance.ranges.upper, strict=True)
         )
         return inside and not design.violated
 

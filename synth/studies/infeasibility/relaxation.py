@@ -125,12 +125,13 @@ class Relaxed(DesignProblem):
         A requirement at its default follows those that the default is made of.
         """
         d, calls = self._instance.model.declaration, self._instance.model.calls
+        given = self._instance.values.given
         before: list[Any] = []
         after: list[Any] = []
         for r in d.requirements.values():
             sign = self._give.get((REQUIREMENT, r.name), 0.0)
             value = r.sx
-            if before and r.sx is not None and r.name not in self._instance.given and isinstance(r.default, ca.SX):
+            if before and r.sx is not None and r.name not in given and isinstance(r.default, ca.SX):
                 value = ca.substitute([expanded(r.default, calls)], before, after)[0]
             if sign or value is not r.sx:
                 before.append(r.sx)

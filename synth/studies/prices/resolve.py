@@ -14,6 +14,8 @@ from synth.model.constraint import Constraint
 from synth.nlp.batch import Solutions
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
+from synth.question.refusals import allowed_rows, refuse_requirements
+from synth.question.requirement_values import RequirementValues
 from synth.results import ParetoFront
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
@@ -29,7 +31,7 @@ class Move:
     name: str
     position: int  # among the requirements in force, the limits, or the ranges
     factor: float
-    instance: Instance
+    values: RequirementValues
     refused: str = ""
 
 
@@ -62,7 +64,7 @@ class Resolver:
         self.moves = [*self._moves(step), *self._moves(limits.fine * step)]
         self.count = len(self.moves) // 2
         names = list(self.positions)
-        self.requirements = np.array([[m.instance.requirements[n] for n in names] for m in self.moves])
+        self.requirements = np.array([[m.values.requirements[n] for n in names] for m in self.moves])
         self.factors = np.array([m.factor for m in self.moves])
         self.limit_of = np.array([m.position if m.kind == "limit" else -1 for m in self.moves])
         self.range_of = np.array([m.position if m.kind == "range" else -1 for m in self.moves])
@@ -70,7 +72,7 @@ class Resolver:
     def _ranges(self) -> list[tuple[int, Constraint]]:
         """Return the limits that the user put on sizes, each with the number of the variable."""
         among = {v.name: k for k, v in enumerate(self.instance.model.variables)}
-        return [(among[x.quantity], x) for x in self.instance.bounding if x.quantity in among]
+        return [(among[x.quantity], x) for x in self.instance.limits.bounding if x.quantity in among]
 
     def holds_range(self, number: int) -> tuple[bool, bool]:
         """Tell whether a limit on a size is the lower, and the upper, end of its range."""
@@ -98,19 +100,21 @@ class Resolver:
 
     def _moves(self, step: float) -> list[Move]:
         """Return all that is moved by a step: upwards, downwards, in turn."""
-        found = []
+        found, asked, model = [], self.instance.values, self.instance.model
         for k, name in enumerate(self.positions):
             for factor in (1.0 + step, 1.0 - step):
-                value = self.instance.requirements[name]
+                own, why = asked, ""
                 try:
-                    own, why = self.instance.moved(name, value * factor), ""
+                    moved = asked.moved(model, name, asked.requirements[name] * factor)
+                    refuse_requirements(model, moved)
+                    own = moved
                 except InputError as error:
-                    own, why = self.instance, f"cannot be asked ({error})"
+                    why = f"cannot be asked ({error})"
                 found.append(Move("requirement", name, k, factor, own, why))
         for j, name in enumerate(self.limit_names):
-            found += [Move("limit", name, j, f, self.instance) for f in (1.0 + step, 1.0 - step)]
+            found += [Move("limit", name, j, f, asked) for f in (1.0 + step, 1.0 - step)]
         for r, (_, x) in enumerate(self.ranges):
-            found += [Move("range", x.name, r, f, self.instance) for f in (1.0 + step, 1.0 - step)]
+            found += [Move("range", x.name, r, f, asked) for f in (1.0 + step, 1.0 - step)]
         return found
 
     def others(self, own: int) -> np.ndarray:
@@ -206,11 +210,14 @@ class Resolver:
 
     def _allowed(self, combinations: np.ndarray, moves: np.ndarray) -> np.ndarray:
         """Tell which combinations are not refused where a requirement is moved."""
-        allowed = np.ones(len(combinations), dtype=bool)
+        allowed, model = np.ones(len(combinations), dtype=bool), self.instance.model
+        # Rows that are refused by themselves were left out for the requirements as they are, not as they are moved.
+        every = [r for r, kinds in zip(model.declaration.refusals, model.refusal_kinds, strict=True) if kinds]
         for number in np.unique(moves[moves >= 0]):
             move, rows = self.moves[number], moves == number
             if move.kind == "requirement":
-                allowed[rows] = not move.refused and not_refused(move.instance, combinations[rows], every=True)
+                data = self.instance.data(combinations[rows], move.values)
+                allowed[rows] = not move.refused and allowed_rows(model, every, data, int(rows.sum()))
         return allowed
 
     def difference(self, own: int, other: int) -> str:

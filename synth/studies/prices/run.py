@@ -380,9 +380,8 @@ class _Case:
 
     def _no_per_cent(self, move: Move) -> str:
         if move.kind == "requirement":
-            return (
-                "" if self.again.instance.requirements[move.name] else f"{move.name} is 0: there is no per cent of it"
-            )
+            value = self.again.instance.values.requirements[move.name]
+            return "" if value else f"{move.name} is 0: there is no per cent of it"
         if move.kind == "range":
             limit = self.again.ranges[move.position][1].bound
             return "" if limit else f"the limit {move.name} is 0: there is no per cent of it"

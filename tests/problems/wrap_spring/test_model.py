@@ -491,7 +491,7 @@ def test_pairs_are_those_offered_to_the_family(family):
 @pytest.mark.parametrize(("ladder", "some", "step"), [("R20", 0.0224, 20), ("R40", 0.0236, 40)])
 def test_hub_diameters_are_on_the_ladder_chosen(ladder, some, step):
     instance = instance_of(synth.load("wrap_spring", hub_ladder=ladder), BASE, as_catalogs(None))
-    (grid,) = [g for g in instance.grids() if len(g)]
+    (grid,) = [g for g in instance.ranges.grids() if len(g)]
     assert np.isclose(grid, some).any()
     assert len(grid) == pytest.approx(step * math.log10(200 / 6), abs=1.5)
 
@@ -506,7 +506,7 @@ def test_a_hub_table_of_ones_own_is_the_ladder():
 
 def test_peak_torque_follows_the_required_torque():
     instance = instance_of(synth.load("wrap_spring"), BASE | {"required_torque": 8}, as_catalogs(None))
-    assert instance.requirements["peak_torque"] == 20.0
+    assert instance.values.requirements["peak_torque"] == 20.0
 
 
 @pytest.mark.parametrize("torque", [0.05, 3.0, 900.0])

@@ -1,0 +1,191 @@
+"""What a question offers: rows that conditions, rules and completeness leave, values of counts, labels of choices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from synth.declaration import Choice, Count, Part
+from synth.errors import InputError, at
+from synth.model.constraint import SIGNS, Constraint
+from synth.model.model import Model
+from synth.question.count_domain import shown_set
+from synth.question.inputs import part_value
+from synth.question.selection import Selection, SlotRows
+from synth.question.user_limits import UserLimits
+from synth.tables.catalogs import Catalogs
+from synth.tables.conditions import may_be_condition, parse_condition
+from synth.tables.table import Table
+
+
+def select(model: Model, catalogs: Catalogs, rules: Mapping[str, Any], limits: UserLimits) -> Selection:
+    """Return what slots, rules, limits and pins leave to choose from; refusals of the family are not asked here.
+
+    Parameters
+    ----------
+    model : Model
+    catalogs : Catalogs
+    rules : mapping
+        Slot -> designations, or a condition on columns.
+    limits : UserLimits
+
+    Raises
+    ------
+    InputError
+        When a rule cannot be understood, or nothing is left of a slot, count or choice.
+    """
+    d, selection = model.declaration, Selection()
+    wanted = model.by_name(rules, "parts", list(d.slots), "a slot")
+    for part in d.slots.values():
+        table = catalogs.table(part.table)
+        selection.offered[part.slot] = len(table)
+        rows = np.flatnonzero(_rows_of(part, table, wanted, limits, selection))
+        if not len(rows):
+            _refuse_empty(part, table, wanted, limits, selection)
+        columns = {key: part_value(table, rows, column.columns) for key, column in part.columns.items()}
+        selection.slots.append(SlotRows(part.slot, table, rows, columns))
+    for count in d.counts.values():
+        selection.counts[count.name] = _values_of(count, limits)
+    for choice in d.choices.values():
+        selection.choices[choice.name] = _labels_of(choice, limits)
+    return selection
+
+
+# -- rows of slots -----------------------------------------------------------------------------
+
+
+def offers(part: Part, table: Table) -> np.ndarray:
+    """Return which rows of a table meet the conditions of the slot."""
+    keep = np.ones(len(table), dtype=bool)
+    for text in part.where:
+        keep &= table.once(("meets", text), partial(_meets, text, table))
+    return keep
+
+
+def _rows_of(
+    part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
+) -> np.ndarray:
+    """Return which rows of the table may fill a slot; note those that are not complete."""
+    keep = offers(part, table)
+    if part.slot in wanted:
+        with at("parts", part.slot):
+            keep &= _part_rule(part, table, wanted[part.slot])
+    if part.slot in limits.fixed:
+        with at("fix", part.slot):
+            keep &= np.arange(len(table)) == table.row_index(str(limits.fixed[part.slot]))
+    for column in part.columns.values():
+        if not column.required:
+            continue
+        present = table.once(("present", column.columns), partial(_present, table, column.columns))
+        for row in np.flatnonzero(keep & ~present):
+            reason = f"no value in column {' or '.join(column.columns)}"
+            selection.leave_out(part.slot, table.designations[row], reason)
+        keep = keep & present
+    return keep
+
+
+def _refuse_empty(
+    part: Part, table: Table, wanted: Mapping[str, Any], limits: UserLimits, selection: Selection
+) -> None:
+    """Say why no row is left for a slot: by which condition, rule or missing value."""
+    asked = [wanted[part.slot]] if part.slot in wanted else []
+    asked += [[limits.fixed[part.slot]]] if part.slot in limits.fixed else []
+    rows = np.ones(len(table), dtype=bool)
+    for rule in asked:
+        rows &= _part_rule(part, table, rule)
+    names = ", ".join(table.designations[k] for k in np.flatnonzero(rows)[:5]) or "no row"
+    lacking = sorted({e["reason"] for e in selection.left_out if e["slot"] == part.slot})
+    failing = [c for c in part.where if not _meets(c, table)[rows].any()]
+    if not rows.any():
+        expected = f"rules for this slot that leave at least one row of table {part.table}"
+    elif failing:
+        expected = f"a row of table {part.table} with {' and '.join(failing)}"
+    elif lacking:
+        expected = f"a row of table {part.table} that is complete ({'; '.join(lacking)})"
+    else:
+        expected = f"a row of table {part.table} with {' and '.join(part.where)}"
+    raise InputError(f"slot {part.slot}", names, expected, ("parts", part.slot))
+
+
+def _meets(text: str, table: Table) -> np.ndarray:
+    """Return which rows meet one condition of a slot."""
+    condition = parse_condition(text)
+    missing = [c for c in condition.columns if not table.has(c)]
+    if missing and table.user_rows.all():
+        # A user's own table need not have the columns that sort the shipped one.
+        return np.ones(len(table), dtype=bool)
+    mask: np.ndarray = condition.mask(table)
+    if "family_hint" in condition.columns:
+        hints = np.array([not h for h in table.text("family_hint")])
+        mask = mask | (table.user_rows & hints)
+    return mask
+
+
+def _part_rule(part: Part, table: Table, rule: Any) -> np.ndarray:
+    """Return which rows a rule of the user allows: a condition, a designation, or a list of these."""
+    keep = np.zeros(len(table), dtype=bool)
+    if isinstance(rule, str) and rule not in table.designations and may_be_condition(rule):
+        return parse_condition(rule).local().mask(table)
+    if not isinstance(rule, (str, Sequence)):
+        raise InputError(f"parts: {part.slot}", rule, "a list of designations, or a condition on columns")
+    if isinstance(rule, str):
+        keep[table.row_index(rule)] = True
+        return keep
+    for k, designation in enumerate(rule):
+        with at(k):
+            keep[table.row_index(str(designation))] = True
+    return keep
+
+
+def _present(table: Table, names: Sequence[str]) -> np.ndarray:
+    """Return which rows have a value in one of some columns."""
+    present = np.zeros(len(table), dtype=bool)
+    for name in names:
+        if table.has(name):
+            present |= ~np.isnan(table.number(name))
+    return present
+
+
+# -- values of counts and choices --------------------------------------------------------------
+
+
+def _values_of(count: Count, limits: UserLimits) -> np.ndarray:
+    """Return the values of a count that limits, sets and a pin leave."""
+    values, bounding, sets = count.values, limits.bounds_of(count.name), limits.sets_of(count.name)
+    for limit in bounding:
+        values = values[_meets_limit(values, limit)]
+    for steps in sets:
+        values = values[np.isin(values, steps)]
+    pinned = count.name in limits.fixed
+    if pinned:
+        values = values[np.abs(values - limits.fixed[count.name]) < 1e-9]
+    if len(values):
+        return values
+    low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
+    asked = [f"{SIGNS[x.sense]} {x.bound:g}" for x in bounding] + [f"in {shown_set(steps)}" for steps in sets]
+    asked += [f"== {limits.fixed[count.name]:g}"] if pinned else []
+    expected = f"conditions that leave a value from {low:g} to {high:g} in steps of {step:g}"
+    raise InputError(count.name, " and ".join(asked), expected, ("fix" if pinned else "limits", count.name))
+
+
+def _meets_limit(values: np.ndarray, limit: Constraint) -> np.ndarray:
+    slack = 1e-9 * max(1.0, abs(limit.bound))
+    if limit.sense == "at_most":
+        return values <= limit.bound + slack
+    if limit.sense == "at_least":
+        return values >= limit.bound - slack
+    return np.abs(values - limit.bound) <= slack
+
+
+def _labels_of(choice: Choice, limits: UserLimits) -> np.ndarray:
+    """Return the positions of the labels of a choice that a pin leaves."""
+    if choice.name not in limits.fixed:
+        return np.arange(len(choice.labels)).astype(float)
+    label = limits.fixed[choice.name]
+    label = ("yes" if label else "no") if isinstance(label, bool) else str(label)
+    if label not in choice.labels:
+        raise InputError(f"fix: {choice.name}", label, choice.expected(label), ("fix", choice.name))
+    return np.array([choice.labels.index(label)]).astype(float)

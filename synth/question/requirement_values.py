@@ -1,0 +1,145 @@
+"""Values of the requirements of a question in SI: as given, or from defaults, which may be made of others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from synth.declaration import RequirementRecord
+from synth.errors import InputError, at
+from synth.margins import within
+from synth.model.model import Model
+from synth.question.inputs import fixed_designation, fixed_row_values
+from synth.tables.catalogs import Catalogs
+from synth.units import Quantity, format_quantity, from_si, parse_quantity, parse_unit
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RequirementValues:
+    """The numbers of a question that it fixes: of requirements, and of rows that are always used.
+
+    Parameters
+    ----------
+    requirements : mapping
+        Requirement in force -> SI value.
+    given : frozenset of str
+        The requirements that were stated; the others have their default.
+    not_asked : tuple of str
+        Optional requirements that were not stated: they are not in force.
+    rows : mapping
+        Symbol of a column of a row that is always used -> SI value.
+    """
+
+    requirements: Mapping[str, float]
+    given: frozenset[str]
+    not_asked: tuple[str, ...]
+    rows: Mapping[str, float]
+
+    @classmethod
+    def read(cls, model: Model, catalogs: Catalogs, asked: Mapping[str, Any]) -> RequirementValues:
+        """Return the values that a question states.
+
+        Parameters
+        ----------
+        model : Model
+            Traced for the requirements that are asked.
+        catalogs : Catalogs
+        asked : mapping
+            Requirement by public name -> text with unit, or bare number in the declared unit.
+
+        Raises
+        ------
+        InputError
+            A value is missing or outside its range, or a row that is always used lacks a number.
+        """
+        rows = _complete_rows(model, catalogs)
+        missing = tuple(r.name for r in model.declaration.requirements.values() if r.sx is None)
+        return cls(requirements=_numbers(model, asked, rows), given=frozenset(asked), not_asked=missing, rows=rows)
+
+    def by_symbol(self, model: Model) -> dict[str, float]:
+        """Return the values by their symbols in the model."""
+        symbols = model.requirement_symbols
+        return {**{symbols[name]: value for name, value in self.requirements.items()}, **self.rows}
+
+    def moved(self, model: Model, name: str, value: float) -> RequirementValues:
+        """Return the same with another value of one requirement, and of those whose default is made of it.
+
+        Whether the family refuses that is not asked here.
+
+        Parameters
+        ----------
+        model : Model
+        name : str
+        value : float
+            SI.
+
+        Raises
+        ------
+        InputError
+            When one of them leaves its range.
+        """
+        declared = model.declaration.requirements
+        stated = {n: self.requirements[n] for n in self.given} | {name: value}
+        asked = {n: Quantity(v, declared[n].unit) for n, v in stated.items()}
+        return RequirementValues(
+            requirements=_numbers(model, asked, self.rows),
+            given=self.given | {name},
+            not_asked=self.not_asked,
+            rows=self.rows,
+        )
+
+
+def _complete_rows(model: Model, catalogs: Catalogs) -> dict[str, float]:
+    """Return the numbers of rows that are always used; refuse those that lack one."""
+    values = fixed_row_values(model.declaration, catalogs)
+    for row in model.declaration.rows.values():
+        for key, column in row.columns.items():
+            if column.required and math.isnan(values[str(column.sx)]):
+                designation = fixed_designation(row.slot)
+                where = f"table {row.table}, row {designation}, column {key}"
+                raise InputError(where, None, "a number", ("catalogs", row.table, designation, key))
+    return values
+
+
+def _numbers(model: Model, asked: Mapping[str, Any], rows: Mapping[str, float]) -> dict[str, float]:
+    """Return the SI value of every requirement in force; defaults are made of what stands before them."""
+    values = dict[str, float]()
+    for r in model.declaration.requirements.values():
+        if r.sx is None:
+            continue
+        if r.name in asked:
+            with at("requirements", r.name):
+                values[r.name] = parse_quantity(asked[r.name], r.unit, f"requirement {r.name}")
+                _check_range(r, asked[r.name], values[r.name])
+        elif r.default is None:
+            right = f"a value in {r.unit}, for example {_example(r)}"
+            raise InputError(f"requirement {r.name}", None, right, ("requirements", r.name))
+        elif isinstance(r.default, float):
+            values[r.name] = r.default
+        else:
+            known = {**{model.requirement_symbols[n]: v for n, v in values.items()}, **rows}
+            values[r.name] = model.number(r.default, known)
+    return values
+
+
+def _example(requirement: RequirementRecord) -> str:
+    """Return a value that may be typed: the middle of the range, rounded."""
+    finite = [x for x in (requirement.lower, requirement.upper) if np.isfinite(x) and x > 0]
+    middle = math.sqrt(finite[0] * finite[1]) if len(finite) == 2 else (finite[0] if finite else 1.0)
+    shown = float(f"{from_si(middle, parse_unit(requirement.unit)):.1g}")
+    return f"'{shown:g} {requirement.unit}'"
+
+
+def _check_range(r: RequirementRecord, typed: Any, value: float) -> None:
+    if within(value, r.lower, r.upper, 1e-12):
+        return
+    low, high = format_quantity(r.lower, r.unit), format_quantity(r.upper, r.unit)
+    if np.isfinite(r.lower) and np.isfinite(r.upper):
+        expected = f"{low} to {high}"
+    else:
+        expected = f"at least {low}" if np.isfinite(r.lower) else f"at most {high}"
+    raise InputError(f"requirement {r.name}", typed, expected)
