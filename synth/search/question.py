@@ -15,7 +15,9 @@ from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings
 from synth.results import Design, ParetoFront
 from synth.robust.counterpart import robust_counterpart
-from synth.search.front_search import FrontSearch
+from synth.search.front_search import FrontSearch, Report
+from synth.search.front_state import FrontTask
+from synth.search.warm_start import WarmStart
 from synth.tuning import TUNING, Tuning
 
 
@@ -66,32 +68,34 @@ class Question:
         prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
         where nothing is feasible. ``given`` is the front of an earlier search of this very question, to go on from.
         """
-        search = self.search(progress, known, lessons)
+        search = self.search(progress, WarmStart(designs=known, branching=lessons))
         if given is not None:
             search.begin_from(given)
-        return search.run(list(self.weights.values()), self.record(), explained)
+        return search.run(self.report(explained))
 
     def experience(self) -> tuple[ParetoFront, BranchingStatistics | None]:
         """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
         search = self.search()
-        front = search.run(list(self.weights.values()), self.record(), explained=False)
+        front, state = search.run(self.report(explained=False)), search.state
         # What was learned where nothing was feasible does not help where something is.
-        return front, search.form.bounding.branching.statistics() if front.designs and not search.in_conflict else None
+        useful = front.designs and not state.infeasibility_mode
+        return front, state.form.bounding.branching.statistics() if useful else None
 
-    def search(
-        self, progress: Progress | None = None, known: Sequence[Design] = (), lessons: BranchingStatistics | None = None
-    ) -> FrontSearch:
-        """Return the search that answers."""
-        return FrontSearch(
-            self.instance,
-            self.chosen,
-            self.settings,
-            progress,
-            known=known,
-            alike=self.alike,
-            lessons=lessons,
+    def search(self, progress: Progress | None = None, warm: WarmStart | None = None) -> FrontSearch:
+        """Return the search that answers; ``warm``: what is known of similar questions."""
+        task = FrontTask(
+            instance=self.instance,
+            chosen=self.chosen,
+            settings=self.settings,
             tuning=self.tuning,
+            alike=self.alike,
+            warm=warm or WarmStart(),
         )
+        return FrontSearch(task, progress)
+
+    def report(self, explained: bool = True) -> Report:
+        """Return what the front is to tell; ``explained``: why, where nothing is feasible."""
+        return Report(weights=list(self.weights.values()), settings=self.record(), explained=explained)
 
 
 def pose(
@@ -124,12 +128,13 @@ def pose(
 
 
 def one_best(
-    instance: Instance, objective: str, settings: SearchSettings, effort: int, tuning: Tuning = TUNING
+    instance: Instance, objective: str, settings: SearchSettings, node_limit: int, tuning: Tuning = TUNING
 ) -> ParetoFront:
     """Return the best design for one objective, for questions that the engine asks itself.
 
-    Where there is none nothing is explained; what ``effort`` boxes leave open is left open.
+    Where there is none nothing is explained; what ``node_limit`` boxes leave open is left open.
     """
     chosen = chosen_objectives(instance.model, [objective])
-    search = FrontSearch(instance, chosen, settings, effort=effort, tuning=tuning)
-    return search.run([1.0], {"points": settings.points, "gap": settings.gap}, explained=False)
+    task = FrontTask(instance=instance, chosen=chosen, settings=settings, tuning=tuning, node_limit=node_limit)
+    record = {"points": settings.points, "gap": settings.gap}
+    return FrontSearch(task).run(Report(weights=[1.0], settings=record, explained=False))

@@ -3,14 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from synth.bounds.branching import BranchingStatistics
 from synth.results import Design
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import PruningRule
 from synth.search.refused_cells import not_refused
+
+
+@dataclass(frozen=True, kw_only=True)
+class WarmStart:
+    """What is known of similar questions: it tells where to look first, and proves nothing.
+
+    Parameters
+    ----------
+    designs : list of Design
+        Of a similar question.
+    branching : BranchingStatistics, optional
+        What its search has learned about splitting boxes.
+    """
+
+    designs: Sequence[Design] = ()
+    branching: BranchingStatistics | None = None
 
 
 def warm_start(form: Formulation, rule: PruningRule, designs: Sequence[Design], rng: np.random.Generator) -> bool:

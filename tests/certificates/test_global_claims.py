@@ -17,8 +17,8 @@ import pytest
 import synth
 from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_question import alike
-from synth.search import front_search as search
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint
+from synth.search.stages import trees
 from synth.tables.catalogs import Catalogs
 from synth.tuning import SearchEffort
 from tests.asking import pose
@@ -138,7 +138,7 @@ def steps(monkeypatch):
         looked.append(outcome.looked)
         return outcome
 
-    monkeypatch.setattr(search, "cover_by_epsilon_constraint", counted)
+    monkeypatch.setattr(trees, "cover_by_epsilon_constraint", counted)
     return looked
 
 

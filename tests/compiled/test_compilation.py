@@ -16,7 +16,7 @@ from synth.compiled.compilation import compile_shared, meanwhile, switched_off, 
 from synth.deadline import Stopped
 from synth.nlp import interior_point_c as native
 from synth.nlp.batch import BatchNlp, Tasks
-from synth.search import front_search as search
+from synth.search.front_search import FrontSearch
 from synth.tuning import CompilingEffort
 from tests.sample_problems.strut import NEEDED, RODS, Strut, strut_form
 from tests.tuned import synthesize, tuned
@@ -157,15 +157,15 @@ def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_don
 
 def test_what_is_proven_while_the_compiler_works_is_an_answer_where_time_is_over(never_done, monkeypatch):
     ends = []
-    aside = search.FrontSearch._look_meanwhile
+    aside = FrontSearch.look_aside
 
-    def over(self, ready):
+    def over(self, ready, report):
         """Let time run out when the search beside the compiler is finished."""
-        aside(self, lambda: False)
-        ends.append(self.found_meanwhile)
+        aside(self, lambda: False, report)
+        ends.append(self.aside.front)
         raise Stopped("time limit")
 
-    monkeypatch.setattr(search.FrontSearch, "_look_meanwhile", over)
+    monkeypatch.setattr(FrontSearch, "look_aside", over)
     front = ask(time_limit=600.0)
     assert front is ends[0]
     assert front.certificate.kind == "global"
@@ -258,13 +258,13 @@ def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatc
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     looked = []
-    aside = search.FrontSearch._look_meanwhile
+    aside = FrontSearch.look_aside
 
-    def counted(self, ready):
-        aside(self, ready)
-        looked.append(len(self.meanwhile))
+    def counted(self, ready, report):
+        aside(self, ready, report)
+        looked.append(len(self.aside.designs))
 
-    monkeypatch.setattr(search.FrontSearch, "_look_meanwhile", counted)
+    monkeypatch.setattr(FrontSearch, "look_aside", counted)
     # While it is compiled, and with what has been compiled.
     first, second = (ask().files()["designs.csv"] for _ in range(2))
     assert looked

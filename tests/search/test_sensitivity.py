@@ -6,6 +6,7 @@ import pytest
 
 import synth
 from synth.parametric.joint_search import JointSearch
+from synth.search.front_search import Report
 from synth.search.sensitivity import elasticities
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut
@@ -214,11 +215,12 @@ def test_what_a_default_makes_of_a_requirement_moves_with_it(stated, expected):
 
 def test_elasticities_of_many_designs_are_those_of_each():
     search = pose(Strut(), {"load": "20 kN", "room": "150 mm"}, None, 12, {"rods": RODS}).search()
-    search.run([1.0, 1.0], {}, explained=False)
-    assert len(search.front) == 12
-    together = elasticities(search.form, search.front, 2)
-    for own, found in zip(search.front, together, strict=True):
-        (alone,) = elasticities(search.form, [own], 2)
+    search.run(Report(weights=[1.0, 1.0], explained=False))
+    form, listed = search.state.form, search.state.front
+    assert len(listed) == 12
+    together = elasticities(form, listed, 2)
+    for own, found in zip(listed, together, strict=True):
+        (alone,) = elasticities(form, [own], 2)
         assert list(found) == list(alone) == ["mass", "flexibility"]
         for objective in alone:
             assert found[objective] == pytest.approx(alone[objective], rel=1e-12)

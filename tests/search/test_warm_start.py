@@ -48,14 +48,14 @@ def test_what_is_not_offered_here_is_no_idea(designs: list[Design], more: dict[s
     instance = question(**{"parts": {}, **more}).instance
     gone = [d for d in designs if instance.combinations.find(d) is None]
     assert gone
-    form = question(**{"parts": {}, **more}).search().form
-    assert not warm_start(form, question().search().rule, gone, np.random.default_rng(0))
+    form = question(**{"parts": {}, **more}).search().state.form
+    assert not warm_start(form, question().search().state.rule, gone, np.random.default_rng(0))
     assert len(form.archive) == 0
 
 
 def test_ideas_are_solved_again_for_the_new_question(designs: list[Design]) -> None:
     heavier = question("30 kN")
-    search = heavier.search()
+    search = heavier.search().state
     assert warm_start(search.form, search.rule, designs, np.random.default_rng(0))
     known = search.form.archive
     fresh = heavier.answer().designs

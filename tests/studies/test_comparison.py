@@ -12,7 +12,7 @@ import synth.studies.families.compare
 from synth import DesignProblem
 from synth.feasibility import Status
 from synth.question.settings import SearchSettings
-from synth.search.front_search import FrontSearch
+from synth.search.stages.challenge import Challenge
 from synth.studies.families.compare import compare
 from synth.studies.families.requirement_sheet import applicants, common_objectives, sheet_of
 from synth.tables.catalogs import Catalogs
@@ -283,7 +283,8 @@ def test_one_family_finds_what_beats_the_others_when_it_is_asked_again(monkeypat
         own = np.array(list(design.objectives.values()))
         assert not np.any(np.all(every < own * (1 - 1e-3) * (1 - 1e-9), axis=1))
     # Without the challenge nothing is proven over all families.
-    monkeypatch.setattr(FrontSearch, "challenged", lambda self, listed, deadline: (False, []))
+    nothing = Challenge(closed=False, better=[], amounts=np.zeros(2))
+    monkeypatch.setattr(synth.studies.families.compare, "challenge", lambda state, listed, deadline: nothing)
     assert compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=2).certificate.kind == "heuristic"
 
 

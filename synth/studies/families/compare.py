@@ -26,9 +26,12 @@ from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import ranked
 from synth.robust.rating import Rater
 from synth.robust.robust_front import NOTHING_STANDS, robust_front
-from synth.search.front_search import FrontSearch
+from synth.search.front_report import further_designs
+from synth.search.front_state import FrontState
 from synth.search.question import Question, pose
 from synth.search.resolution import rounded_up
+from synth.search.stages.challenge import challenge
+from synth.search.warm_start import WarmStart
 from synth.studies.families.comparison import Comparison, FamilyOutcome
 from synth.studies.families.requirement_sheet import (
     Applicant,
@@ -115,15 +118,28 @@ def compare(
 
 @dataclass
 class _Member:
-    """A family that is searched: its search, its front, and its designs on the way to the common front.
+    """A family that is searched, and its designs on the way to the common front.
 
-    ``rater`` rates its designs where something scatters.
+    Parameters
+    ----------
+    one : Applicant
+    state : FrontState
+        What its own search knows, of which more is asked.
+    front : ParetoFront
+        Of its own search.
+    designs : list of Design
+        Those of its front, and more that were found against the others.
+    beaten_by : array (objectives,)
+        In SI: by how much designs of others had to be beaten to count.
+    rater : Rater, optional
+        Rates its designs where something scatters.
     """
 
     one: Applicant
-    search: FrontSearch
+    state: FrontState
     front: ParetoFront
     designs: list[Design]
+    beaten_by: np.ndarray
     rater: Rater | None = None
 
     @property
@@ -153,7 +169,7 @@ class _Kept:
 
     def __init__(self, question: Question) -> None:
         self.question = question
-        self.search: FrontSearch | None = None
+        self.state: FrontState | None = None
 
     @property
     def instance(self) -> Instance:
@@ -171,9 +187,10 @@ class _Kept:
         return self
 
     def answer(self, progress: Progress | None = None, known: Sequence[Design] = ()) -> ParetoFront:
-        """Search the designs; the arguments are those of ``Question.search``."""
-        self.search = self.question.search(progress, known)
-        return self.search.run(list(self.question.weights.values()), self.question.record())
+        """Search the designs; the arguments are those of ``Question.answer``."""
+        search = self.question.search(progress, WarmStart(designs=known))
+        self.state = search.state
+        return search.run(self.question.report())
 
 
 class _Comparing:
@@ -256,8 +273,8 @@ class _Comparing:
         else:
             rater = Rater(request, request.robust)
             front = robust_front(ask, rater, shown, limit)
-        search = next(k.search for k in reversed(kept) if k.search is not None)
-        return _Member(one, search, front, list(front.designs), rater)
+        state = next(k.state for k in reversed(kept) if k.state is not None)
+        return _Member(one, state, front, list(front.designs), np.zeros(len(self.objectives)), rater)
 
     def _shown(self, label: str, number: int, count: int) -> Progress | None:
         progress = self.progress
@@ -288,11 +305,12 @@ class _Comparing:
                 listed, _ = self._listed()
                 others = [d for m, d in listed if m is not member]
                 if others:
-                    done, better = member.search.challenged(self._signed(others), self.deadline)
-                    useful = self._useful(member.search.reported(better)) if better else []
+                    asked = challenge(member.state, self._signed(others), self.deadline)
+                    member.beaten_by = np.maximum(member.beaten_by, asked.amounts)
+                    useful = self._useful(further_designs(member.state, asked.better)) if asked.better else []
                     fresh = member.standing(useful, self.deadline)
                     member.designs += fresh
-                    closed = closed and done and len(fresh) == len(useful)
+                    closed = closed and asked.closed and len(fresh) == len(useful)
                     quiet = quiet and not fresh
             if quiet:
                 # What did not stand the range may have kept the search from what does, and beats others as well.
@@ -402,7 +420,7 @@ class _Comparing:
             if unit is not None:
                 # In some families the share of a value, in others an amount: the largest of them all serves every one.
                 own = [c.resolution.get(name, self.settings.gap * float(values[:, k].max())) for c in told]
-                least = max(*own, *(float(m.search.against[k]) for m in self.members))
+                least = max(*own, *(float(m.beaten_by[k]) for m in self.members))
                 result[name] = rounded_up(least, unit)
         return result
 

@@ -1,0 +1,69 @@
+"""What can be claimed of the designs listed: the gap that is proven, and the amounts it stands for."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from synth.search.front_state import FrontState
+from synth.search.proven_gap import Bound, least_gap
+from synth.search.resolution import ROOM, ranges, rounded_up
+
+
+def proven_gap(state: FrontState) -> float | None:
+    """Return the gap that bounds prove of the designs listed, where it is not the one asked for; none, if any."""
+    m, bounds = state.task.m, state.proof.bounds
+    if not state.front or not bounds:
+        return None
+    least = least_gap(bounds, state.phi_listed(), state.form.objectives.log[:m], _sizes(state))
+    return None if least is None else max(least, state.task.settings.gap)
+
+
+def gap_amounts(state: FrontState, gap: float) -> dict[str, float]:
+    """Return in SI what the gap of a claim stands for, per objective where it is no share of the value."""
+    form, m = state.form, state.task.m
+    least = gap * _sizes(state)
+    if m > 1:
+        # The range of a few designs may be less than that of the front they were chosen from.
+        least = np.maximum(least, state.rule.tolerance + ROOM)
+    amounts = least * form.objectives.scales[:m]
+    return {
+        name: rounded_up(float(amounts[k]), state.task.instance.model.units[name])
+        for k, name in enumerate(state.task.chosen)
+        if not form.objectives.log[k]
+    }
+
+
+def claim_no_less(state: FrontState) -> None:
+    """Where less is proven than was of the given designs, list only those that take their places.
+
+    What improves one of these by more than the gap of the given ones would have improved those as well.
+    """
+    given, m = state.given, state.task.m
+    if given.gap is None or not len(given.phi) or not state.front:
+        return
+    gap, logs = proven_gap(state), state.form.objectives.log[:m]
+    if (gap is not None and gap <= given.gap) or (logs.any() and given.gap >= 1.0):
+        return
+    places = given.places(state.phi_listed(), state.task.tuning.tolerances.rounded)
+    state.front = [state.front[k] for k in sorted(places)]
+    share = -math.log1p(-given.gap) if logs.any() else 0.0
+    state.proof.note_covered_within(np.where(logs, share, given.amounts / state.form.objectives.scales[:m]))
+
+
+def note_open_boxes(state: FrontState) -> None:
+    """Note what is proven where a tree was stopped: what its open boxes still allow."""
+    tolerance, clock, m = state.proof.tolerance_under_way, state.clock, state.task.m
+    if tolerance is None or (not clock.open and not clock.beyond):
+        return
+    boxes = [state.form.objectives.phi_of(b.bounds)[:, :m] for b in clock.open]
+    corners = list(clock.beyond) or boxes
+    state.proof.bounds.append(Bound(tolerance, np.concatenate([c.reshape(-1, m) for c in corners])))
+
+
+def _sizes(state: FrontState) -> np.ndarray:
+    """Return what the gap of objectives that may be zero is a share of on this front, in phi."""
+    finest = state.form.objectives.finest[: state.task.m] / state.task.settings.gap
+    sizes: np.ndarray = np.maximum(ranges(state.phi_listed()), finest)
+    return sizes

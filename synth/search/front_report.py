@@ -1,0 +1,177 @@
+"""What a search tells of what it has found: designs with their ties settled, certificate, statistics, front."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.analysis.designs import make_frame, offered
+from synth.feasibility import Status
+from synth.results import Certificate, Design, Frame, ParetoFront
+from synth.results.assembly import front_of, ranked
+from synth.results.statistics import SearchStatistics
+from synth.search.archive import Candidate, distinct
+from synth.search.found_designs import found_designs
+from synth.search.front_claim import gap_amounts, proven_gap
+from synth.search.front_state import FrontState
+from synth.search.polishing import break_ties
+from synth.search.sensitivity import elasticities
+from synth.search.stages.one_best import better_in
+
+# -- designs ---------------------------------------------------------------------------------------
+
+
+def settled_designs(
+    state: FrontState, frame: Frame, weights: Sequence[float], chosen: Sequence[Candidate]
+) -> list[Design]:
+    """Return designs with what the objectives do not see settled, other combinations that tie, and elasticities.
+
+    Parameters
+    ----------
+    state : FrontState
+    frame : Frame
+    weights : list of float
+        Of the objectives, for the ranking.
+    chosen : list of Candidate
+    """
+    settled, alternatives = _settled(state, chosen)
+    state.progress.say("report", 0.5)
+    costs = elasticities(state.form, settled, state.task.m) or [{}] * len(settled)
+    known: dict[str, Any] = {"status": Status.FEASIBLE, "gap": None}
+    if state.proof.closed:
+        known = {"status": Status.OPTIMAL, "gap": state.task.settings.gap}
+    more = [{**known, "alternatives": a, "elasticity": c} for a, c in zip(alternatives, costs, strict=True)]
+    designs = _records(state, frame, settled, more)
+    return ranked(designs, state.task.chosen, weights, state.proof.complete)[1]
+
+
+def designs_as_found(state: FrontState, frame: Frame, weights: Sequence[float]) -> list[Design]:
+    """Return the designs of the front as they are when the search is stopped."""
+    found = distinct(state.form.points.as_they_are(state.front), state.task.m, state.task.tuning)
+    nothing: Mapping[str, Any] = {"status": Status.FEASIBLE, "gap": None, "alternatives": (), "elasticity": {}}
+    return ranked(_records(state, frame, found, [nothing] * len(found)), state.task.chosen, weights)[1]
+
+
+def further_designs(state: FrontState, candidates: Sequence[Candidate]) -> list[Design]:
+    """Return designs for candidates that were found after the front, which they join."""
+    frame = make_frame(state.task.instance, state.task.chosen)
+    designs = settled_designs(state, frame, [1.0] * state.task.m, candidates)
+    state.front = [*state.front, *candidates]
+    return designs
+
+
+def _records(
+    state: FrontState, frame: Frame, candidates: Sequence[Candidate], more: Sequence[Mapping[str, Any]]
+) -> list[Design]:
+    """Return candidates as designs, with what else is known of each."""
+    points = np.array([c.variables for c in candidates]).reshape(len(candidates), state.form.n)
+    result = state.form.points.evaluate(points, np.array([c.combination for c in candidates], dtype=np.int64))
+    return found_designs(state.form, [frame] * len(candidates), candidates, result, more)
+
+
+def _settled(state: FrontState, designs: Sequence[Candidate]) -> tuple[list[Candidate], list[tuple[str, ...]]]:
+    """Settle what the chosen objectives do not see, and name other combinations that tie."""
+    form, m, tuning = state.form, state.task.m, state.task.tuning
+    chosen = list(designs)
+    if m == 1 and len(form.goals) > 1:
+        # One objective leaves whole families of parts open; the next objective is settled over all of them.
+        cutoffs = np.full(len(form.goals), np.inf)
+        cutoffs[0] = chosen[0].phi[0] + tuning.tolerances.tie
+        chosen[0] = better_in(state, 1, cutoffs, chosen[0], tuning.tree.tie) or chosen[0]
+    pairs: list[tuple[Candidate, tuple[str, ...]]] = []
+    while chosen:
+        settled = break_ties(form, state.pool, chosen, m)
+        listed = form.points.as_they_are([c for c, _ in settled])
+        pairs += [(c, a) for c, (_, a) in zip(listed, settled, strict=True)]
+        stay = {id(c) for c in distinct([c for c, _ in pairs], m, tuning)}
+        pairs = [pair for pair in pairs if id(pair[0]) in stay]
+        # Where settling has made two designs one, others that stand as well take the place.
+        missing = max(state.task.settings.points - len(pairs), 0)
+        chosen, state.spare = state.spare[:missing], state.spare[missing:] if missing else []
+    return [c for c, _ in pairs], [a for _, a in pairs]
+
+
+# -- the front -------------------------------------------------------------------------------------
+
+
+def front_found(
+    state: FrontState,
+    frame: Frame,
+    designs: Sequence[Design],
+    settings: Mapping[str, Any],
+    explanation: Mapping[str, Any] | None = None,
+    interrupted: str = "",
+) -> ParetoFront:
+    """Return the front with what is proven of it.
+
+    Parameters
+    ----------
+    state : FrontState
+    frame : Frame
+    designs : list of Design
+        In order of rank.
+    settings : mapping
+        As they were asked for.
+    explanation : mapping, optional
+        Why there is no design.
+    interrupted : str
+        What stopped the search; nothing where it was finished.
+    """
+    return front_of(
+        state.task.instance,
+        frame,
+        designs,
+        _certificate(state, bool(designs), bool(interrupted)),
+        _statistics(state),
+        settings,
+        complete=state.proof.complete,
+        explanation=explanation,
+        interrupted=interrupted,
+    )
+
+
+def _certificate(state: FrontState, any_design: bool, interrupted: bool) -> Certificate:
+    """Return what is proven: of all combinations, of those solved one by one, or nothing."""
+    task, proof = state.task, state.proof
+    kind = "global" if proof.closed else "exhaustive" if proof.exhausted and not interrupted else "heuristic"
+    gap = (task.settings.gap if any_design else None) if kind == "global" else proven_gap(state)
+    spent = task.limits.further.seconds if state.budget.spent and kind != "global" else None
+    amounts = gap_amounts(state, gap) if any_design and gap is not None else {}
+    return Certificate(
+        kind,
+        gap,
+        task.instance.combinations.count,
+        _excluded(state),
+        len(state.form.counters.solved_combinations),
+        proof.unresolved,
+        spent,
+        amounts,
+        {name: task.instance.model.units[name] for name in amounts},
+    )
+
+
+def _excluded(state: FrontState) -> int:
+    """Return how many combinations bounds have excluded."""
+    total, solved = state.task.instance.combinations.count, len(state.form.counters.solved_combinations)
+    still_open = 0.0 if state.proof.closed else state.proof.open_combinations
+    return int(max(total - max(still_open, solved), 0))
+
+
+def _statistics(state: FrontState) -> SearchStatistics:
+    """Return what the search has cost."""
+    form, counters = state.form, state.counters
+    return replace(
+        offered(state.task.instance),
+        excluded_by_bound=_excluded(state),
+        solved=len(form.counters.solved_combinations),
+        boxes=form.counters.contracted,
+        scalar_problems=counters.scalar_problems,
+        designs_known=len(form.archive),
+        nlp_solves=form.counters.nlp_solves,
+        nlp_solves_to_find=counters.solves_to_find,
+        outer_trials=counters.sampled_parts,
+        seconds={**state.progress.seconds, "total": state.progress.elapsed},
+    )

@@ -1,0 +1,286 @@
+"""What a search for a front knows at any time: what is asked, designs found, what is proven, and what is left open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from synth.question.instance import Instance
+from synth.question.objectives import with_ties
+from synth.question.settings import Progress, SearchSettings
+from synth.search.archive import Candidate, rows_of
+from synth.search.boxes import Boxes
+from synth.search.budget import Clock
+from synth.search.counters import SearchCounters
+from synth.search.execution import Execution
+from synth.search.formulation import Formulation
+from synth.search.given_front import GivenFront
+from synth.search.proven_gap import Bound
+from synth.search.pruning import EpsilonCover, NonImprovement
+from synth.search.stage_progress import StageProgress
+from synth.search.warm_start import WarmStart
+from synth.tuning import TUNING, TreeLimits, Tuning
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrontTask:
+    """What one search is to find and how; it does not change while the search goes on.
+
+    Parameters
+    ----------
+    instance : Instance
+    chosen : mapping
+        The objectives that are traded off, with their sense.
+    settings : SearchSettings
+    tuning : Tuning
+    node_limit : int, optional
+        Boxes that each tree may look into. A question with a limit of its own is not worth compiling for, nor solving
+        what stays open. None: as many as are worth it, and then all that can be done about the rest.
+    alike : int
+        Questions of its kind that are asked; code that is compiled for one serves them all.
+    warm : WarmStart
+        What is known of similar questions.
+    """
+
+    instance: Instance
+    chosen: Mapping[str, str]
+    settings: SearchSettings
+    tuning: Tuning = TUNING
+    node_limit: int | None = None
+    alike: int = 1
+    warm: WarmStart = field(default_factory=WarmStart)
+
+    @property
+    def m(self) -> int:
+        """How many objectives are traded off."""
+        return len(self.chosen)
+
+    @property
+    def limits(self) -> TreeLimits:
+        """How far trees go."""
+        return self.tuning.tree
+
+    @property
+    def thorough(self) -> bool:
+        """Whether all is done that can be done about what stays open."""
+        return self.node_limit is None
+
+    @property
+    def more_than_asked(self) -> int:
+        """Some more designs than asked for: those that turn out to be equal, or beaten by the same one, become one."""
+        return self.settings.points + self.settings.points // 3 + 5
+
+    def boxes_per_tree(self) -> int:
+        """Return how many boxes a tree may look into; with many unknowns they hardly close.
+
+        Combinations that are few are solved one by one instead; where boxes for one best design over few combinations
+        do not close soon, limits leave a sliver that they hardly ever close on.
+        """
+        if self.node_limit is not None:
+            return self.node_limit
+        instance, limits = self.instance, self.limits
+        few = instance.combinations.count <= limits.few_combinations
+        if int(np.sum(instance.ranges.lower < instance.ranges.upper)) < limits.many_variables:
+            return limits.boxes_of_many if self.m == 1 and few else limits.boxes
+        return limits.boxes_of_few_parts if few else limits.boxes_of_many
+
+    def formulation(self, infeasibility: bool, counters: SearchCounters | None = None) -> Formulation:
+        """Return the question ready to be searched.
+
+        Parameters
+        ----------
+        infeasibility : bool
+            Whether it is for proving that limits exclude each other.
+        counters : SearchCounters, optional
+            Those of an earlier formulation, which go on.
+        """
+        goals = with_ties(self.instance.model, self.chosen)
+        execution = Execution(self.thorough, self.alike, self.settings.workers)
+        return Formulation(self.instance, goals, self.m, infeasibility, execution, self.tuning, counters)
+
+
+@dataclass
+class FrontCounters:
+    """The work of a search beside that of its formulation.
+
+    Parameters
+    ----------
+    scalar_problems : int
+        Best designs in one objective that were searched.
+    sampled_parts : int
+        Combinations that were drawn by part sampling.
+    nodes : int
+        Boxes that were looked into.
+    solves_to_find : int, optional
+        Continuous problems that were solved for the designs listed: settling ties and prices come after.
+    """
+
+    scalar_problems: int = 0
+    sampled_parts: int = 0
+    nodes: int = 0
+    solves_to_find: int | None = None
+
+
+@dataclass
+class FrontProof:
+    """What is proven so far, and what is left open.
+
+    Parameters
+    ----------
+    open_combinations : float
+        That may still hold a feasible design.
+    closed : bool
+        Whether no tree has left anything open.
+    exhausted : bool
+        Whether all combinations that were left open have been solved one by one.
+    complete : bool
+        Whether all designs that none dominates are listed.
+    unresolved : int
+        Boxes that were left open.
+    bounds : list of Bound
+        What is proven of all designs, each on its own.
+    finest_cover : EpsilonCover, optional
+        The finest cover that is finished.
+    designs : set of bytes
+        phi of designs that need no proof any more.
+    tolerance_under_way : array (objectives,), optional
+        Of the tree that is under way, if it speaks of all designs.
+    staircase : NonImprovement, optional
+        The proof of designs that is under way.
+    """
+
+    open_combinations: float
+    closed: bool = True
+    exhausted: bool = True
+    complete: bool = False
+    unresolved: int = 0
+    bounds: list[Bound] = field(default_factory=list)
+    finest_cover: EpsilonCover | None = None
+    designs: set[bytes] = field(default_factory=set)
+    tolerance_under_way: np.ndarray | None = None
+    staircase: NonImprovement | None = None
+
+    def note_cover(self, rule: EpsilonCover) -> None:
+        """Note that everything is covered as a rule asks."""
+        self.finest_cover = rule
+        self.note_covered_within(rule.tolerance)
+
+    def note_covered_within(self, tolerance: np.ndarray) -> None:
+        """Note that known designs cover all others within a tolerance."""
+        self.bounds.append(Bound(tolerance, np.empty((0, len(tolerance)))))
+
+    def give_up(self) -> None:
+        """Note that the search ends before its proof does."""
+        self.closed = self.exhausted = self.complete = False
+
+
+@dataclass
+class OpenBoxBudget:
+    """The time for boxes that a first effort has left open.
+
+    Parameters
+    ----------
+    seconds : float
+        That are left; infinite where a time limit of the whole search takes the place of a budget.
+    spent : bool
+        Whether it was the budget that ended the work on open boxes.
+    """
+
+    seconds: float
+    spent: bool = False
+
+
+class FrontState:
+    """What a search for a front knows; its stages read it and write what they find.
+
+    Parameters
+    ----------
+    task : FrontTask
+    progress : callable, optional
+        Told how far the search is.
+    """
+
+    def __init__(self, task: FrontTask, progress: Progress | None = None) -> None:
+        instance, settings, learned = task.instance, task.settings, task.warm.branching
+        self.task, self.node_limit = task, task.boxes_per_tree()
+        self.progress = StageProgress(progress, instance.combinations.count, lambda: len(self.form.archive))
+        self.form, self.infeasibility_mode = task.formulation(infeasibility=False), False
+        limit = settings.time_limit
+        end = math.inf if limit is None else self.progress.started + limit
+        self.clock = Clock(end, self.progress.working)
+        self.budget = OpenBoxBudget(task.limits.further.seconds if limit is None else math.inf)
+        self.rng = np.random.default_rng(settings.seed)
+        self.counters = FrontCounters()
+        self.proof = FrontProof(open_combinations=float(instance.combinations.count))
+        self.pool: Boxes = self.form.boxes.nothing()  # the boxes that may hold a feasible design
+        self.rule = self.cover_at_gap(None)
+        self.front: list[Candidate] = []
+        self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
+        self.given = GivenFront.nothing(task.m)
+        self.by_steps = False  # whether a front at once has turned out to cost too much
+        self.may_find_more = True  # unless a try was given up
+        self.reporting = False  # whether the designs stand, and are only told
+        self.taught = learned is not None and self.form.bounding.branching.adopt(learned)
+
+    # -- rules and designs ----------------------------------------------------------------------
+
+    def cover_at_gap(self, sizes: np.ndarray | None) -> EpsilonCover:
+        """Return the cover that the gap asks for.
+
+        Parameters
+        ----------
+        sizes : array (objectives,), optional
+            In phi: what the gap of objectives that may be zero is a share of.
+        """
+        form, m = self.form, self.task.m
+        tolerance = form.objectives.tolerance(self.task.settings.gap, sizes)[:m]
+        return EpsilonCover(range(m), tolerance, np.full(len(form.goals), np.inf), form.archive)
+
+    def cover_within(self, tolerance: np.ndarray) -> EpsilonCover:
+        """Return the cover of everything within a tolerance."""
+        return EpsilonCover(self.rule.columns, tolerance, self.rule.fixed_cutoffs, self.form.archive)
+
+    def fine_cover(self) -> EpsilonCover:
+        """Return the cover that is as fine as the points asked for need, at most as the gap."""
+        phi = self.form.archive.phi[:, : self.task.m]
+        span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.task.m)
+        needed = self.task.limits.fine * span / self.task.settings.points
+        return self.cover_within(np.maximum(needed, self.rule.tolerance))
+
+    def phi_listed(self) -> np.ndarray:
+        """Return phi of the designs listed (designs, objectives)."""
+        return np.array([c.phi[: self.task.m] for c in self.front])
+
+    def take(self, design: Candidate) -> None:
+        """Put a feasible design into the archive."""
+        self.form.archive.add(*rows_of([design]))
+
+    # -- boxes ---------------------------------------------------------------------------------
+
+    def set_pool(self) -> None:
+        """Begin with the box of everything; what it allows is the first that is proven."""
+        self.pool = self.form.boxes.root()
+        corners = self.form.objectives.phi_of(self.pool.bounds)[:, : self.task.m]
+        self.proof.bounds.append(Bound(np.zeros(self.task.m), corners))
+
+    def begin_again(self, infeasibility: bool) -> None:
+        """Begin again with boxes that also carry what limits share, or no longer do, and keep what is known."""
+        known, self.infeasibility_mode = self.form, infeasibility
+        self.form = self.task.formulation(infeasibility, known.counters)
+        if infeasibility:
+            self.form.bounding.branching.adopt(known.bounding.branching.statistics())
+        self.form.archive.add(known.archive.combination, known.archive.variables, known.archive.phi)
+        self.rule = self.cover_at_gap(None)
+        self.set_pool()
+
+    def begin_tree(self, tolerance: np.ndarray | None) -> None:
+        """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""
+        self.proof.tolerance_under_way = tolerance
+        self.clock.open, self.clock.beyond = [], ()
+
+    def end_tree(self) -> None:
+        """Note that no tree is under way: one that was stopped by an exception stays."""
+        self.proof.tolerance_under_way = None

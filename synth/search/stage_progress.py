@@ -1,0 +1,68 @@
+"""Which stage a search is in, how far it is, and how long each stage took."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from synth.question.settings import Progress
+
+
+class StageProgress:
+    """Tells which stage a search is in and how far it is, and keeps how long each stage took.
+
+    Parameters
+    ----------
+    report : callable, optional
+        Told a mapping: stage, done (0..1), combinations, incumbents, message. None where nobody wants to know.
+    combinations : int
+        Of the question.
+    incumbents : callable
+        Returns how many designs are known.
+    """
+
+    def __init__(self, report: Progress | None, combinations: int, incumbents: Callable[[], int]) -> None:
+        self.started = time.monotonic()
+        self.seconds: dict[str, float] = {}  # per stage that has ended
+        self.report, self._combinations, self._incumbents = report, combinations, incumbents
+        self._stage, self._done = "", 0.0
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the search began."""
+        return time.monotonic() - self.started
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Take the time of a block, which is a stage of the search or a part of one."""
+        begin = time.monotonic()
+        self.say(name, 0.0)
+        try:
+            yield
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.monotonic() - begin
+            self.say(name, 1.0)
+
+    def enter(self, stage: str) -> None:
+        """Begin a stage whose boxes alone are told of."""
+        self._stage, self._done = stage, 0.0
+
+    def working(self, open_boxes: int) -> None:
+        """Show that work goes on inside a stage."""
+        if open_boxes:
+            self.say(self._stage, self._done, f"{open_boxes} boxes open")
+
+    def say(self, stage: str, done: float, message: str = "") -> None:
+        """Tell how far a stage is."""
+        self._stage, self._done = stage, done
+        if self.report is not None:
+            self.report(
+                {
+                    "stage": stage,
+                    "done": float(min(max(done, 0.0), 1.0)),
+                    "combinations": self._combinations,
+                    "incumbents": self._incumbents(),
+                    "message": message,
+                }
+            )

@@ -1,0 +1,92 @@
+"""The designs to list: those that spread best, each made as good as its parts allow, and proven."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.search.archive import Candidate, rows_of
+from synth.search.front_state import FrontState
+from synth.search.polishing import polish_extremes, polish_variables
+from synth.search.resolution import ranges
+from synth.search.stages.proving import prove_designs, proven_at_gap
+from synth.search.stages.spreading import different, spread
+from synth.search.stages.trees import cover_everything, cover_step_by_step
+
+
+def choose_designs(state: FrontState) -> None:
+    """Choose the designs to list and prove them; where too few are known, look for more until nothing is left."""
+    proof, points = state.proof, state.task.settings.points
+    for last in (*(False,) * (state.task.limits.choices - 1), True):
+        state.front = _polished(state)
+        _rescale(state)
+        if not last and _too_few(state) and _look_for_more(state):
+            continue
+        if not proof.closed or proof.complete or proven_at_gap(state) or prove_designs(state):
+            break
+    if proof.closed and not proof.complete and len(state.front) < points and _covered_at_gap(state):
+        # Now each design stands that no known one beats, also those that were found meanwhile.
+        state.front = _polished(state)
+        proof.complete = len(state.front) <= points and _stand_for_all(state)
+    standing, state.front = state.front, spread(state, state.front, points)
+    state.spare = [c for c in standing if not any(c is own for own in state.front)]
+
+
+def _polished(state: FrontState) -> list[Candidate]:
+    """Return some more designs than asked for that spread over the front, each made as good as its parts allow."""
+    form, m, most = state.form, state.task.m, state.task.more_than_asked
+    archive, done = form.archive, set[bytes]()
+    polish_extremes(form, m, float(state.rule.tolerance.max()))
+    for _ in range(state.task.limits.polishings):
+        rough = [c for c in spread(state, list(archive), most) if c.phi[:m].tobytes() not in done]
+        if not rough:
+            break
+        better = polish_variables(form, rough, m, range(m))
+        done.update(c.phi[:m].tobytes() for c in better)
+        archive.add(*rows_of(better))
+    return spread(state, different(state, list(archive)), most)
+
+
+def _rescale(state: FrontState) -> None:
+    """Measure the gap of objectives that can be zero against their range on this front."""
+    phi, rule = np.array([c.phi for c in state.front]), state.rule
+    needed = state.form.objectives.tolerance(state.task.settings.gap, ranges(phi))[: state.task.m]
+    too_wide = needed < rule.tolerance
+    if np.any(too_wide):
+        # A little less than needed: a range that shrinks by next to nothing shall not need another proof.
+        rule.tolerance = np.where(too_wide, state.task.limits.margin * needed, rule.tolerance)
+        state.proof.designs.clear()
+
+
+def _too_few(state: FrontState) -> bool:
+    """Tell whether fewer designs are chosen than asked for, and there may be more."""
+    if len(state.front) >= state.task.settings.points or not state.proof.closed or state.proof.complete:
+        return False
+    return state.may_find_more and not (state.by_steps and proven_at_gap(state))
+
+
+def _look_for_more(state: FrontState) -> bool:
+    """Find all designs that none dominates, or more than enough of them; tell whether anything was found."""
+    archive, m, points = state.form.archive, state.task.m, state.task.settings.points
+    known, node_limit = archive.phi, state.task.limits.fill + state.counters.nodes
+    if state.by_steps:
+        # Not everything that is not dominated, but everything that the gap tells apart.
+        state.may_find_more = cover_step_by_step(state, state.cover_within(state.rule.tolerance)).closed
+    else:
+        finest = state.cover_within(np.full(m, state.task.tuning.tolerances.tie))
+        outcome = cover_everything(state, finest, node_limit, points)
+        state.proof.complete = outcome.closed and len(archive) <= points
+    return not np.array_equal(archive.phi, known)
+
+
+def _covered_at_gap(state: FrontState) -> bool:
+    """Tell whether everything is covered as finely as the gap; a front at once is covered now."""
+    if state.by_steps:
+        return proven_at_gap(state)
+    return cover_everything(state, state.rule, state.task.limits.boxes).closed
+
+
+def _stand_for_all(state: FrontState) -> bool:
+    """Tell whether the designs of the front cover all that are known."""
+    listed, known = state.phi_listed(), state.form.archive.phi[:, : state.task.m]
+    covered = np.all(listed[None, :, :] - state.rule.tolerance <= known[:, None, :], axis=2).any(axis=1)
+    return bool(covered.all())

@@ -1,0 +1,54 @@
+"""A front of several objectives, covered as finely as the points asked for need."""
+
+from __future__ import annotations
+
+from synth.search.branch_and_bound import TreeOutcome
+from synth.search.front_state import FrontState
+from synth.search.large_neighbourhood import large_neighbourhood_search
+from synth.search.pruning import EpsilonCover
+from synth.search.stages.first_designs import seek_beside
+from synth.search.stages.trees import close_open_boxes, cover_everything, cover_step_by_step
+
+
+def cover_front(state: FrontState) -> None:
+    """Cover everything as finely as the points asked for need, at most as the gap."""
+    rule, outcome = _first_cover(state)
+    if not outcome.closed and state.task.m == 2:
+        rule, outcome = _second_cover(state)
+    left = close_open_boxes(state, outcome.open, rule)
+    if len(outcome.open) and not len(left):
+        state.proof.note_cover(rule)
+    state.proof.open_combinations = float(state.form.boxes.cells.size(left.cell).sum())
+
+
+def _first_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
+    """Cover the front at once; with two objectives not for long, least where designs are scarce."""
+    limits, two = state.task.limits, state.task.m == 2
+    scarce = two and state.task.instance.combinations.count > limits.few_combinations and _search_neighbourhoods(state)
+    rule = state.fine_cover()
+    at_once = limits.scarce_front if scarce else limits.whole_front
+    return rule, cover_everything(state, rule, min(state.node_limit, at_once) if two else state.node_limit)
+
+
+def _second_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
+    """Cover a front of two objectives that was not covered at once, step by step if that promises more."""
+    rule = state.fine_cover()
+    # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
+    few = len(state.form.archive) < state.task.settings.points
+    state.by_steps = state.node_limit < state.task.limits.boxes or few
+    return rule, cover_step_by_step(state, rule) if state.by_steps else cover_everything(state, rule, state.node_limit)
+
+
+def _search_neighbourhoods(state: FrontState) -> bool:
+    """Look for more where few designs are known; tell whether they are still few, but not none."""
+    scarce = state.task.tuning.heuristics.seeker.scarce
+    if not len(state.form.archive):
+        at_gap = state.cover_within(state.rule.tolerance)
+        cover_everything(state, at_gap, min(state.node_limit, state.task.limits.whole_front), enough=0)
+    if not 0 < len(state.form.archive) < scarce:
+        return False
+    if state.infeasibility_mode:
+        state.begin_again(infeasibility=False)
+    large_neighbourhood_search(state.form, state.rule.columns, state.rule.tolerance, state.clock, state.rng)
+    seek_beside(state, state.fine_cover())
+    return len(state.form.archive) < scarce

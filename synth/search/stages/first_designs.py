@@ -1,0 +1,50 @@
+"""The first designs: from similar questions, or from a coarse look at everything."""
+
+from __future__ import annotations
+
+from synth.search.front_state import FrontState
+from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.pruning import EpsilonCover
+from synth.search.stages.trees import cover_everything
+from synth.search.warm_start import warm_start
+
+
+def bound_everything(state: FrontState) -> None:
+    """Begin with the box of everything; nothing is feasible where nothing is left of it."""
+    state.clock.check()
+    state.set_pool()
+    if not len(state.pool):
+        state.proof.open_combinations = 0.0
+
+
+def find_first_designs(state: FrontState) -> None:
+    """Look for the first designs; where there are none yet, prepare for proving that there cannot be any."""
+    known = state.task.warm.designs
+    if known and warm_start(state.form, state.rule, known, state.rng):
+        # For one objective little is left to look for, where what is worth splitting is known as well.
+        if state.task.m > 1 or not state.taught:
+            seek_beside(state, state.fine_cover())
+        return
+    if _look_round(state) or not len(state.pool):
+        return
+    state.begin_again(infeasibility=True)
+    _look_round(state)
+
+
+def _look_round(state: FrontState) -> bool:
+    """Cover everything coarsely and look beside what is found; tell whether anything feasible is known."""
+    limits, one, form = state.task.limits, state.task.m == 1, state.form
+    coarse = state.cover_within(state.rule.tolerance * max(limits.coarse / state.task.settings.gap, 1.0))
+    outcome = cover_everything(state, coarse, limits.first_boxes if one else limits.coarse_boxes)
+    if not len(form.archive) and not outcome.closed and one:
+        outcome = cover_everything(state, coarse, limits.coarse_boxes)
+    if len(form.archive):
+        seek_beside(state, state.fine_cover())
+    elif outcome.closed:
+        state.pool, state.proof.open_combinations = form.boxes.nothing(), 0.0
+    return bool(len(form.archive))
+
+
+def seek_beside(state: FrontState, rule: EpsilonCover) -> None:
+    """Look for designs beside those that are known."""
+    PrimalHeuristics(state.form, rule, state.rng, False).beside(state.clock)

@@ -1,0 +1,130 @@
+"""The design that is best in one objective: a tree of its own, before the front or as all that is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.search.archive import Archive, Candidate, rows_of
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import TreeOutcome, best
+from synth.search.front_state import FrontState
+from synth.search.pruning import EpsilonCover
+from synth.search.resolution import ranges
+from synth.search.stages.trees import close_open_boxes
+
+
+def find_extremes(state: FrontState) -> None:
+    """Find the design that is best in each objective, before the front: its ranges are needed, or it is all."""
+    m = state.task.m
+    found = [best_in(state, k, np.full(len(state.form.goals), np.inf)) for k in range(m)]
+    known = [c for c in found if c is not None]
+    if m == 1:
+        state.front, state.proof.complete = known, state.proof.closed
+    elif known:
+        state.rule = state.cover_at_gap(ranges(np.array([c.phi for c in known])))
+
+
+def best_in(state: FrontState, k: int, fixed_cutoffs: np.ndarray) -> Candidate | None:
+    """Return the design that is best in one objective, proven within the gap, or as far as can be proven.
+
+    Parameters
+    ----------
+    state : FrontState
+    k : int
+        The number of the objective.
+    fixed_cutoffs : array (objectives,)
+        phi that the design must keep.
+    """
+    before, limits = len(state.form.archive), state.task.limits
+    soon = state.node_limit if state.infeasibility_mode else min(limits.first_try, state.node_limit)
+    state.counters.scalar_problems += 1
+    found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, None, soon)
+    if not outcome.closed and not state.infeasibility_mode:
+        # What is feasible is so narrow that it costs most to tell which limits leave nothing.
+        state.begin_again(infeasibility=True)
+        found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, found, state.node_limit)
+    if not outcome.closed:
+        return _close_best(state, _rule_for_best(state, k, fixed_cutoffs, tolerance, found), outcome.open)
+    if before == 0 and found is None:
+        state.proof.open_combinations = 0.0
+    return found
+
+
+def better_in(
+    state: FrontState, k: int, fixed_cutoffs: np.ndarray, start: Candidate, node_limit: int
+) -> Candidate | None:
+    """Return the best design in one objective that is found with few boxes; nothing is proven of it.
+
+    Parameters
+    ----------
+    state, k, fixed_cutoffs
+        As for :func:`best_in`.
+    start : Candidate
+        Known already.
+    node_limit : int
+        Boxes that may be looked into.
+    """
+    state.counters.scalar_problems += 1
+    return _best_within(state, k, fixed_cutoffs, start, node_limit)[0]
+
+
+def _best_within(
+    state: FrontState, k: int, fixed_cutoffs: np.ndarray, start: Candidate | None, node_limit: float
+) -> tuple[Candidate | None, TreeOutcome, float]:
+    """Return the best design found with so many boxes, how the search ended, and the tolerance it had."""
+    sizes = None if start is None else np.abs(start.phi)
+    tolerance = float(state.form.objectives.tolerance(state.task.settings.gap, sizes)[k])
+    found, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit)
+    while found is not None and outcome.closed:
+        # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
+        finer = _finer(state, k, tolerance, [found])
+        if finer is None:
+            break
+        tolerance = finer
+        found, outcome = _tree(state, k, fixed_cutoffs, tolerance, found, node_limit)
+    return found, outcome, tolerance
+
+
+def _tree(
+    state: FrontState,
+    k: int,
+    fixed_cutoffs: np.ndarray,
+    tolerance: float,
+    start: Candidate | None,
+    node_limit: float,
+) -> tuple[Candidate | None, TreeOutcome]:
+    """Search one tree; where there is but one objective, what it leaves open speaks of all designs."""
+    state.begin_tree(np.array([tolerance]) if state.task.m == 1 else None)
+    found = best(state.form, state.pool, k, fixed_cutoffs, tolerance, state.clock, state.rng, start, node_limit)
+    state.end_tree()
+    return found
+
+
+def _close_best(state: FrontState, rule: EpsilonCover, left: Boxes) -> Candidate | None:
+    """Go on with what a tree for one best design has left open; return the best design known then."""
+    left = close_open_boxes(state, left, rule)
+    k = rule.columns[0]
+    while not len(left) and (finer := _finer(state, k, float(rule.tolerance[0]), rule.known)) is not None:
+        rule = _rule_for_best(state, k, rule.fixed_cutoffs, finer, rule.known[0])
+        left = close_open_boxes(state, state.pool, rule)
+    return rule.known[0] if len(rule.known) else None
+
+
+def _rule_for_best(
+    state: FrontState, k: int, fixed_cutoffs: np.ndarray, tolerance: float, known: Candidate | None
+) -> EpsilonCover:
+    """Return the rule for the design that is best in one objective."""
+    rule = EpsilonCover([k], np.array([tolerance]), fixed_cutoffs, state.form.new_archive([k]))
+    if known is not None:
+        rule.take(*rows_of([known]))
+    return rule
+
+
+def _finer(state: FrontState, k: int, tolerance: float, known: Archive | Sequence[Candidate]) -> float | None:
+    """Return the tolerance that the gap means at the best value known; None where it is as fine as that already."""
+    if state.task.m > 1 or not len(known) or state.form.objectives.log[k]:
+        return None
+    finer = float(state.form.objectives.tolerance(state.task.settings.gap, np.abs(known[0].phi))[k])
+    return finer if finer < tolerance else None

@@ -1,0 +1,37 @@
+"""Which designs stand for all that are known: those that spread best, and differ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.pareto import extremes, spread_subset
+from synth.search.archive import Candidate, distinct
+from synth.search.front_state import FrontState
+from synth.search.resolution import ROOM
+
+
+def spread(state: FrontState, designs: Sequence[Candidate], most: int) -> list[Candidate]:
+    """Return those designs, at most so many, that spread best; the best in each objective among them.
+
+    Designs that take the places of given ones stay before others.
+    """
+    m = state.task.m
+    phi = np.array([c.phi[:m] for c in designs]).reshape(len(designs), m)
+    kept, ends = state.given.places(phi, state.task.tuning.tolerances.rounded), extremes(phi)
+    if not kept:
+        return [designs[int(k)] for k in spread_subset(phi, most)]
+    if not state.proof.closed:
+        return [designs[int(k)] for k in spread_subset(phi, most, [*kept, *ends])]
+    # What is proven speaks of the best in each objective: they come before designs that were given.
+    some = np.array(list(dict.fromkeys([*ends, *kept])))
+    if len(some) >= most:
+        return [designs[int(some[k])] for k in spread_subset(phi[some], most)]
+    return [designs[int(k)] for k in spread_subset(phi, most, some.tolist())]
+
+
+def different(state: FrontState, designs: Sequence[Candidate]) -> list[Candidate]:
+    """Return designs that still differ when ties are settled, which gives away some of what may be zero."""
+    m = state.task.m
+    return distinct(designs, m, state.task.tuning, np.where(state.form.objectives.log[:m], 0.0, ROOM))

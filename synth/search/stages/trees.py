@@ -1,0 +1,106 @@
+"""Trees over everything that may be feasible, and what is done about the boxes that they leave open."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from synth.search.best_first import best_first
+from synth.search.boxes import Boxes
+from synth.search.branch_and_bound import TreeOutcome, branch_and_bound
+from synth.search.epsilon_constraint import cover_by_epsilon_constraint
+from synth.search.front_state import FrontState
+from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
+from synth.search.polishing import solve_everywhere
+from synth.search.proven_gap import Bound
+from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule
+
+
+def cover_everything(
+    state: FrontState, rule: EpsilonCover, node_limit: float, enough: int | None = None
+) -> TreeOutcome:
+    """Cover everything with one tolerance; if the time runs out, the boxes that are open tell what is proven.
+
+    Parameters
+    ----------
+    state : FrontState
+    rule : EpsilonCover
+    node_limit : float
+        Boxes that may be looked into.
+    enough : int, optional
+        Stop when more designs than this are known.
+    """
+    state.begin_tree(rule.tolerance)
+    outcome = branch_and_bound(state.form, state.pool, rule, state.clock, state.rng, node_limit, enough)
+    return _noted(state, rule, outcome)
+
+
+def cover_step_by_step(state: FrontState, rule: EpsilonCover) -> TreeOutcome:
+    """Cover everything with one tolerance, one objective capped step by step."""
+    state.begin_tree(rule.tolerance)
+    outcome = cover_by_epsilon_constraint(state.form, state.pool, rule, state.clock, state.rng, state.node_limit)
+    return _noted(state, rule, outcome)
+
+
+def _noted(state: FrontState, rule: EpsilonCover, outcome: TreeOutcome) -> TreeOutcome:
+    """Count the boxes; what is covered with one tolerance stays known if the time runs out later."""
+    state.end_tree()
+    state.counters.nodes += outcome.looked
+    if outcome.closed:
+        state.proof.note_cover(rule)
+    return outcome
+
+
+def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
+    """Go on with boxes that a first effort has left open; return what stays open, and note what is proven then.
+
+    Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
+    to be solved, Optuna draws some of them.
+    """
+    solved, proof, thorough = False, state.proof, state.task.thorough
+    if thorough and len(left):
+        solved = _solve_few(state, left, rule)
+        left = _go_on(state, left, rule)
+    if not len(left):
+        return left
+    proof.closed = False
+    proof.unresolved += len(left)
+    if thorough and not solved and not _solve_few(state, left, rule):
+        _sample_parts(state, left, rule)
+        proof.exhausted = False
+    proof.exhausted = proof.exhausted and thorough
+    if len(rule.columns) == state.task.m:
+        proof.bounds.append(Bound(rule.tolerance, state.form.objectives.phi_of(left.bounds)[:, : state.task.m]))
+    return left
+
+
+def _solve_few(state: FrontState, boxes: Boxes, rule: PruningRule) -> bool:
+    """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
+    most = state.task.limits.few_combinations
+    combinations = state.form.boxes.cells.all_members(boxes.cell, most + 1)
+    few = len(combinations) <= most
+    if few:
+        solve_everywhere(state.form, combinations, rule, state.clock, state.rng)
+    return few
+
+
+def _go_on(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
+    """Go on with boxes while they keep closing and there is time; return what stays open."""
+    state.begin_tree(rule.tolerance if len(rule.columns) == state.task.m else None)
+    begun, budget = time.monotonic(), state.budget
+    effort = replace(state.task.limits.further, seconds=budget.seconds)
+    outcome = best_first(state.form, left, rule, state.clock, state.rng, effort)
+    budget.seconds -= time.monotonic() - begun
+    budget.spent |= outcome.spent
+    state.counters.nodes += outcome.looked
+    state.end_tree()
+    return outcome.open
+
+
+def _sample_parts(state: FrontState, left: Boxes, rule: TabledPruningRule) -> None:
+    """Look for designs in some of the combinations of boxes, which prove nothing."""
+    task, seed = state.task, state.task.settings.seed
+    journal = study_file(task.instance, task.chosen, seed, task.tuning)
+    state.progress.say("parts", 0.0, BEGUN_ANEW if passed_over(journal) else "")
+    trials = task.tuning.heuristics.parts.trials
+    state.counters.sampled_parts += sample_parts(state.form, left, rule, state.clock, journal, seed, trials)
