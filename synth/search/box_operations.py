@@ -9,11 +9,12 @@ import numpy as np
 from synth import deadline
 from synth.bounds.bounding import Bounding
 from synth.bounds.compiled_subtrees import CapTables
-from synth.margins import above, below
+from synth.margins import above
 from synth.search.archive import Archive
 from synth.search.boxes import Boxes, Subtrees
 from synth.search.counters import SearchCounters
 from synth.search.log_objectives import LogObjectives
+from synth.search.makeable_values import MakeableValues
 from synth.search.refused_cells import RefusedCells, not_refused
 from synth.tuning import TUNING, Tuning
 
@@ -27,6 +28,7 @@ class BoxOperations:
     ----------
     bounding : Bounding
         Bounds of the question and its boxes, and where to split them.
+    makeable : MakeableValues
     objectives : LogObjectives
     bounded : int
         How many objectives, from the first, are bounded in every box.
@@ -40,22 +42,22 @@ class BoxOperations:
     def __init__(
         self,
         bounding: Bounding,
+        makeable: MakeableValues,
         objectives: LogObjectives,
         bounded: int,
         counters: SearchCounters,
         workers: int = 1,
         tuning: Tuning = TUNING,
     ) -> None:
-        self.bounding, self.objectives, self.bounded = bounding, objectives, bounded
+        self.bounding, self.makeable, self.objectives, self.bounded = bounding, makeable, objectives, bounded
         self.counters, self.workers, self.tuning = counters, workers, tuning
         question = bounding.question
         self.instance = instance = question.instance
         self.n, self.goals = len(instance.model.variables), len(question.goals)
         self.cells, self.width = bounding.propagation.cells, question.width
         self.refused_cells = RefusedCells(instance, self.cells, tuning.arrays.pairs)
-        self.grids = instance.ranges.grids()
         auxiliary = np.zeros(self.width - self.n)
-        self._gridded = np.concatenate([[len(g) > 0 for g in self.grids], auxiliary]).astype(bool)
+        self._gridded = np.concatenate([makeable.gridded, auxiliary]).astype(bool)
         self._span = np.concatenate([instance.ranges.upper - instance.ranges.lower, auxiliary])
         self._focused: np.ndarray | None = None
 
@@ -207,20 +209,12 @@ class BoxOperations:
 
     def _snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
-        alive = np.ones(len(low), dtype=bool)
         # An active limit loosened by the margin must not cost a grid point or a pinned value.
         n = self.n
         np.maximum(low[:, :n], self.instance.ranges.lower, out=low[:, :n])
         np.minimum(high[:, :n], self.instance.ranges.upper, out=high[:, :n])
-        margins = self.tuning.tolerances.margins
-        for k, grid in enumerate(self.grids):
-            if len(grid):
-                first = np.searchsorted(grid, below(low[:, k], *margins))
-                last = np.searchsorted(grid, above(high[:, k], *margins), side="right") - 1
-                alive &= first <= last
-                low[:, k] = grid[np.minimum(first, len(grid) - 1)]
-                high[:, k] = np.maximum(grid[np.maximum(last, 0)], low[:, k])
-        alive &= ~np.any(low > above(high, *margins), axis=1)
+        alive = self.makeable.snap(low, high)
+        alive &= ~np.any(low > above(high, *self.tuning.tolerances.margins), axis=1)
         np.maximum(high, low, out=high)
         return alive
 
@@ -261,7 +255,7 @@ class BoxOperations:
         by_variable = choice < n
         if by_variable.any():
             own, variable = rows[by_variable], choice[by_variable]
-            left_end, right_start = self._middle(variable, whole.low[own, variable], whole.high[own, variable])
+            left_end, right_start = self.makeable.middle(variable, whole.low[own, variable], whole.high[own, variable])
             left_high[own, variable], right_low[own, variable] = left_end, right_start
         for f, tree in enumerate(self.cells.trees):
             own = rows[choice == n + f]
@@ -280,20 +274,6 @@ class BoxOperations:
         width = self.bounding.branching.widths(low, high)
         result: np.ndarray = np.where(high - low > floor, np.maximum(width, 1e-12), 0.0)
         return result
-
-    def _middle(self, variable: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return where the lower half of a range of each variable ends and the upper begins: neighbours on a grid."""
-        with np.errstate(all="ignore"):
-            middle = np.where(low > 0, np.sqrt(low * high), 0.5 * (low + high))
-        left, right, margins = middle.copy(), middle.copy(), self.tuning.tolerances.margins
-        for k, grid in enumerate(self.grids):
-            rows = np.flatnonzero(variable == k)
-            if len(grid) and len(rows):
-                first = np.searchsorted(grid, below(low[rows], *margins))
-                last = np.searchsorted(grid, above(high[rows], *margins), side="right") - 1
-                cut = (first + last) // 2
-                left[rows], right[rows] = grid[cut], grid[np.minimum(cut + 1, len(grid) - 1)]
-        return left, right
 
     # -- what boxes hold ---------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from synth.search.continuous_problems import ContinuousProblems, open_kinks, row
 from synth.search.counters import SearchCounters
 from synth.search.execution import EXECUTION, Execution
 from synth.search.log_objectives import LogObjectives
+from synth.search.makeable_values import MakeableValues
 from synth.search.point_evaluation import PointEvaluation
 from synth.search.resolution import declared_resolution
 from synth.tuning import TUNING, Tuning
@@ -27,8 +28,9 @@ from synth.tuning import TUNING, Tuning
 class Formulation:
     """A question, ready to be searched.
 
-    It holds what the question is and what is known of it: ``objectives`` (log-objectives), ``archive`` (designs found),
-    ``counters`` (what was done). ``boxes``, ``points`` and ``continuous`` do the work.
+    It holds what the question is and what is known of it: ``objectives`` (log-objectives), ``makeable`` (values on
+    grids), ``archive`` (designs found), ``counters`` (what was done). ``boxes``, ``points`` and ``continuous`` do
+    the work.
 
     Parameters
     ----------
@@ -68,9 +70,9 @@ class Formulation:
         self.bounds = [cut.bound for cut in self.cuts]
         # A single objective needs bounds of the next one as well, which settles ties.
         self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
-        ranges = instance.ranges
-        self.lower, self.upper, self.grids = ranges.lower, ranges.upper, ranges.grids()
-        self.gridded = np.array([len(g) > 0 for g in self.grids], dtype=bool)
+        self.lower, self.upper = instance.ranges.lower, instance.ranges.upper
+        self.makeable = MakeableValues(instance.ranges.grids(), tuning.tolerances.margins)
+        self.gridded = self.makeable.gridded
         self.infeasibility = infeasibility
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
@@ -113,7 +115,13 @@ class Formulation:
         # By combination and makeable values, where the full tolerance was needed: whether something does without it.
         self.kept_closely: dict[tuple[int, bytes], bool] = {}
         self.boxes = BoxOperations(
-            self.bounding, self.objectives, self.bounded, counters, self.execution.workers, self.tuning
+            self.bounding,
+            self.makeable,
+            self.objectives,
+            self.bounded,
+            counters,
+            self.execution.workers,
+            self.tuning,
         )
         self.points = PointEvaluation(
             self.instance, self.constraints, self.goals, self.objectives, self._immovable, self.tuning

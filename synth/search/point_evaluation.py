@@ -49,7 +49,7 @@ class PointEvaluation:
     ) -> None:
         self.instance, self.constraints, self.objectives = instance, constraints, objectives
         self.margins = tuning.tolerances
-        self.n, self.grids = len(instance.model.variables), instance.ranges.grids()
+        self.n = len(instance.model.variables)
         self._cuts = cuts = [NodeConstraint.of(x) for x in constraints]
         self._signs = np.array([float(g.sign) for g in goals])
         kinds = [(c.sense, c.guard) for c in cuts]
@@ -130,18 +130,6 @@ class PointEvaluation:
                     kept = kept | np.isnan(np.asarray(data[k], dtype=float))
                 keep &= kept
         return keep
-
-    def makeable(self, variables: np.ndarray) -> np.ndarray:
-        """Return points (points, variables) with gridded variables moved to the nearest makeable value."""
-        result = variables.copy()
-        for k, grid in enumerate(self.grids):
-            if len(grid):
-                after = np.clip(np.searchsorted(grid, result[:, k]), 1, max(len(grid) - 1, 1))
-                before = np.minimum(after - 1, len(grid) - 1)
-                after = np.minimum(after, len(grid) - 1)
-                nearer = np.abs(grid[after] - result[:, k]) < np.abs(grid[before] - result[:, k])
-                result[:, k] = np.where(nearer, grid[after], grid[before])
-        return result
 
     def _judged(
         self, variables: np.ndarray, combinations: np.ndarray, tolerances: np.ndarray

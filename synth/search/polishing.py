@@ -96,7 +96,7 @@ def _other_values(
     form: Formulation, k: int, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return designs with makeable values of one variable that promise to be as good: whose, combination, variables."""
-    grid = form.grids[k]
+    grid = form.makeable.grids[k]
     grid = grid[(grid >= form.lower[k]) & (grid <= form.upper[k])]
     own = [np.empty(0, dtype=np.int64)]
     places = [np.empty(0, dtype=np.int64)]
@@ -286,7 +286,7 @@ def solve_everywhere(
                     form.objectives.scales,
                     0.0,
                 )
-                points = form.points.makeable(
+                points = form.makeable.nearest(
                     form.continuous.solve_many(tasks, own, start).variables if form.n else start
                 )
                 rows, phi = form.points.feasible_rows(points, own)

@@ -154,7 +154,7 @@ class PrimalHeuristics:
         if not single:
             boxes = replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng))
         if form.gridded.any():
-            middle, (low, high) = form.points.makeable(form.boxes.inside(boxes, 0.5)), form.boxes.ends(boxes)
+            middle, (low, high) = form.makeable.nearest(form.boxes.inside(boxes, 0.5)), form.boxes.ends(boxes)
             boxes = replace(boxes, low=np.where(form.gridded, middle, low), high=np.where(form.gridded, middle, high))
         if form.gridded.any() or not single:
             boxes = self._tightened(boxes)
@@ -164,7 +164,7 @@ class PrimalHeuristics:
         """Evaluate two points of each box; return how many were new, and which boxes have a feasible one."""
         found, thin, hit = 0, self._thin(boxes), np.zeros(len(boxes), dtype=bool)
         for share in (self.limits.inside, 0.5) if len(boxes) else ():
-            points = self.form.points.makeable(self.form.boxes.inside(boxes, share))
+            points = self.form.makeable.nearest(self.form.boxes.inside(boxes, share))
             new, rows = self._offered(points, self.form.boxes.combination(boxes))
             hit[rows] = True
             found += new
@@ -250,7 +250,7 @@ class PrimalHeuristics:
     def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
         """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
         form = self.form
-        near = form.points.makeable(points)
+        near = form.makeable.nearest(points)
         self.offer(near, combinations)
         if form.n:
             _, phi = form.points.feasible_rows(points, combinations)
@@ -432,7 +432,7 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
     count = len(steps)
     low = np.tile(form.bounding.question.low[: form.n], (len(variables) * count, 1))
     high = np.tile(form.bounding.question.high[: form.n], (len(variables) * count, 1))
-    for k, grid in enumerate(form.grids):
+    for k, grid in enumerate(form.makeable.grids):
         if len(grid):
             place = np.searchsorted(grid, below(variables[:, k], snap))[:, None] + steps[None, :, k]
             low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()

@@ -375,7 +375,7 @@ class _Enumeration:
             self._solve(numbers[some], form.boxes.inside(boxes.take(some), 0.5))
         # Boxes of combinations tried before have become smaller since.
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
-            points = form.points.makeable(form.boxes.inside(boxes, share))
+            points = form.makeable.nearest(form.boxes.inside(boxes, share))
             self._offer(points, numbers)
 
     def _solve(self, combinations: np.ndarray, start: np.ndarray) -> None:
@@ -409,7 +409,7 @@ class _Enumeration:
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
         around = form.boxes.contract(form.boxes.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
         for share in (form.tuning.heuristics.seeker.inside, 0.5):
-            points = form.points.makeable(form.boxes.inside(around, share))
+            points = form.makeable.nearest(form.boxes.inside(around, share))
             self._offer(points, form.boxes.combination(around))
 
     def _offer(self, points: np.ndarray, combinations: np.ndarray) -> None:

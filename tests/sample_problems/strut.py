@@ -65,7 +65,7 @@ def strut_form(grid=True, tuning=TUNING, execution=EXECUTION):
 def designs_of(form, rng, count):
     """Return random feasible makeable designs of random combinations, and phi."""
     share = rng.random((count, form.n))
-    points = form.points.makeable(form.lower + share * (form.upper - form.lower))
+    points = form.makeable.nearest(form.lower + share * (form.upper - form.lower))
     combinations = rng.integers(form.instance.combinations.count, size=count)
     rows, phi = form.points.feasible_rows(points, combinations)
     return points[rows], combinations[rows], phi[rows]

@@ -194,7 +194,7 @@ def form():
 
 def sampled(form, rng, count=20000):
     share = rng.random((count, form.n))
-    points = form.points.makeable(form.lower + share * (form.upper - form.lower))
+    points = form.makeable.nearest(form.lower + share * (form.upper - form.lower))
     return feasible_candidates(form, points, rng.integers(form.instance.combinations.count, size=count))
 
 

@@ -48,7 +48,7 @@ def test_dives_come_near_the_best_and_keep_only_feasible_designs(seed):
     problem, rng = Fits(), np.random.default_rng(seed)
     instance = instance_of(problem, {}, catalogs_for(problem, {"rows": ROWS}))
     form = Formulation(instance, {"mass": "min", "length": "min"}, 2)
-    points = form.points.makeable(form.lower + rng.random((20000, 2)) * (form.upper - form.lower))
+    points = form.makeable.nearest(form.lower + rng.random((20000, 2)) * (form.upper - form.lower))
     own = rng.integers(instance.combinations.count, size=len(points))
     rows, phi = form.points.feasible_rows(points, own)
     worst = rows[[int(np.argmax(phi[rows, 0]))]]

@@ -83,7 +83,7 @@ IN_PIECES = forms(tuned(heuristics={"settle": SettleLimits(tried_at_once=300, ev
 def some_designs(form, count):
     rng = np.random.default_rng(7)
     low, high = form.lower, form.upper
-    points = form.points.makeable(low + (high - low) * rng.random((20 * count, form.n)))
+    points = form.makeable.nearest(low + (high - low) * rng.random((20 * count, form.n)))
     found = feasible_candidates(form, points, rng.integers(0, form.instance.combinations.count, len(points)))
     assert len(found) >= count
     return found[:count]
@@ -105,7 +105,7 @@ def polished_alone(form, own, traded, order, parts):
     for _ in range(TUNING.heuristics.settle.moves):
         before = own
         for k in np.flatnonzero(form.gridded & (form.lower < form.upper)):
-            grid = form.grids[k]
+            grid = form.makeable.grids[k]
             trials = np.tile(own.variables, (len(grid), 1))
             trials[:, k] = grid
             own = step(form, own, trials, np.full(len(grid), own.combination), traded, order)

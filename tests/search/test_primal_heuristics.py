@@ -34,9 +34,9 @@ def heuristics(form, tolerance=1e-3):
 def first_design(form, combination, rng):
     """Archive one feasible design of a combination, as it comes."""
     points = form.lower + rng.random((4000, form.n)) * (form.upper - form.lower)
-    rows, phi = form.points.feasible_rows(form.points.makeable(points), np.full(len(points), combination))
+    rows, phi = form.points.feasible_rows(form.makeable.nearest(points), np.full(len(points), combination))
     worst = rows[int(np.argmax(phi[rows, 0]))]
-    form.archive.add(np.array([combination]), form.points.makeable(points[worst][None, :]), phi[worst][None, :])
+    form.archive.add(np.array([combination]), form.makeable.nearest(points[worst][None, :]), phi[worst][None, :])
 
 
 @pytest.mark.parametrize("grid", [False, True])
@@ -45,7 +45,7 @@ def test_exchanging_parts_finds_what_solving_everything_finds(grid):
     everything = np.arange(form.instance.combinations.count)
     points = form.lower + rng.random((20000, form.n)) * (form.upper - form.lower)
     own = rng.choice(everything, len(points))
-    rows, phi = form.points.feasible_rows(form.points.makeable(points), own)
+    rows, phi = form.points.feasible_rows(form.makeable.nearest(points), own)
     first_design(form, int(own[rows[int(np.argmax(phi[rows, 0]))]]), rng)
     before = form.archive.phi[0, 0]
     heuristics(form).beside(Clock())
