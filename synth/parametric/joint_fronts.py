@@ -1,9 +1,9 @@
 """Fronts of few designs in two objectives, of several questions at once.
 
-What is best in each objective is sought for all questions together. Between these two ends the first objective is
-capped at some levels, and the least of the second is sought under each cap, for all questions and levels together: a
-question with a cap is one more question. Where the levels lie is told by a rough picture of some of the fronts, so that
-the designs spread as those of a question asked alone do.
+What is best in each objective is sought for all questions at once. Between these two ends the first objective is
+capped at some levels, and the least of the second is sought under each cutoff, for all questions and levels at once: a
+question with a cutoff is one more question. Where the levels lie is told by a rough picture of some of the fronts, so
+that the designs spread as those of a question asked alone do.
 """
 
 from __future__ import annotations
@@ -80,13 +80,13 @@ class JointFrontSearch:
         time_limit: float | None = None,
     ) -> None:
         self.questions, self.workers, self.progress = list(questions), workers, progress
-        self.tuning, self.joint = questions[0].tuning, questions[0].tuning.joint
+        self.tuning, self.limits = questions[0].tuning, questions[0].tuning.joint
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
         self.between = questions[0].settings.points - 2
         moving = different([q.instance for q in questions])
         self.others: list[tuple[JointSearch, np.ndarray]] = []  # with the positions of the questions that each asks
-        self.wider, self.reverse = (SharedBounds(questions, moving, first) for first in questions[0].chosen)
-        self.first = self._search(np.arange(len(self.questions)), self.wider)
+        self.shared, self.reverse = (SharedBounds(questions, moving, first) for first in questions[0].chosen)
+        self.first = self._search(np.arange(len(self.questions)), self.shared)
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
@@ -99,7 +99,7 @@ class JointFrontSearch:
         ends = self._ends(first.optima(first.told_apart()), self._turned(second.optima(second.told_apart())))
         found = {q: list(pair) for q, pair in ends.items()}
         if ends and self.between:
-            numbers, codec = list(ends), first.together.combinations
+            numbers, codec = list(ends), first.instance.combinations
             level = self._at_levels(numbers, *self._levels(ends))
             for c in level.optima(level.told_apart()):
                 question = numbers[codec.question(c.combination) // self.between]
@@ -108,14 +108,14 @@ class JointFrontSearch:
         fronts = [distinct(first.form.points.as_they_are(own), 2, self.tuning) for own in found.values()]
         return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
 
-    def _search(self, positions: np.ndarray, wider: SharedBounds, **more: Any) -> JointSearch:
+    def _search(self, positions: np.ndarray, shared: SharedBounds, **more: Any) -> JointSearch:
         left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
         questions = [self.questions[q] for q in positions]
-        return JointSearch(questions, self.workers, self.progress, left, wider=wider, **more)
+        return JointSearch(questions, self.workers, self.progress, left, shared=shared, **more)
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
-        form, codec = self.first.form, self.first.together.combinations
+        form, codec = self.first.form, self.first.instance.combinations
         for search, positions in self.others:
             form.counters.contracted += search.form.counters.contracted
             form.counters.nlp_solves += search.form.counters.nlp_solves
@@ -133,7 +133,7 @@ class JointFrontSearch:
 
     def _ends(self, best: Sequence[Candidate], least: Sequence[Candidate]) -> dict[int, tuple[Candidate, Candidate]]:
         """Return the designs that are best in the first and in the second objective, where they differ."""
-        codec = self.first.together.combinations
+        codec = self.first.instance.combinations
         first, second = ({codec.question(c.combination): c for c in own} for own in (best, least))
         pairs = {q: (c, second[q]) for q, c in first.items() if q in second}
         return {q: pair for q, pair in pairs.items() if len(distinct(pair, 2, self.tuning)) == 2}
@@ -154,23 +154,23 @@ class JointFrontSearch:
         """
         positions = np.repeat(numbers, levels.shape[1])
         cutoffs = {0: self.first.form.objectives.signed(0, levels.ravel())}
-        search = self._search(positions, self.wider, sought=1, cutoffs=cutoffs)
+        search = self._search(positions, self.shared, sought=1, cutoffs=cutoffs)
         self.others.append((search, positions))
-        search.look.starts = {self.first.together.combinations.own(c.combination): c.variables for c in known}
+        search.heuristics.starts = {self.first.instance.combinations.own(c.combination): c.variables for c in known}
         return search
 
     def _levels(self, ends: Mapping[int, tuple[Candidate, Candidate]]) -> tuple[np.ndarray, list[Candidate]]:
         """Return where to cap the first objective of each question, and designs that are good between the ends."""
         numbers = list(ends)
         low, high = (np.array([pair[k].phi[0] for pair in ends.values()]) for k in range(2))
-        places = np.unique(np.linspace(0, len(numbers) - 1, self.joint.places).round().astype(int))
-        even = np.arange(1, self.joint.levels + 1) / (self.joint.levels + 1)
+        places = np.unique(np.linspace(0, len(numbers) - 1, self.limits.places).round().astype(int))
+        even = np.arange(1, self.limits.levels + 1) / (self.limits.levels + 1)
         at = low[places, None] + even * (high - low)[places, None]
         known = [c for k in places for c in ends[numbers[k]]]
         picture = self._at_levels([numbers[k] for k in places], at, known)
         drawn: dict[int, list[Candidate]] = {}
         for c in picture.glimpse():
-            drawn.setdefault(picture.together.combinations.question(c.combination) // self.joint.levels, []).append(c)
+            drawn.setdefault(picture.instance.combinations.question(c.combination) // self.limits.levels, []).append(c)
         shares, good = [], list[Candidate]()
         for row, k in enumerate(places):
             every = distinct([*ends[numbers[k]], *drawn.get(row, [])], 2, self.tuning)

@@ -1,4 +1,4 @@
-"""Looks for good designs of questions asked together: the better they are, the fewer boxes it takes to prove them."""
+"""Looks for good designs in a joint search: the better they are, the fewer boxes it takes to prove them."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from synth.tuning import JointHeuristicLimits
 
 
 class JointHeuristics:
-    """Looks for good designs of questions asked together; nothing that it finds is proven.
+    """Looks for good designs in a joint search; nothing that it finds is proven.
 
     Parameters
     ----------
-    together : JointInstance
+    instance : JointInstance
     clock : Clock
     rng : Generator
     thorough : bool
@@ -29,14 +29,14 @@ class JointHeuristics:
 
     def __init__(
         self,
-        together: JointInstance,
+        instance: JointInstance,
         clock: Clock,
         rng: np.random.Generator,
         thorough: bool,
         limits: JointHeuristicLimits,
     ) -> None:
-        self.together, self.clock, self.rng, self.thorough = together, clock, rng, thorough
-        self.codec, self.limits = together.combinations, limits
+        self.instance, self.clock, self.rng, self.thorough = instance, clock, rng, thorough
+        self.codec, self.limits = instance.combinations, limits
         # Where to look first: variables, by the combination that they are of in any question.
         self.starts: dict[int, np.ndarray] = {}
 
@@ -45,17 +45,17 @@ class JointHeuristics:
 
         ``pool``: boxes that hold everything.
         """
-        self.recalled(rule)
+        self.warm_start(rule)
         if not len(rule.known):
             self._anywhere(rule)
-        for effort in self.limits.first_boxes:
+        for node_limit in self.limits.first_boxes:
             if not len(rule.known):
-                branch_and_bound(rule.form, pool, rule, self.clock, self.rng, effort)
+                branch_and_bound(rule.form, pool, rule, self.clock, self.rng, node_limit)
         self.improve(rule)
         if self.thorough and self._further_away(rule):
             self.improve(rule)
 
-    def recalled(self, rule: BestPerScenario) -> None:
+    def warm_start(self, rule: BestPerScenario) -> None:
         """Try the designs to begin with in every question."""
         combinations, points = np.array(list(self.starts), dtype=np.int64), np.array(list(self.starts.values()))
         questions = np.repeat(np.flatnonzero(rule.asked), len(combinations))
@@ -99,7 +99,7 @@ class JointHeuristics:
     def _beside(self, rule: BestPerScenario, expanded: set[tuple[int, int]]) -> int:
         """Exchange one part at a time of the best design of each question; return how many designs are of use."""
         # Parts that are best in many questions have the same neighbours in all of them: some places are enough.
-        questions = rule.known.questions() * self.limits.places // len(self.together.each)
+        questions = rule.known.questions() * self.limits.places // len(self.instance.each)
         own = {(int(q), self.codec.own(c.combination)): c for q, c in zip(questions, rule.known, strict=True)}
         parents = [c for place, c in own.items() if place not in expanded]
         expanded.update(own)
@@ -142,8 +142,8 @@ class JointHeuristics:
         weights = np.zeros((len(combinations), len(form.goals)))
         weights[:, k] = 1.0
         questions = self.codec.question(combinations)
-        caps = known.plain[questions]
-        tasks = Tasks(weights, np.zeros_like(weights), caps, form.objectives.scales, 0.0)
+        cutoffs = known.fixed_cutoffs[questions]
+        tasks = Tasks(weights, np.zeros_like(weights), cutoffs, form.objectives.scales, 0.0)
         found = form.continuous.solve_many(tasks, combinations, start, low, high)
         form.continuous.learn(tasks, found, np.ones(len(combinations)))
         better = found.phi[:, k] < rule.needed()[questions]

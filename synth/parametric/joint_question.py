@@ -1,4 +1,4 @@
-"""Several questions at once: alike but for the numbers of some requirements, each for its best design in one objective.
+"""Joint questions: alike but for the numbers of some requirements, each for its best design in one objective.
 
 Which question a design answers is one more thing to choose among, as a slot is: a box may speak of many questions, is
 tightened once for all of them, and is split between them only where that matters. A box is of no use any more when
@@ -36,7 +36,7 @@ class JointInstance(SearchSpace):
     Parameters
     ----------
     each : list of Instance
-        That are alike, as :func:`alike` tells.
+        That are alike, as :func:`joint_key` tells.
     moving : collection of str, optional
         Requirements that may differ although they do not here, so that code is compiled once for several searches.
     cutoffs : mapping, optional
@@ -89,7 +89,7 @@ def different(each: Sequence[Instance]) -> list[str]:
     return [n for n in names if len({own[n] for own in asked if n in own}) > 1]
 
 
-def alike(question: Question) -> tuple[Any, ...]:
+def joint_key(question: Question) -> tuple[Any, ...]:
     """Return what questions must have in common to be answered together."""
     instance, settings = question.instance, question.settings
     ranges, selection = instance.ranges, instance.selection
@@ -114,39 +114,40 @@ class IncumbentPerScenario(Archive):
 
     Parameters
     ----------
-    together : JointInstance
+    instance : JointInstance
     column : int
         Number of the objective.
     variables, objectives : int
         Width of the stored rows.
-    plain : array (questions, objectives), optional
-        Caps of phi that a design must keep.
+    fixed_cutoffs : array (questions, objectives), optional
+        Cutoffs of phi that every design of a question must keep.
     tuning : Tuning
     """
 
     def __init__(
         self,
-        together: JointInstance,
+        instance: JointInstance,
         column: int,
         variables: int,
         objectives: int,
-        plain: np.ndarray | None = None,
+        fixed_cutoffs: np.ndarray | None = None,
         tuning: Tuning = TUNING,
     ) -> None:
         super().__init__([column], variables, objectives, tuning)
         self.tie = tuning.tolerances.tie
-        self.together, self.column = together, column
-        self.plain = np.full((len(together.each), objectives), np.inf) if plain is None else plain
+        self.instance, self.column = instance, column
+        none = np.full((len(instance.each), objectives), np.inf)
+        self.fixed_cutoffs = none if fixed_cutoffs is None else fixed_cutoffs
 
     def add(self, combination: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> None:
         """Take new designs and keep the best of each question; of equal ones that which was known first."""
-        keep = np.all(phi <= self.plain[self.together.combinations.question(combination)] + self.tie, axis=1)
+        keep = np.all(phi <= self.fixed_cutoffs[self.instance.combinations.question(combination)] + self.tie, axis=1)
         if combination is self.combination or not keep.any():
             return
         combination = np.concatenate([self.combination, combination[keep]])
         variables = np.concatenate([self.variables, variables[keep]])
         phi = np.concatenate([self.phi, phi[keep]])
-        question = self.together.combinations.question(combination)
+        question = self.instance.combinations.question(combination)
         order = np.lexsort((phi[:, self.column], question))
         _, first = np.unique(question[order], return_index=True)
         best = order[first]
@@ -154,11 +155,11 @@ class IncumbentPerScenario(Archive):
 
     def questions(self) -> np.ndarray:
         """Return the questions of the designs."""
-        return self.together.combinations.question(self.combination)
+        return self.instance.combinations.question(self.combination)
 
     def best(self) -> np.ndarray:
         """Return phi of the best design of each question, infinite where none is known."""
-        result = np.full(len(self.together.each), np.inf)
+        result = np.full(len(self.instance.each), np.inf)
         result[self.questions()] = self.phi[:, self.column]
         return result
 
@@ -169,9 +170,9 @@ class BestPerScenario:
     Parameters
     ----------
     form : Formulation
-        Of questions together.
+        Of a joint instance.
     known : IncumbentPerScenario
-    slack : callable
+    tolerance_of : callable
         Takes phi of the best designs; returns how much better a design must be to be of use.
     asked : array of bool (questions,)
         Questions that are not asked need no proof.
@@ -183,48 +184,50 @@ class BestPerScenario:
         self,
         form: Formulation,
         known: IncumbentPerScenario,
-        slack: Callable[[np.ndarray], np.ndarray],
+        tolerance_of: Callable[[np.ndarray], np.ndarray],
         asked: np.ndarray,
     ) -> None:
-        self.form, self.known, self._slack, self.asked = form, known, slack, asked
+        self.form, self.known, self._tolerance_of, self.asked = form, known, tolerance_of, asked
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie
-        self.tolerance = slack(np.zeros(1))
+        self.tolerance = tolerance_of(np.zeros(1))
         self.fixed_cutoffs = np.full(len(form.goals), np.inf)
         self._tree = form.boxes.cells.trees[0]
-        self._plain = self._tree.hull(known.plain)[1]
+        self._fixed_cutoffs = self._tree.hull(known.fixed_cutoffs)[1]
         self._ends: tuple[np.ndarray, np.ndarray] | None = None
         self._polished = np.full(len(asked), np.inf)
 
     def needed(self) -> np.ndarray:
         """Return, per question, what a design must be better than in phi."""
         best = self.known.best()
-        needed: np.ndarray = np.where(self.asked, best - np.where(np.isfinite(best), self._slack(best), 0.0), -np.inf)
+        margin = np.where(np.isfinite(best), self._tolerance_of(best), 0.0)
+        needed: np.ndarray = np.where(self.asked, best - margin, -np.inf)
         return needed
 
-    def _cap(self, cell: np.ndarray) -> np.ndarray:
+    def _cutoff(self, cell: np.ndarray) -> np.ndarray:
         """Return, per box, what a design must be better than in one of its questions."""
         if self._ends is None or self._ends[0] is not self.known.phi:
             self._ends = self.known.phi, self._tree.hull(self.needed()[:, None])[1][:, 0]
-        cap: np.ndarray = self._ends[1][cell[:, 0]]
-        return cap
+        cutoff: np.ndarray = self._ends[1][cell[:, 0]]
+        return cutoff
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to be of use."""
         assert cell is not None
-        caps: np.ndarray = self._plain[cell[:, 0], : lower.shape[1]] + self.tie
+        cutoffs: np.ndarray = self._fixed_cutoffs[cell[:, 0], : lower.shape[1]] + self.tie
         k = self.columns[0]
-        caps[:, k] = np.minimum(caps[:, k], self._cap(cell))
-        return caps
+        cutoffs[:, k] = np.minimum(cutoffs[:, k], self._cutoff(cell))
+        return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return how much better than needed a box could be."""
         assert cell is not None
-        cap = self._cap(cell)
+        cutoff = self._cutoff(cell)
         with np.errstate(all="ignore"):
-            distance = cap - lower[:, self.columns[0]]
-        broken = np.any(lower > self._plain[cell[:, 0], : lower.shape[1]] + self.tie, axis=1) | (cap == -np.inf)
-        room: np.ndarray = np.where(broken, 0.0, np.where(np.isnan(distance), np.inf, distance))
-        return room
+            distance = cutoff - lower[:, self.columns[0]]
+        broken = np.any(lower > self._fixed_cutoffs[cell[:, 0], : lower.shape[1]] + self.tie, axis=1)
+        of_no_use = broken | (cutoff == -np.inf)
+        gain: np.ndarray = np.where(of_no_use, 0.0, np.where(np.isnan(distance), np.inf, distance))
+        return gain
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Take feasible designs; return how many were of use."""
@@ -240,13 +243,13 @@ class BestPerScenario:
         return [c for c, q in zip(self.known, self.known.questions(), strict=True) if better[q]]
 
     def tables(self, form: Formulation) -> CapTables | None:
-        """Return the caps by the cluster of questions that a box speaks of."""
-        if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._plain[:, form.bounded :])):
+        """Return the cutoffs by the cluster of questions that a box speaks of."""
+        if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._fixed_cutoffs[:, form.bounded :])):
             return None
-        caps = self._plain[:, : form.bounded] + self.tie
-        clusters = np.arange(len(caps))[:, None]
-        caps[:, self.columns[0]] = np.minimum(caps[:, self.columns[0]], self._cap(clusters))
-        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(caps))
+        cutoffs = self._fixed_cutoffs[:, : form.bounded] + self.tie
+        clusters = np.arange(len(cutoffs))[:, None]
+        cutoffs[:, self.columns[0]] = np.minimum(cutoffs[:, self.columns[0]], self._cutoff(clusters))
+        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(cutoffs))
 
     def open_questions(self, left: Boxes) -> np.ndarray:
         """Tell of which questions boxes that were left open may hold something of use."""
@@ -269,7 +272,7 @@ def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1
     groups: dict[Any, list[int]] = {}
     for k, question in enumerate(questions):
         if len(question.chosen) == objectives:
-            groups.setdefault(alike(question), []).append(k)
+            groups.setdefault(joint_key(question), []).append(k)
     return [g for g in groups.values() if least <= len(g) <= _most(questions[g[0]])]
 
 

@@ -1,4 +1,4 @@
-"""One search for several questions: what is proven of each is what a search of its own would prove."""
+"""A joint search: many questions as one tree. What is proven of each is what a search of its own would prove."""
 
 from __future__ import annotations
 
@@ -45,29 +45,29 @@ class SharedBounds:
 
     def __init__(self, questions: Sequence[Question], moving: Collection[str], first: str | None = None) -> None:
         self.moving, self._tuning = moving, questions[0].tuning
-        self._together = JointInstance([q.instance for q in questions], moving)
+        self._instance = JointInstance([q.instance for q in questions], moving)
         chosen = dict(questions[0].chosen)
         in_order = {first: chosen[first], **chosen} if first is not None else chosen
-        self.goals = with_ties(self._together.model, in_order)
+        self.goals = with_ties(self._instance.model, in_order)
         self._forms: dict[bool, Formulation] = {}
 
-    def among(self, together: JointInstance, conflict: bool, workers: int = 1) -> Formulation | None:
+    def among(self, instance: JointInstance, infeasibility: bool, workers: int = 1) -> Formulation | None:
         """Return questions prepared for a search; None where their numbers are not among those of these."""
-        if conflict not in self._forms:
-            self._forms[conflict] = Formulation(self._together, self.goals, 1, conflict, tuning=self._tuning)
-        return self._forms[conflict].among(together, workers)
+        if infeasibility not in self._forms:
+            self._forms[infeasibility] = Formulation(self._instance, self.goals, 1, infeasibility, tuning=self._tuning)
+        return self._forms[infeasibility].among(instance, workers)
 
 
-class _Attempt:
-    """One way of bounding what questions may have, which goes on where it stopped."""
+class JointTree:
+    """One tree over the questions, by one way of bounding them, which goes on where it stopped."""
 
     def __init__(self, search: JointSearch, form: Formulation, known: IncumbentPerScenario, boxes: Boxes) -> None:
         self.search, self.form, self.known, self.left = search, form, known, boxes
 
-    def open_questions(self, asked: np.ndarray, effort: float) -> np.ndarray:
-        """Go on with so much effort; tell of which of the questions asked it is not proven what is best."""
+    def open_questions(self, asked: np.ndarray, node_limit: float) -> np.ndarray:
+        """Go on for so many boxes; tell of which of the questions asked it is not proven what is best."""
         search, form = self.search, self.form
-        joint = search.joint
+        limits = search.limits
         if not asked.any():
             return asked
         if self.known is not search.known:
@@ -75,12 +75,12 @@ class _Attempt:
             rows = asked[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.counters.contracted, form.counters.nlp_solves
-        rule = BestPerScenario(form, self.known, search._slack(search.sought), asked)
+        rule = BestPerScenario(form, self.known, search.tolerance_of(search.sought), asked)
         for _ in range(2):
             self.left = branch_and_bound(
-                form, self.left, rule, search.clock, search.rng, min(effort, joint.most_boxes)
+                form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
             ).open
-            if not 0 < len(self.left) < joint.nearly_closed * effort:
+            if not 0 < len(self.left) < limits.nearly_closed * node_limit:
                 break
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
@@ -90,7 +90,7 @@ class _Attempt:
 
 
 class JointSearch:
-    """One search for several questions.
+    """A joint (multi-parametric) search: several questions as one tree.
 
     Parameters
     ----------
@@ -100,9 +100,9 @@ class JointSearch:
     progress : callable, optional
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
-    ideas : list of Design
+    starts : list of Design
         Designs of similar questions, where to look first. They prove nothing.
-    wider : SharedBounds, optional
+    shared : SharedBounds, optional
         Of questions that these are among.
     sought : int
         Number of the objective that is sought.
@@ -116,32 +116,34 @@ class JointSearch:
         workers: int = 1,
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
-        ideas: Sequence[Design] = (),
-        wider: SharedBounds | None = None,
+        starts: Sequence[Design] = (),
+        shared: SharedBounds | None = None,
         sought: int = 0,
         cutoffs: Mapping[int, np.ndarray] | None = None,
     ) -> None:
         self.started = time.monotonic()
         self.questions, self.progress = list(questions), progress
         first = questions[0]
-        self.tuning, self.joint = first.tuning, first.tuning.joint
-        self.wider, self.workers, self.sought = wider, workers, sought
-        moving = () if wider is None else wider.moving
-        self.together = JointInstance([q.instance for q in questions], moving, cutoffs)
+        self.tuning, self.limits = first.tuning, first.tuning.joint
+        self.shared, self.workers, self.sought = shared, workers, sought
+        moving = () if shared is None else shared.moving
+        self.instance = JointInstance([q.instance for q in questions], moving, cutoffs)
         self.gap = first.settings.gap
-        self.goals = with_ties(first.instance.model, dict(first.chosen)) if wider is None else wider.goals
+        self.goals = with_ties(first.instance.model, dict(first.chosen)) if shared is None else shared.goals
         self.form = self._prepared()
-        self.plain = np.full((len(self.questions), len(self.form.goals)), np.inf)
+        self.fixed_cutoffs = np.full((len(self.questions), len(self.form.goals)), np.inf)
         for k, values in (cutoffs or {}).items():
-            self.plain[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
+            self.fixed_cutoffs[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
         self.known = self._none_known()
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
         self.rng = np.random.default_rng(first.settings.seed)
         self.pool = self.form.boxes.nothing()
         # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
-        self.look = JointHeuristics(self.together, self.clock, self.rng, bool(cutoffs), self.tuning.heuristics.joint)
-        self.look.starts = self._starts(ideas)
+        self.heuristics = JointHeuristics(
+            self.instance, self.clock, self.rng, bool(cutoffs), self.tuning.heuristics.joint
+        )
+        self.heuristics.starts = self._starts(starts)
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has no design: better asked alone."""
@@ -160,11 +162,11 @@ class JointSearch:
 
     def glimpse(self) -> list[Candidate]:
         """Return good designs of the questions, of which nothing is proven."""
-        self.pool, self.look.thorough = self.form.boxes.root(), False
+        self.pool, self.heuristics.thorough = self.form.boxes.root(), False
         if len(self.pool):
-            rule = BestPerScenario(self.form, self.known, self._slack(self.sought), self.told_apart())
-            self.look.recalled(rule)
-            self.look.improve(rule)
+            rule = BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), self.told_apart())
+            self.heuristics.warm_start(rule)
+            self.heuristics.improve(rule)
         return list(self.known)
 
     def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
@@ -188,24 +190,24 @@ class JointSearch:
         self.pool = self.form.boxes.root()
         if not len(self.pool) or not asked.any():
             return asked
-        self.look.first(BestPerScenario(self.form, self.known, self._slack(self.sought), asked), self.pool)
+        self.heuristics.first(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), asked), self.pool)
         found, unproven = np.isfinite(self.known.best()), asked.copy()
         if not found.any() and not excluded:
             return np.zeros_like(asked)
-        plain = _Attempt(self, self.form, self.known, self.pool)
-        conflict: _Attempt | None = None
+        by_objectives = JointTree(self, self.form, self.known, self.pool)
+        by_limits: JointTree | None = None
         # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
-        for plainly, surely, doubtfully in self.joint.turns:
+        for boxes, sure_boxes, unsure_boxes in self.limits.turns:
             now = unproven & found
-            unproven &= ~found | plain.open_questions(now, plainly * int(now.sum()))
+            unproven &= ~found | by_objectives.open_questions(now, boxes * int(now.sum()))
             if not unproven.any():
                 break
-            self.look.thorough = True
-            self.look.improve(BestPerScenario(self.form, self.known, self._slack(self.sought), unproven))
-            conflict = self._in_conflict() if conflict is None else conflict
+            self.heuristics.thorough = True
+            self.heuristics.improve(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), unproven))
+            by_limits = self._in_infeasibility_mode() if by_limits is None else by_limits
             sure = int((unproven & np.isfinite(self.known.best())).sum())
-            effort = surely * sure + doubtfully * (int(unproven.sum()) - sure)
-            unproven &= conflict.open_questions(unproven, effort)
+            node_limit = sure_boxes * sure + unsure_boxes * (int(unproven.sum()) - sure)
+            unproven &= by_limits.open_questions(unproven, node_limit)
         proven: np.ndarray = asked & ~unproven
         return proven
 
@@ -228,7 +230,7 @@ class JointSearch:
         return found
 
     def _best_with(self, wanted: Sequence[tuple[int, Design]]) -> dict[int, tuple[Design | None, bool]]:
-        form, codec = self.form, self.together.combinations
+        form, codec = self.form, self.instance.combinations
         form.archive = known = self._none_known()
         like = [(q, codec.each[q].find(design), design) for q, design in wanted]
         result: dict[int, tuple[Design | None, bool]] = {q: (None, True) for q, c, _ in like if c is None}
@@ -236,11 +238,11 @@ class JointSearch:
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[[q for q, _, _ in rows]] = True
         asked &= self.told_apart()
-        rule = BestPerScenario(form, known, self._slack(self.sought), asked)
+        rule = BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
         combinations = np.array([c for _, c, _ in rows], dtype=np.int64)
-        self.look.tried(rule, combinations, self._points([design for _, _, design in rows]))
+        self.heuristics.tried(rule, combinations, self._points([design for _, _, design in rows]))
         outcome = branch_and_bound(
-            form, form.boxes.leaves(combinations), rule, self.clock, self.rng, self.joint.given_parts * len(rows)
+            form, form.boxes.leaves(combinations), rule, self.clock, self.rng, self.limits.given_parts * len(rows)
         )
         left = rule.open_questions(outcome.open)
         designs = self._designs([(c, ()) for c in known], 0)
@@ -249,24 +251,26 @@ class JointSearch:
         form.archive = self.known
         return result
 
-    def _in_conflict(self) -> _Attempt:
-        """Return what tries with boxes that carry what limits share, which helps where limits leave little."""
-        form = self._prepared(conflict=True)
+    def _in_infeasibility_mode(self) -> JointTree:
+        """Return what tries with boxes that carry what limits share, which helps where limits leave little room."""
+        form = self._prepared(infeasibility=True)
         form.counters.work = self.form.counters.work
         form.counters.solved_combinations = self.form.counters.solved_combinations
         form.bounding.branching.adopt(self.form.bounding.branching.statistics())
         form.archive = known = self._none_known()
-        return _Attempt(self, form, known, form.boxes.root())
+        return JointTree(self, form, known, form.boxes.root())
 
     def _none_known(self) -> IncumbentPerScenario:
         return IncumbentPerScenario(
-            self.together, self.sought, self.form.n, len(self.form.goals), self.plain, self.tuning
+            self.instance, self.sought, self.form.n, len(self.form.goals), self.fixed_cutoffs, self.tuning
         )
 
-    def _prepared(self, conflict: bool = False) -> Formulation:
-        form = None if self.wider is None else self.wider.among(self.together, conflict, self.workers)
+    def _prepared(self, infeasibility: bool = False) -> Formulation:
+        form = None if self.shared is None else self.shared.among(self.instance, infeasibility, self.workers)
         if form is None:
-            form = Formulation(self.together, self.goals, 1, conflict, Execution(workers=self.workers), self.tuning)
+            form = Formulation(
+                self.instance, self.goals, 1, infeasibility, Execution(workers=self.workers), self.tuning
+            )
         return form
 
     def told_apart(self) -> np.ndarray:
@@ -276,7 +280,7 @@ class JointSearch:
         result[tree.first[tree.leaf]] = True
         return result
 
-    def _slack(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
+    def tolerance_of(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
         """Return the gap as a distance in phi of an objective, per design."""
         form = self.form
         own = (form.objectives.log[k], form.objectives.finest[k])
@@ -288,7 +292,7 @@ class JointSearch:
                 {
                     "stage": "search",
                     "done": 0.0,
-                    "combinations": self.together.combinations.size,
+                    "combinations": self.instance.combinations.size,
                     "incumbents": len(self.known),
                     "message": f"{open_boxes} boxes open",
                 }
@@ -296,7 +300,7 @@ class JointSearch:
 
     def _starts(self, designs: Sequence[Design]) -> dict[int, np.ndarray]:
         """Return where to look first, from designs of similar questions."""
-        first = self.together.each[0].combinations
+        first = self.instance.each[0].combinations
         like = [first.find(d) for d in designs]
         return {c: x for c, x in zip(like, self._points(designs), strict=True) if c is not None}
 
@@ -315,17 +319,17 @@ class JointSearch:
         Parameters
         ----------
         chosen : list of Candidate
-            Proven designs, those of a question together.
+            Proven designs, those of a question side by side.
         traded : int
             How many objectives, from the first, are traded off.
         solves : int
             Continuous problems that were solved to find them.
         """
-        form, together = self.form, self.together
-        fronts: list[ParetoFront | None] = [None] * len(together.each)
+        form, instance = self.form, self.instance
+        fronts: list[ParetoFront | None] = [None] * len(instance.each)
         found = break_ties(form, self.pool, chosen, traded) if chosen else []
         every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
-        solved = np.bincount(together.combinations.question(every), minlength=len(together.each))
+        solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
         for number, designs in self._designs(found, traded).items():
             question = self.questions[number]
             total, own = question.instance.combinations.count, int(solved[number])
@@ -368,14 +372,14 @@ class JointSearch:
 
         ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
         """
-        form, together = self.form, self.together
+        form, instance = self.form, self.instance
         if not found:
             return {}
         candidates = [c for c, _ in found]
         costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
         combinations, points, _ = rows_of(candidates)
         result = form.points.evaluate(points.reshape(len(candidates), form.n), combinations)
-        numbers = together.combinations.question(combinations).tolist()
+        numbers = instance.combinations.question(combinations).tolist()
         made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
         more = [
             {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
@@ -395,9 +399,9 @@ class JointSearch:
         # The objective may be positive in some questions although it is not in all.
         result = []
         for c in designs:
-            codec = self.together.combinations
+            codec = self.instance.combinations
             question, own = codec.question(c.combination), codec.own(c.combination)
-            form = Formulation(self.together.each[question], self.goals, 1, tuning=self.tuning)
+            form = Formulation(self.instance.each[question], self.goals, 1, tuning=self.tuning)
             _, phi = form.points.feasible_rows(c.variables[None, :], np.array([own]))
             result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
         return result
@@ -408,15 +412,15 @@ class JointSearch:
         if len(form.goals) < 2 or not chosen:
             return list(chosen)
         following = 1 if sought == 0 else 0
-        questions = self.together.combinations.question(np.array([c.combination for c in chosen]))
-        plain = self.plain.copy()
-        plain[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
-        known = IncumbentPerScenario(self.together, following, form.n, len(form.goals), plain, self.tuning)
+        questions = self.instance.combinations.question(np.array([c.combination for c in chosen]))
+        cutoffs = self.fixed_cutoffs.copy()
+        cutoffs[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
+        known = IncumbentPerScenario(self.instance, following, form.n, len(form.goals), cutoffs, self.tuning)
         asked = np.zeros(len(self.questions), dtype=bool)
         asked[questions] = True
         known.add(*rows_of(chosen))
-        rule = BestPerScenario(form, known, self._slack(following), asked)
-        self.look.improve(rule)
-        branch_and_bound(form, self.pool, rule, self.clock, self.rng, self.joint.tie * len(chosen))
+        rule = BestPerScenario(form, known, self.tolerance_of(following), asked)
+        self.heuristics.improve(rule)
+        branch_and_bound(form, self.pool, rule, self.clock, self.rng, self.limits.tie * len(chosen))
         better = dict(zip(known.questions().tolist(), known, strict=True))
         return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]

@@ -19,7 +19,7 @@ from synth.bounds import contractor
 from synth.deadline import Stopped
 from synth.feasibility import Status
 from synth.model.problem import DesignProblem
-from synth.parametric import joint_search as together_search
+from synth.parametric import joint_search
 from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different, groups_of
 from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.results import Design, ParetoFront
@@ -328,7 +328,7 @@ def test_ideas_prove_nothing() -> None:
     ideas = [d for q in bad for d in q.answer().designs]
     assert len(ideas) == 3
     best = [best_ropes(FREE, q.instance.values.requirements, FOUR) for q in questions]
-    for front, own in zip(JointSearch(questions, ideas=ideas).answers(), best, strict=True):
+    for front, own in zip(JointSearch(questions, starts=ideas).answers(), best, strict=True):
         assert front is not None
         assert own is not None
         assert own.cost - 1e-6 <= front.designs[0].values["cost"] <= own.cost * (1 + GAP)
@@ -386,13 +386,13 @@ def test_struts(grid: bool, at_once: bool) -> None:
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
 def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     asked_of: list[tuple[bool, int]] = []
-    proceed = together_search._Attempt.open_questions
+    proceed = joint_search.JointTree.open_questions
 
-    def noted(attempt: Any, questions: np.ndarray, effort: float) -> np.ndarray:
-        asked_of.append((attempt.form.infeasibility, int(questions.sum())))
-        return proceed(attempt, questions, effort)
+    def noted(tree: Any, questions: np.ndarray, node_limit: float) -> np.ndarray:
+        asked_of.append((tree.form.infeasibility, int(questions.sum())))
+        return proceed(tree, questions, node_limit)
 
-    monkeypatch.setattr(together_search._Attempt, "open_questions", noted)
+    monkeypatch.setattr(joint_search.JointTree, "open_questions", noted)
     turns = ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000))
     tuning = tuned(joint={"turns": turns, "nearly_closed": 0})
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
@@ -548,9 +548,9 @@ def test_which_requirements_differ() -> None:
 
 @pytest.mark.parametrize("first", [0, 1])
 def test_requirements_that_only_some_questions_have(first: int) -> None:
-    plain, indexed = (pose(Ropes(price=p), loads(5)[0], ["cost"], 1, FOUR).instance for p in ("fixed", "indexed"))
+    fixed, indexed = (pose(Ropes(price=p), loads(5)[0], ["cost"], 1, FOUR).instance for p in ("fixed", "indexed"))
     other = pose(Ropes(price="indexed"), {"load": "5 kN", "index": 1.2}, ["cost"], 1, FOUR).instance
-    three = [plain, indexed, other]
+    three = [fixed, indexed, other]
     assert different(three[first:] + three[:first]) == ["index"]
 
 
@@ -558,37 +558,37 @@ def test_requirements_that_only_some_questions_have(first: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def together() -> JointInstance:
+def instance() -> JointInstance:
     requirements = [{"load": f"{f} kN", "share": s} for f, s in product((3, 7, 20), (0.5, 2))]
     return JointInstance([q.instance for q in asked(MAKEABLE, requirements)])
 
 
 @given(st.lists(st.integers(0, 6 * 24 - 1), min_size=1, max_size=9))
 @settings(deadline=None, derandomize=True, max_examples=40)
-def test_combinations_mean_what_they_mean_in_their_question(together: JointInstance, numbers: list[int]) -> None:
-    assert together.combinations.count == 144
+def test_combinations_mean_what_they_mean_in_their_question(instance: JointInstance, numbers: list[int]) -> None:
+    assert instance.combinations.count == 144
     combinations = np.array(numbers, dtype=np.int64)
-    data, digits = together.data(combinations), together.combinations.digits(combinations)
-    owners = together.owners()
-    assert together.combinations.names == ["", "rope", "strands", "end"]
+    data, digits = instance.data(combinations), instance.combinations.digits(combinations)
+    owners = instance.owners()
+    assert instance.combinations.names == ["", "rope", "strands", "end"]
     for row, number in enumerate(numbers):
         question, own = divmod(number, 24)
-        alone = together.each[question]
-        assert together.values_of(number) is alone.values
-        assert together.combinations.question(combinations)[row] == question
-        assert together.combinations.describe(number) == alone.combinations.describe(own)
+        alone = instance.each[question]
+        assert instance.values_of(number) is alone.values
+        assert instance.combinations.question(combinations)[row] == question
+        assert instance.combinations.describe(number) == alone.combinations.describe(own)
         its = alone.combinations.digits(np.array([own]))
         assert [int(d[row]) for d in digits] == [question, *(int(d[0]) for d in its)]
-        assert together.combinations.joined(question, own) == number
+        assert instance.combinations.joined(question, own) == number
         for k, value in enumerate(alone.data(np.array([own]))):
             here = float(np.broadcast_to(data[k], combinations.shape)[row])
             assert here == float(np.ravel(value)[0])
             if owners[k] >= 0:
-                assert together.column(k)[int(digits[owners[k]][row])] == here
+                assert instance.column(k)[int(digits[owners[k]][row])] == here
             else:
                 # The question fixes it, and all questions alike.
-                assert all(float(np.ravel(i.data(np.array([own]))[k])[0]) == here for i in together.each)
-        beside = set(together.combinations.neighbours(number).tolist())
+                assert all(float(np.ravel(i.data(np.array([own]))[k])[0]) == here for i in instance.each)
+        beside = set(instance.combinations.neighbours(number).tolist())
         assert beside == {question * 24 + int(n) for n in alone.combinations.neighbours(own)}
         assert len(beside) == 3 + 2 + 1
 
@@ -601,7 +601,7 @@ def test_what_may_move_belongs_to_the_question() -> None:
     assert (plain.owners()[names["share"]], moving.owners()[names["share"]]) == (-1, 0)
     assert moving.column(names["share"]).tolist() == [1.0, 1.0]
     own = asked(FREE, loads(5, 6))
-    answers = [JointSearch(own, wider=w).answers() for w in (None, SharedBounds(own, ("load", "share", "income")))]
+    answers = [JointSearch(own, shared=w).answers() for w in (None, SharedBounds(own, ("load", "share", "income")))]
     for one, other in zip(*answers, strict=True):
         assert one is not None
         assert other is not None
@@ -609,56 +609,56 @@ def test_what_may_move_belongs_to_the_question() -> None:
 
 
 @pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
-@pytest.mark.parametrize("conflict", [False, True])
+@pytest.mark.parametrize("infeasibility", [False, True])
 def test_what_holds_for_many_questions_is_found_once(
-    problem: DesignProblem, conflict: bool, monkeypatch: pytest.MonkeyPatch
+    problem: DesignProblem, infeasibility: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    wider = SharedBounds(asked(problem, loads(2, 7, 60)), MOVING)
+    shared = SharedBounds(asked(problem, loads(2, 7, 60)), MOVING)
     roots = []
     root = contractor.Contractor.root
     monkeypatch.setattr(contractor.Contractor, "root", lambda *a: roots.append(1) or root(*a))
     for own in (loads(2, 60), loads(2.5, 6.9, 7, 33), loads(59)):
         questions = asked(problem, own)
-        together = JointInstance([q.instance for q in questions], MOVING)
-        form = wider.among(together, conflict)
+        instance = JointInstance([q.instance for q in questions], MOVING)
+        form = shared.among(instance, infeasibility)
         assert form is not None
         # Its clusters and tables are those of questions that are prepared alone.
-        alone = Formulation(together, wider.goals, 1, conflict)
+        alone = Formulation(instance, shared.goals, 1, infeasibility)
         roots.pop()
         for one, other in zip(form.boxes.cells.trees, alone.boxes.cells.trees, strict=True):
             assert np.array_equal(one.factor.columns, other.factor.columns)
         for tree in form.boxes.cells.trees:
             assert len(tree.order) == len(tree.factor.columns)
     assert len(roots) == 1
-    # What the wider questions do not speak of is prepared anew.
+    # What the shared questions do not speak of is prepared anew.
     beyond = asked(problem, loads(5, 61))
-    assert wider.among(JointInstance([q.instance for q in beyond], MOVING), conflict) is None
-    answers = [JointSearch(beyond, wider=w).answers() for w in (None, wider)]
+    assert shared.among(JointInstance([q.instance for q in beyond], MOVING), infeasibility) is None
+    answers = [JointSearch(beyond, shared=w).answers() for w in (None, shared)]
     assert [f.designs for f in answers[0] if f] == [f.designs for f in answers[1] if f]
 
 
-@pytest.mark.parametrize("conflict", [False, True])
-def test_questions_that_differ_in_anything_else_are_prepared_anew(conflict: bool) -> None:
-    wider = SharedBounds(asked(FREE, loads(2, 60)), MOVING)
+@pytest.mark.parametrize("infeasibility", [False, True])
+def test_questions_that_differ_in_anything_else_are_prepared_anew(infeasibility: bool) -> None:
+    shared = SharedBounds(asked(FREE, loads(2, 60)), MOVING)
     instances = [q.instance for q in asked(FREE, loads(7))]
-    assert wider.among(JointInstance(instances, MOVING), conflict) is not None
+    assert shared.among(JointInstance(instances, MOVING), infeasibility) is not None
     # The jolt is made of the load: of one question it would seem to be fixed.
-    assert wider.among(JointInstance(instances, ("load",)), conflict) is None
+    assert shared.among(JointInstance(instances, ("load",)), infeasibility) is None
     dearer = [q.instance for q in asked(FREE, loads(7, share=2))]
-    assert wider.among(JointInstance(dearer, MOVING), conflict) is None
+    assert shared.among(JointInstance(dearer, MOVING), infeasibility) is None
 
 
 # ---- the best of each question --------------------------------------------------------------------------------------
 
 
-def test_a_question_keeps_its_best_design(together: JointInstance) -> None:
+def test_a_question_keeps_its_best_design(instance: JointInstance) -> None:
     @given(st.integers(0, 10**6))
     @settings(deadline=None, derandomize=True, max_examples=60)
     def against_a_loop(seed: int) -> None:
         rng = np.random.default_rng(seed)
-        plain = np.where(rng.random((6, 3)) < 0.2, 0.6, np.inf)
+        fixed_cutoffs = np.where(rng.random((6, 3)) < 0.2, 0.6, np.inf)
         column = int(rng.integers(3))
-        known = IncumbentPerScenario(together, column, 2, 3, plain)
+        known = IncumbentPerScenario(instance, column, 2, 3, fixed_cutoffs)
         best: dict[int, tuple[int, np.ndarray, np.ndarray]] = {}
         for _ in range(int(rng.integers(1, 5))):
             count = int(rng.integers(0, 12))
@@ -667,7 +667,7 @@ def test_a_question_keeps_its_best_design(together: JointInstance) -> None:
             known.add(combination, variables, phi)
             for c, x, p in zip(combination.tolist(), variables, phi, strict=True):
                 q = c // 24
-                if np.all(p <= plain[q] + TIE) and (q not in best or p[column] < best[q][2][column]):
+                if np.all(p <= fixed_cutoffs[q] + TIE) and (q not in best or p[column] < best[q][2][column]):
                     best[q] = c, x, p
         assert known.questions().tolist() == sorted(best)
         values = np.full(6, np.inf)
@@ -688,16 +688,16 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     search = an_open_search()
     form, rng = search.form, np.random.default_rng(seed)
     tree, count, goals = form.boxes.cells.trees[0], len(search.questions), len(form.goals)
-    plain = np.where(rng.random((count, goals)) < 0.2, 0.5, np.inf)
-    known = IncumbentPerScenario(search.together, 0, form.n, goals, plain)
-    chosen = rng.integers(0, search.together.combinations.count, 5)
+    fixed_cutoffs = np.where(rng.random((count, goals)) < 0.2, 0.5, np.inf)
+    known = IncumbentPerScenario(search.instance, 0, form.n, goals, fixed_cutoffs)
+    chosen = rng.integers(0, search.instance.combinations.count, 5)
     known.add(chosen, np.zeros((5, form.n)), np.round(rng.random((5, goals)), 1))
     wanted = rng.random(count) < 0.7
-    slack = 0.1
-    rule = BestPerScenario(form, known, lambda phi: np.full(len(phi), slack), wanted)
+    tolerance = 0.1
+    rule = BestPerScenario(form, known, lambda phi: np.full(len(phi), tolerance), wanted)
     best = known.best()
     needed = [
-        -np.inf if not wanted[q] else np.inf if not np.isfinite(best[q]) else best[q] - slack for q in range(count)
+        -np.inf if not wanted[q] else np.inf if not np.isfinite(best[q]) else best[q] - tolerance for q in range(count)
     ]
     assert rule.needed().tolist() == needed
     boxes = 60
@@ -708,7 +708,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
     for b in range(boxes):
         rows = [int(q) for q in tree.rows(int(cell[b, 0]))]
         cap = max(needed[q] for q in rows)
-        within = [max(plain[q, j] for q in rows) + TIE for j in range(goals)]
+        within = [max(fixed_cutoffs[q, j] for q in rows) + TIE for j in range(goals)]
         assert caps[b].tolist() == [min(within[0], cap), *within[1:]]
         if cap == -np.inf or any(lower[b, j] > within[j] for j in range(goals)):
             assert room[b] == 0
@@ -716,7 +716,7 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
             assert room[b] == cap - lower[b, 0]
     tables = rule.tables(form)
     if tables is None:
-        assert np.isfinite(plain[:, form.bounded :]).any()
+        assert np.isfinite(fixed_cutoffs[:, form.bounded :]).any()
     else:
         of_boxes = tables.of_cluster[cell[:, 0]]
         np.testing.assert_allclose(of_boxes, form.objectives.values_of(caps[:, : form.bounded]), rtol=1e-12)
@@ -733,13 +733,13 @@ def test_open_boxes_leave_their_questions_open(seed: int) -> None:
     search = an_open_search()
     form, rng = search.form, np.random.default_rng(seed)
     tree, count, goals = form.boxes.cells.trees[0], len(search.questions), len(form.goals)
-    known = IncumbentPerScenario(search.together, 0, form.n, goals)
+    known = IncumbentPerScenario(search.instance, 0, form.n, goals)
     phi = np.round(rng.normal(size=(4, goals)), 1)
-    known.add(rng.integers(0, search.together.combinations.count, 4), np.zeros((4, form.n)), phi)
+    known.add(rng.integers(0, search.instance.combinations.count, 4), np.zeros((4, form.n)), phi)
     wanted = rng.random(count) < 0.7
     rule = BestPerScenario(form, known, lambda own: np.full(len(own), 0.05), wanted)
     needed = rule.needed()
-    boxes = form.boxes.leaves(rng.integers(0, search.together.combinations.count, 6))
+    boxes = form.boxes.leaves(rng.integers(0, search.instance.combinations.count, 6))
     clusters = rng.integers(0, len(tree), 6).astype(np.int32)
     boxes.cell[:, 0] = clusters
     lower = np.round(rng.normal(size=6), 1)

@@ -17,7 +17,7 @@ import numpy as np
 
 from synth.deadline import Stopped
 from synth.errors import InputError
-from synth.parametric.joint_question import alike, different, groups_of
+from synth.parametric.joint_question import different, groups_of, joint_key
 from synth.parametric.joint_search import JointSearch, SharedBounds
 from synth.pareto import rank
 from synth.results import Design, ParetoFront
@@ -148,7 +148,7 @@ class _Oracle:
         self.places: Iterable[tuple[Value, ...]] = ()  # the values at the steps
         self.ideas: dict[str, dict[str, Design]] = {}  # per objective: designs that are best somewhere
         self.moving = different([q.instance for q in steps.questions])
-        self.wider: dict[Any, SharedBounds] = {}  # by what questions have in common
+        self.shared_bounds: dict[Any, SharedBounds] = {}  # by what questions have in common
 
     def breaks(self, pairs: Sequence[tuple[StudyStep, StudyStep]]) -> list[list[Break]]:
         """Return the breaks between pairs of steps; the intervals go forward together, so that they ask together."""
@@ -187,7 +187,7 @@ class _Oracle:
             own = [w for w in new if (w.objective, w.values) in position]
             ideas = list(self.ideas.get(own[0].objective, {}).values())
             questions = [posed[places[k]] for k in group]
-            search = JointSearch(questions, self.workers, None, self.left(), ideas, self._wider(questions[0]))
+            search = JointSearch(questions, self.workers, None, self.left(), ideas, self._shared_bounds(questions[0]))
             self._together(search, own, [position[w.objective, w.values] for w in own])
         for w in new:
             if w not in self.known:
@@ -195,13 +195,13 @@ class _Oracle:
                 proven = front is None or front.certificate.kind == "global"
                 self._take(w, _Best(best_design(front, w.objective), proven))
 
-    def _wider(self, question: Question) -> SharedBounds:
+    def _shared_bounds(self, question: Question) -> SharedBounds:
         """Return what holds for all values between the steps, for questions like one."""
-        common = alike(question)
-        if common not in self.wider:
-            ends = [q for q in self._at_steps(next(iter(question.chosen))) if alike(q) == common]
-            self.wider[common] = SharedBounds([question, *ends], self.moving)
-        return self.wider[common]
+        common = joint_key(question)
+        if common not in self.shared_bounds:
+            ends = [q for q in self._at_steps(next(iter(question.chosen))) if joint_key(q) == common]
+            self.shared_bounds[common] = SharedBounds([question, *ends], self.moving)
+        return self.shared_bounds[common]
 
     def _at_steps(self, objective: str) -> Iterator[Question]:
         """Yield the questions for the best design in one objective at the steps."""
