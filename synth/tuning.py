@@ -634,13 +634,22 @@ class InteriorPointSettings:
         they could still gain is not worth them.
     dual_tolerance, gap_tolerance, row_tolerance : float
         What an optimum must keep: of the gradient, of products of multipliers and slacks, and by which rows are broken.
+    multiplier_share : float
+        Gradients count relative to this share of the largest multiplier, where that is above 1: they are sums of so
+        large terms.
     first_barrier, least_barrier : float
         Where the barrier begins, and the least it becomes.
     barrier_error, barrier_factor : float
         The barrier goes down where the errors are below ``barrier_error`` times itself: by the factor, or to the power
         3/2.
+    barrier_cuts : int
+        How often in one step, at most.
     first_penalty, last_penalty, penalty_factor : float
         Price of rows that are broken, how far it is raised, and by which factor at a time.
+    pressed_share : float
+        Of its price: a row with a larger multiplier presses against the penalty.
+    unmet_ratio : float
+        Rows that are broken by more than this many times the barrier will not be met by lowering it.
     penalty_barrier : float
         Rows that press against the penalty with a barrier below it are met on their own, without the objective, before
         the penalty is raised.
@@ -650,10 +659,12 @@ class InteriorPointSettings:
         Without an objective, rows that are broken by far more than the barrier explains will not be met near here.
     armijo, rounding : float
         Share of the forecast that a step must gain, and what merits may miss each other by rounding.
+    backtracking : float
+        By which a step that was refused becomes shorter.
     to_boundary : float
         Share of the way to where something becomes zero that a step may go.
-    max_rejected, stuck_barrier : int, float
-        After so many refusals the barrier is lowered instead, down to ``stuck_barrier``.
+    max_rejected, stuck_factor, stuck_barrier : int, float, float
+        After so many refusals the barrier is lowered instead, by the factor, down to ``stuck_barrier``.
     multiplier_spread : float
         Multipliers stay within this factor of those that the point itself implies.
     inside : float
@@ -665,6 +676,8 @@ class InteriorPointSettings:
     least_pivot : float
         Pivots below this share of their diagonal call for a shift of the diagonal.
     first_shift, shift_growth, largest_shift : float
+    unknown_shift : float
+        The first shift where second derivatives do not exist, so that none are used.
     largest_row : float
         Rows beyond it do not exist.
     """
@@ -675,13 +688,17 @@ class InteriorPointSettings:
     dual_tolerance: float = 1e-8
     gap_tolerance: float = 1e-9
     row_tolerance: float = 1e-9
+    multiplier_share: float = 0.1
     first_barrier: float = 1.0
     least_barrier: float = 1e-10
     barrier_error: float = 10.0
     barrier_factor: float = 0.2
+    barrier_cuts: int = 3
     first_penalty: float = 5.0
     last_penalty: float = 1e6
     penalty_factor: float = 20.0
+    pressed_share: float = 0.5
+    unmet_ratio: float = 10.0
     penalty_barrier: float = 1e-2
     met: float = 1e-7
     hopeless_barrier: float = 1e-3
@@ -689,8 +706,10 @@ class InteriorPointSettings:
     hopeless_ratio: float = 100.0
     armijo: float = 1e-4
     rounding: float = 1e-12
+    backtracking: float = 0.5
     to_boundary: float = 0.99
     max_rejected: int = 10
+    stuck_factor: float = 0.01
     stuck_barrier: float = 1e-9
     multiplier_spread: float = 1e4
     inside: float = 1e-2
@@ -700,6 +719,7 @@ class InteriorPointSettings:
     first_shift: float = 1e-6
     shift_growth: float = 100.0
     largest_shift: float = 1e30
+    unknown_shift: float = 1.0
     largest_row: float = 1e8
 
 

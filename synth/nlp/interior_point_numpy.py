@@ -392,7 +392,7 @@ class InteriorPointBatch:
         residual += np.where(self.free, self.high_dual - self.low_dual, 0.0)
         along_t = np.where(self.t_free & ~first, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
         dual = np.maximum(np.abs(residual).max(axis=0, initial=0.0), np.abs(along_t))
-        dual /= np.maximum(1.0, 0.1 * np.abs(signed).max(axis=0, initial=0.0))
+        dual /= np.maximum(1.0, method.multiplier_share * np.abs(signed).max(axis=0, initial=0.0))
         products = np.concatenate(
             [
                 self.multipliers * slack,
@@ -418,15 +418,16 @@ class InteriorPointBatch:
         tired = (self.evaluations >= method.max_evaluations) | (self.late >= method.max_late)
         self._set((self.status == 0) & tired, status=np.full(len(self), STOPPED))
         # Where rows press against the penalty the objective is put aside until they are met.
-        pressed = np.any(self.multipliers > 0.5 * self._prices(), axis=0) & (self.barrier <= method.penalty_barrier)
-        leaves = taken & ~first & pressed & (over > 10 * self.barrier)
+        pressed = np.any(self.multipliers > method.pressed_share * self._prices(), axis=0)
+        leaves = taken & ~first & pressed & (self.barrier <= method.penalty_barrier)
+        leaves &= over > method.unmet_ratio * self.barrier
         comes = taken & self.restoring & (over <= method.met)
         again: np.ndarray = (leaves | comes) & (self.status == 0)
         if again.any():
             self._set(leaves, next_penalty=np.minimum(method.penalty_factor * self.penalty, method.last_penalty))
             self.restoring = (self.restoring | leaves) & ~comes
             self._begin(again)
-        for _ in range(3):
+        for _ in range(method.barrier_cuts):
             error = np.maximum(dual, np.maximum(largest - self.barrier, self.barrier - least))
             smaller = np.minimum(method.barrier_factor * self.barrier, self.barrier * np.sqrt(self.barrier))
             lower = taken & ~again & (error < method.barrier_error * self.barrier)
@@ -512,7 +513,7 @@ class InteriorPointBatch:
         corrected = self.uncorrected + direction / np.where(self.step > 0, self.step, 1.0)
         self._set(~taken, direction=np.where(bent, corrected, self.uncorrected))
         self._set(taken, uncorrected=direction, forecast=self.values + step * moved)
-        self.step = np.where(taken, step, np.where(bent, self.step, 0.5 * self.step))
+        self.step = np.where(taken, step, np.where(bent, self.step, self.method.backtracking * self.step))
 
     def _add_curvature(self, matrix: list[list[np.ndarray]], hessian: Sequence[np.ndarray]) -> np.ndarray:
         """Add the second derivatives of the rows; return a first shift where there are none to be had."""
@@ -523,14 +524,14 @@ class InteriorPointBatch:
         for (a, b), part in zip(self.layout.hessian, hessian, strict=True):
             use = self.free[a] & self.free[b] & ~strange
             matrix[a][b] = matrix[a][b] + np.where(use, part, 0.0)
-        return np.where(strange, 1.0, 0.0)
+        return np.where(strange, self.method.unknown_shift, 0.0)
 
     def _stuck(self, refused: np.ndarray) -> np.ndarray:
         """End lanes where no step along their direction helps; return those that may go on with a smaller barrier."""
         stuck = refused & (self.rejected > self.method.max_rejected) & (self.status == 0)
         self._set(stuck & (self.barrier <= self.method.stuck_barrier), status=np.full(len(self), STUCK))
         again: np.ndarray = stuck & (self.status == 0)
-        self._set(again, barrier=np.maximum(self.method.least_barrier, 0.01 * self.barrier))
+        self._set(again, barrier=np.maximum(self.method.least_barrier, self.method.stuck_factor * self.barrier))
         return again
 
     def _restart(self, again: np.ndarray) -> None:

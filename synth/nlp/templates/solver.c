@@ -193,7 +193,7 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
         const vd products[2] = {s->multipliers[r] * slack, (price(s, r) - s->multipliers[r]) * excess};
         EACH(i, 2) { largest = v_max(largest, products[i]); least = v_min(least, products[i]); }
         over = v_max(over, EQUAL[r] ? v_abs(s->values[r]) : s->values[r]);
-        pressed |= s->multipliers[r] > 0.5 * price(s, r);
+        pressed |= s->multipliers[r] > PRESSED_SHARE * price(s, r);
     }
     transposed(jacobian, weights, residual);
     vd dual = keep(s->t_free & ~first, v_abs(along_t));
@@ -209,7 +209,7 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
             least = v_min(least, product);
         }
     }
-    dual /= v_max(all(1.0), 0.1 * largest_multiplier);
+    dual /= v_max(all(1.0), MULTIPLIER_SHARE * largest_multiplier);
     over = choose(s->missing > 0, all(INFINITY), over);
     const vi good = (dual < DUAL_TOLERANCE) & (largest < GAP_TOLERANCE) & (over < ROW_TOLERANCE);
     const vi hopeless = first & (dual < HOPELESS_DUAL) & (s->barrier < HOPELESS_BARRIER)
@@ -218,7 +218,7 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
     s->status = choose_i(taken & hopeless, all_i(INFEASIBLE), s->status);
     const vi tired = (s->evaluations >= MAX_EVALUATIONS) | (s->late >= MAX_LATE);
     s->status = choose_i((s->status == 0) & tired, all_i(STOPPED), s->status);
-    const vi leaves = taken & ~first & pressed & (s->barrier <= PENALTY_BARRIER) & (over > 10.0 * s->barrier);
+    const vi leaves = taken & ~first & pressed & (s->barrier <= PENALTY_BARRIER) & (over > UNMET_RATIO * s->barrier);
     const vi comes = taken & s->restoring & (over <= MET);
     const vi again = (leaves | comes) & (s->status == 0);
     if (any(again)) {
@@ -226,7 +226,7 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
         s->restoring = (s->restoring | leaves) & ~comes;
         begin(s, again, totals);
     }
-    EACH(i, 3) {
+    EACH(i, BARRIER_CUTS) {
         const vd error = v_max(dual, v_max(largest - s->barrier, s->barrier - least));
         const vd smaller = v_min(BARRIER_FACTOR * s->barrier, s->barrier * v_sqrt(s->barrier));
         const vi lower = taken & ~again & (error < BARRIER_ERROR * s->barrier);
@@ -278,7 +278,7 @@ INLINE vd add_curvature(MATRIX(matrix), const vd *hessian, const vi *free) {
     EACH(k, CURVATURES) total += hessian[k];
     const vi strange = ~is_finite(total);
 /*CURVATURE*/
-    return keep(strange, all(1.0));
+    return keep(strange, all(UNKNOWN_SHIFT));
 }
 
 /* A first step that was refused is corrected by what the rows at the trial point differ from their linear forecast. */
@@ -367,7 +367,7 @@ static void direct(State *s, vi taken, vi bent, const vd *jacobian, const vd *he
     merit += other_merit(s, s->y, s->t, s->form, s->missing, &logs);
     s->merit = choose(taken, merit, s->merit);
     s->slope = choose(taken, slope, s->slope);
-    s->step = choose(taken, nearly / v_max(nearly, primal), choose(bent, s->step, 0.5 * s->step));
+    s->step = choose(taken, nearly / v_max(nearly, primal), choose(bent, s->step, BACKTRACKING * s->step));
     EACH(r, ROWS) s->forecast[r] = choose(taken, s->values[r] + s->step * moved[r], s->forecast[r]);
     s->dual_step = choose(taken, nearly / v_max(nearly, dual), s->dual_step);
 }
@@ -414,7 +414,7 @@ static void advance(State *s) {
     const vi stuck = ~taken & (s->rejected > MAX_REJECTED) & (s->status == 0);
     s->status = choose_i(stuck & (s->barrier <= STUCK_BARRIER), all_i(STUCK), s->status);
     const vi smaller = stuck & (s->status == 0), again = changed | smaller;
-    s->barrier = choose(smaller, v_max(all(LEAST_BARRIER), 0.01 * s->barrier), s->barrier);
+    s->barrier = choose(smaller, v_max(all(LEAST_BARRIER), STUCK_FACTOR * s->barrier), s->barrier);
     s->merit = choose(again, all(INFINITY), s->merit);
     s->step = choose(again, all(0.0), s->step);
     s->dual_step = choose(again, all(0.0), s->dual_step);
