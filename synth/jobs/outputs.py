@@ -13,7 +13,7 @@ from synth.jobs.store import DONE, Answered, Store
 from synth.output_folder import BATCH, STOPPED, check_kind, claimed, holds, replaced, settle
 from synth.results.provenance import installed_versions
 
-FORMAT = 1
+BATCH_FORMAT = 1  # of batch.json
 RANKING = ("rank", "score", "status", "gap", "note", "alternatives")
 GROUPS = ("objectives", "searched", "choices", "parts", "derived", "limits")
 ROW_COLUMNS = (
@@ -67,7 +67,7 @@ def write_outputs(store: Store, job: str, folder: Path) -> tuple[dict[str, int],
             with new.open("rows.csv") as file:
                 counts = _write_rows(file, store, job, content)
             summary = {
-                "format": FORMAT,
+                "format": BATCH_FORMAT,
                 "job": job,
                 "state": record.state,
                 "rows": counts,

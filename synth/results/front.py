@@ -12,7 +12,7 @@ from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
-from synth.results.front_record import FORMAT, design_record, digest_of, finite, plain, record_text
+from synth.results.front_record import FRONT_FORMAT, design_record, digest_of, finite, plain, record_text
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
 from synth.results.statistics import SearchStatistics
@@ -160,7 +160,7 @@ def front_record(front: ParetoFront) -> dict[str, Any]:
             rows.setdefault(f"{row['table']}/{row}", {k: finite(v) for k, v in row.items()})
     frame = front.frame
     content = {
-        "format": FORMAT,
+        "format": FRONT_FORMAT,
         "family": frame.family,
         "title": frame.title,
         "options": dict(frame.options),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from synth.results.design import Design
 
-FORMAT = 1
+FRONT_FORMAT = 1  # of front.json
 
 
 def record_text(content: Mapping[str, Any]) -> str:

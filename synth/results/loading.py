@@ -12,7 +12,7 @@ from synth.output_folder import settle
 from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
-from synth.results.front_record import FORMAT, changed
+from synth.results.front_record import FRONT_FORMAT, changed
 from synth.results.statistics import SearchStatistics
 
 COMPARISON = "comparison.json"
@@ -60,9 +60,9 @@ def _read(folder: str | Path) -> tuple[Path, dict[str, Any]]:
         settle(path)
         path = path / "front.json"
     content = read_json(path, "front", "a folder that clutchsynth run has written, or its front.json")
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
+    if not isinstance(content, dict) or content.get("format") != FRONT_FORMAT:
         raise InputError(
-            f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FORMAT}"
+            f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FRONT_FORMAT}"
         )
     return path, content
 

@@ -16,7 +16,7 @@ from synth.results.front_record import record_text
 from synth.results.loading import load_front
 from synth.results.provenance import joined
 
-FORMAT = 1
+STUDY_FORMAT = 1  # of the record of a study under way
 RECORD = "study.json"
 STEPS = "steps"
 STEP = re.compile(r"step ([1-9][0-9]*)")  # its key in the record
@@ -46,7 +46,7 @@ class StudyStore:
             content = read_json(path, "study", "a study that clutchsynth has written")
         except InputError:
             return {}
-        known = content.get("known") if isinstance(content, dict) and content.get("format") == FORMAT else None
+        known = content.get("known") if isinstance(content, dict) and content.get("format") == STUDY_FORMAT else None
         return known if isinstance(known, dict) else {}
 
     @classmethod
@@ -101,7 +101,7 @@ class StudyStore:
     def _enter(self, key: str, entry: dict[str, Any]) -> None:
         assert self.folder is not None
         self.record[key] = entry
-        text = json.dumps({"format": FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
+        text = json.dumps({"format": STUDY_FORMAT, "known": self.record}, indent=1, allow_nan=False) + "\n"
         self._write(self.folder / RECORD, text)
 
     @staticmethod

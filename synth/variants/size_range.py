@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from synth.jobs.models import Job
 
-FORMAT = 1
+SIZE_RANGE_FORMAT = 1  # of size_range.json
 CANDIDATES = 500
 CURVE_POINTS = 40
 SAMPLE = 400  # questions that candidates are tried on where there are too many of them
@@ -80,7 +80,7 @@ class SizeRange:
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""
         record = {
-            "format": FORMAT,
+            "format": SIZE_RANGE_FORMAT,
             "objective": self.objective,
             "unit": self.unit,
             "sense": self.sense,

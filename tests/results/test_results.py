@@ -12,7 +12,7 @@ import yaml
 import synth
 from synth.files import write_atomically
 from synth.results import Certificate
-from synth.results.front_record import FORMAT
+from synth.results.front_record import FRONT_FORMAT
 from synth.units import from_si
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 
@@ -140,7 +140,7 @@ def test_another_seed_gives_the_same_designs(front):
 
 
 def test_the_record_tells_what_was_asked(content):
-    assert content["format"] == FORMAT
+    assert content["format"] == FRONT_FORMAT
     assert (content["family"], content["title"]) == ("strut", "Strut")
     assert content["options"] == {"finish": "coated"}
     assert content["requirements"] == {"load": "20 kN", "room": "90 mm"}

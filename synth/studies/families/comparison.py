@@ -19,7 +19,7 @@ from synth.units import format_quantity
 if TYPE_CHECKING:
     import pandas as pd
 
-FORMAT = 1
+COMPARISON_FORMAT = 1  # of comparison.json
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ class Comparison:
 
     def _json(self) -> str:
         content = {
-            "format": FORMAT,
+            "format": COMPARISON_FORMAT,
             "objectives": dict(self.objectives),
             "status": self.status.value,
             "interrupted": self.interrupted,

@@ -17,7 +17,7 @@ from synth.results import Frame
 if TYPE_CHECKING:
     import pandas as pd
 
-FORMAT = 1
+PRICES_FORMAT = 1  # of the record of prices found
 RECORD = "prices.json"
 CONFIRMED, FIXED, CHANGE, NOTHING = "confirmed", "parts fixed", "parts change", "no influence"
 WITHHELD = "withheld"
@@ -156,7 +156,7 @@ class PriceStore:
         """Return what an earlier run of the same question has finished; None where there was none."""
         try:
             content = read_json(path, "prices", "prices that clutchsynth has written")
-            if content["format"] != FORMAT or content["fingerprint"] != self.fingerprint:
+            if content["format"] != PRICES_FORMAT or content["fingerprint"] != self.fingerprint:
                 return None
             return {int(k): [asdict(Price(**row)) for row in rows] for k, rows in content["designs"].items()}
         except (ValueError, KeyError, TypeError, AttributeError):
@@ -164,7 +164,7 @@ class PriceStore:
 
     def text(self) -> str:
         """Return what stands in the file."""
-        content = {"format": FORMAT, "fingerprint": self.fingerprint, "designs": self.known}
+        content = {"format": PRICES_FORMAT, "fingerprint": self.fingerprint, "designs": self.known}
         return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
     def get(self, design: int) -> list[Price] | None:

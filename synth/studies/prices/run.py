@@ -34,8 +34,8 @@ from synth.studies.prices.price_list import (
     CHANGE,
     CONFIRMED,
     FIXED,
-    FORMAT,
     NOTHING,
+    PRICES_FORMAT,
     WITHHELD,
     Price,
     Prices,
@@ -97,7 +97,7 @@ def prices(
         raise InputError("step", step, f"from {percent(LEAST_STEP)} to {percent(WIDEST_STEP)}, for example '1 %'")
     instance = question_of(front, problem, catalogs)
     digest = (front.record or json.loads(front.files()["front.json"])).get("digest")
-    own = hash_of([FORMAT, digest, share, instance.fingerprint().whole])
+    own = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().whole])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
         store = PriceStore.of(place, own)

@@ -26,7 +26,7 @@ from synth.results.provenance import hash_of, joined
 from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
 from synth.search.question import Question
-from synth.studies.study_store import FORMAT, RECORD, StudyStore
+from synth.studies.study_store import RECORD, STUDY_FORMAT, StudyStore
 from synth.studies.whatif.break_points import find_breaks, weight_breaks
 from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study import Break, Study, StudyStep
@@ -323,4 +323,6 @@ def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) 
     """Return the hash of all that decides an answer but ideas: question, settings, and what computes."""
     settings = {k: repr(v) for k, v in question.record().items() if weights or k != "weights"}
     robust = None if rater is None else rater.asked.block()
-    return hash_of([FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust])
+    return hash_of(
+        [STUDY_FORMAT, question.instance.fingerprint().whole, list(question.chosen.items()), settings, robust]
+    )
