@@ -1,13 +1,42 @@
-"""The one margin by which ends are moved outward, so that rounding costs no value that is on an end.
+"""How closely numbers must agree to be the same, and by how much ends are moved outward against rounding.
 
-Compiled code has the same in ``bounds/templates/margins.c``.
+Compiled code has :func:`below` and :func:`above` in ``bounds/templates/margins.c``. Not here is what limits may be
+missed by (``synth.feasibility``), what the search takes for equal inside that (``synth.tuning.Tolerances``), and what
+verification does, which shares neither (``synth.proof_limits``).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Margins:
+    """By how much numbers may miss each other and still be the same; no part of an answer hangs on them.
+
+    Parameters
+    ----------
+    stated : float
+        Relative. Of numbers that were stated, once in each of two units or files: a few roundings.
+    end : float
+        Relative. By how much something may lie beyond the end of a range that was stated: both may have been written
+        with nine digits.
+    step : float
+        Share of a step, or of a whole number, by which a value may miss it and still be on it.
+    same : float
+        Relative. Of numbers that were computed in two ways, or saved and computed again.
+    """
+
+    stated: float = 1e-12
+    end: float = 1e-9
+    step: float = 1e-9
+    same: float = 1e-9
+
+
+MARGINS = Margins()
 
 
 def below(ends: Any, relative: float, absolute: float = 0.0) -> Any:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import moocore
 import numpy as np
 
-SAME = 1e-9
 DIGITS = 9
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from synth.feasibility import TOLERANCE
@@ -39,6 +40,10 @@ class ProofLimits:
         Relative. How far a makeable value or a row may lie outside and still count as inside.
     thin : float
         Relative width below which a variable is not split any more.
+    same : float
+        Relative. What is saved and agrees so far with what is computed again is the same.
+    noise : float
+        In SI. The same of numbers that are zero but for rounding.
     widest_gap : float
         The largest gap that is looked for where the one claimed cannot be proven.
     narrowings : int
@@ -58,8 +63,20 @@ class ProofLimits:
     pad: float = 1e-10
     snap: float = 1e-9
     thin: float = 1e-9
+    same: float = 1e-9
+    noise: float = 1e-15
     widest_gap: float = 0.5
     narrowings: int = 3
+
+    def agree(self, a: float | None, b: float) -> bool:
+        """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself."""
+        if a is None:
+            return math.isnan(b)
+        return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=self.same, abs_tol=self.noise)
+
+    def close(self, a: float, b: float) -> bool:
+        """Tell whether two relative differences are the same."""
+        return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= self.same
 
 
 PROOF = ProofLimits()

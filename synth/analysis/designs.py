@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.declaration import VariableRecord
 from synth.feasibility import Status, utilisation
+from synth.margins import MARGINS
 from synth.model.model import Evaluation
 from synth.question.count_domain import stated
 from synth.question.instance import Instance
@@ -17,8 +18,6 @@ from synth.results import Design, Frame, PartRow
 from synth.results.statistics import SearchStatistics
 from synth.results.told import UNTOLD
 from synth.units import format_quantity
-
-ON_GRID = 1e-9
 
 
 def make_frame(instance: Instance, objectives: Mapping[str, str]) -> Frame:
@@ -180,7 +179,7 @@ def off_grid(variables: Sequence[VariableRecord], points: np.ndarray) -> list[di
     for variable, values in zip(variables, points.T, strict=True):
         if len(variable.grid):
             nearest = variable.grid[np.argmin(np.abs(variable.grid - values[:, None]), axis=1)]
-            for k in np.flatnonzero(np.abs(nearest - values) > ON_GRID * np.abs(nearest)).tolist():
+            for k in np.flatnonzero(np.abs(nearest - values) > MARGINS.step * np.abs(nearest)).tolist():
                 makeable = format_quantity(float(nearest[k]), variable.unit)
                 result[k][variable.name] = f"nearest makeable {makeable}"
     return result

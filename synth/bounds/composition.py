@@ -21,7 +21,7 @@ from synth.bounds.log_terms import (
     times,
     without_common,
 )
-from synth.bounds.shapes import ROUNDING, Shape
+from synth.bounds.shapes import FLAT, Shape
 from synth.model.model import Model
 from synth.model.program import OP_SELECT, OP_SPECIAL, Node, Program
 
@@ -235,7 +235,7 @@ class TermComposition:
         nonzero = bool(sign)
         if not sign:
             low, high = self.atoms.ratio(b, a, *reversed(without_common(a, b)[1:]))
-            sign = a.sign if high < 1 - ROUNDING else b.sign if low > 1 + ROUNDING else 0
+            sign = a.sign if high < 1 - FLAT else b.sign if low > 1 + FLAT else 0
         if not sign:
             return None
         large, small = (a, b) if a.sign == sign else (b, a)

@@ -8,13 +8,12 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.curvature import INF, Ends
-from synth.bounds.intervals import BACKWARD, FORWARD, loosened
+from synth.bounds.intervals import BACKWARD, FORWARD, ROUNDING, loosened
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.model.program import OP_SPECIAL, Node, Program
 
-SWEEPS = 3
-CROSSED = 1e-8  # ends of an interval that pass each other by less do so by rounding
+SWEEPS = 3  # over all limits; more hardly narrow any further
 
 
 def natural(program: Program, node: Node, ends: Sequence[Ends], low: np.ndarray, high: np.ndarray) -> Ends:
@@ -82,7 +81,7 @@ class FeasibleIntervals:
         for k, node in enumerate(self._program.nodes):
             a, b = natural(self._program, node, ends, *self._inputs)
             a, b = max(self.low[k], a), min(self.high[k], b)
-            if a > b + CROSSED * abs(b):
+            if a > b + ROUNDING * abs(b):
                 return False
             self.low[k], self.high[k] = min(a, b), max(a, b)  # what crosses by rounding is one number
             ends.append((self.low[k], self.high[k]))

@@ -18,11 +18,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from synth.feasibility import TOLERANCE
 from synth.model.program import OP_SELECT
 
-SLACK = 2e-6
-ROUNDING = 1e-8
-CANCELLATION = 1e-12
+SLACK = 2 * TOLERANCE  # relative, by which limits are loosened
+ROUNDING = 1e-8  # relative: ends of an interval that pass each other by less do so by rounding
+CANCELLATION = 1e-12  # of the size of the terms: what a sum or difference of them may be off by
 
 Interval = tuple[Any, Any]
 

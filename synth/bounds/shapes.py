@@ -11,7 +11,7 @@ from synth.bounds.curvature import AFFINE, UNKNOWN
 
 NAMED = 4  # inputs that a text names per direction
 LONGEST = 100  # characters of a text
-ROUNDING = 1e-12
+FLAT = 1e-12  # an elasticity as small as this may be none but for rounding
 
 
 @dataclass(frozen=True)
@@ -40,15 +40,15 @@ class Shape:
 
     def rising(self) -> np.ndarray:
         """Return which inputs it rises with."""
-        return (self.elasticity[:, 0] >= -ROUNDING) & (self.elasticity[:, 1] > 0)
+        return (self.elasticity[:, 0] >= -FLAT) & (self.elasticity[:, 1] > 0)
 
     def falling(self) -> np.ndarray:
         """Return which inputs it falls with."""
-        return (self.elasticity[:, 1] <= ROUNDING) & (self.elasticity[:, 0] < 0)
+        return (self.elasticity[:, 1] <= FLAT) & (self.elasticity[:, 0] < 0)
 
     def open(self) -> np.ndarray:
         """Return the inputs with which it may rise or fall."""
-        return (self.elasticity[:, 0] < -ROUNDING) & (self.elasticity[:, 1] > ROUNDING)
+        return (self.elasticity[:, 0] < -FLAT) & (self.elasticity[:, 1] > FLAT)
 
 
 def worded(shape: Shape, named: Sequence[tuple[int, str]], equal: bool = False) -> Shape:

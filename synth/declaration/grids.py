@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from synth.declaration.records import DeclarationError
-from synth.margins import within
+from synth.margins import MARGINS, within
 
 RENARD_STEPS = {"R5": 5, "R10": 10, "R20": 20, "R40": 40}
 # ISO 3 rounds the exact tenth-powers; the rounded mantissas are the preferred numbers themselves.
@@ -51,12 +51,12 @@ def grid_values(grid: float | str | Sequence[float] | None, lower: float, upper:
     elif isinstance(grid, (int, float)):
         if not grid > 0:
             raise DeclarationError(f"a grid step must be above 0, not {grid}")
-        first, last = np.ceil(lower / grid - 1e-9), np.floor(upper / grid + 1e-9)
+        first, last = np.ceil(lower / grid - MARGINS.step), np.floor(upper / grid + MARGINS.step)
         steps = np.arange(first, last + 1)
         per_unit = round(1 / grid) if grid < 1 else 0
         # Division by the reciprocal of a fractional step keeps 0.1 mm ladders free of 0.30000000000000004.
-        values = steps / per_unit if per_unit and abs(per_unit * grid - 1) < 1e-9 else steps * grid
+        values = steps / per_unit if per_unit and abs(per_unit * grid - 1) < MARGINS.step else steps * grid
     else:
         values = np.sort(np.asarray(grid, dtype=float))
-    inside: np.ndarray = values[within(values, lower, upper, 1e-12)]
+    inside: np.ndarray = values[within(values, lower, upper, MARGINS.stated)]
     return inside

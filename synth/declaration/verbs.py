@@ -28,6 +28,7 @@ from synth.declaration.records import (
 )
 from synth.errors import InputError, UnknownOptionError
 from synth.feasibility import SMALLEST
+from synth.margins import MARGINS
 from synth.units import parse_unit, to_si
 
 if TYPE_CHECKING:
@@ -413,7 +414,7 @@ class Declaration:
         symbol = self._claim(name, symbol)
         if not (step > 0 and lower <= upper):
             raise DeclarationError(f"{self.problem}: count {name} needs lower <= upper and a step above 0")
-        values = lower + step * np.arange(int(np.floor((upper - lower) / step + 1e-9)) + 1)
+        values = lower + step * np.arange(int(np.floor((upper - lower) / step + MARGINS.step)) + 1)
         record = Count(name, "-", symbol, text, source, values.astype(float), ca.SX.sym(name))
         self.counts[name] = record
         return record.sx

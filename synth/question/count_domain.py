@@ -17,10 +17,10 @@ import numpy as np
 from synth.declaration import Count
 from synth.errors import InputError
 from synth.input_limits import INPUT_LIMITS
+from synth.margins import MARGINS
 from synth.units import parse_quantity
 
 COMPARES = re.compile(r"^\s*[<>=]|\.\.")
-ON_STEP = 1e-9
 
 
 def entries(value: Any) -> list[Any]:
@@ -81,11 +81,11 @@ def values_of_set(count: Count, value: Any, field: str) -> np.ndarray:
         raise InputError(label, value, "at least one value, for example [8, 12, 16]")
     for entry in given:
         wanted = parse_quantity(entry, count.unit, label)
-        if np.min(np.abs(steps - wanted)) > ON_STEP:
+        if np.min(np.abs(steps - wanted)) > MARGINS.step:
             step = f" in steps of {steps[1] - steps[0]:g}" if len(steps) > 1 else ""
             raise InputError(label, entry, f"values from {steps[0]:g} to {steps[-1]:g}{step}")
     numbers = np.array([parse_quantity(entry, count.unit, label) for entry in given])
-    return np.asarray(steps[np.any(np.abs(steps[:, None] - numbers[None, :]) <= ON_STEP, axis=1)])
+    return np.asarray(steps[np.any(np.abs(steps[:, None] - numbers[None, :]) <= MARGINS.step, axis=1)])
 
 
 def shown_set(values: Sequence[float] | np.ndarray) -> str:

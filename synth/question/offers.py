@@ -10,6 +10,7 @@ import numpy as np
 
 from synth.declaration import Choice, Count, Part
 from synth.errors import InputError, at
+from synth.margins import MARGINS
 from synth.model.constraint import SIGNS, Constraint
 from synth.model.model import Model
 from synth.question.count_domain import shown_set
@@ -161,7 +162,7 @@ def _values_of(count: Count, limits: UserLimits) -> np.ndarray:
         values = values[np.isin(values, steps)]
     pinned = count.name in limits.fixed
     if pinned:
-        values = values[np.abs(values - limits.fixed[count.name]) < 1e-9]
+        values = values[np.abs(values - limits.fixed[count.name]) < MARGINS.step]
     if len(values):
         return values
     low, high, step = count.values[0], count.values[-1], np.ptp(count.values[:2])
@@ -172,7 +173,7 @@ def _values_of(count: Count, limits: UserLimits) -> np.ndarray:
 
 
 def _meets_limit(values: np.ndarray, limit: Constraint) -> np.ndarray:
-    slack = 1e-9 * max(1.0, abs(limit.bound))
+    slack = MARGINS.end * max(1.0, abs(limit.bound))
     if limit.sense == "at_most":
         return values <= limit.bound + slack
     if limit.sense == "at_least":

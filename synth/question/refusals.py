@@ -18,7 +18,9 @@ from synth.question.selection import Selection, SlotRows
 from synth.special import expanded
 from synth.units import format_quantity
 
-MOST_COMPARED = 4_000_000  # rows of slots together whose comparison is looked at before the search
+# Rows of slots together whose comparison is looked at before the search. Part of the question, not of how it is
+# searched: it decides which rows a result tells as left out.
+MOST_COMPARED = 4_000_000
 
 
 def refuse_requirements(model: Model, values: RequirementValues) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.declaration import RequirementRecord
 from synth.errors import InputError, at
-from synth.margins import within
+from synth.margins import MARGINS, within
 from synth.model.model import Model
 from synth.question.inputs import fixed_designation, fixed_row_values
 from synth.tables.catalogs import Catalogs
@@ -135,7 +135,7 @@ def _example(requirement: RequirementRecord) -> str:
 
 
 def _check_range(r: RequirementRecord, typed: Any, value: float) -> None:
-    if within(value, r.lower, r.upper, 1e-12):
+    if within(value, r.lower, r.upper, MARGINS.stated):
         return
     low, high = format_quantity(r.lower, r.unit), format_quantity(r.upper, r.unit)
     if np.isfinite(r.lower) and np.isfinite(r.upper):

@@ -10,12 +10,11 @@ import numpy as np
 
 from synth.declaration import Count, VariableRecord
 from synth.errors import InputError
+from synth.margins import MARGINS, within
 from synth.units import format_quantity
 
 if TYPE_CHECKING:
     from synth.model.model import Evaluation, Model
-
-END = 1e-9  # relative: what is this close to the end of a range is within it
 
 
 def shown_range(unknown: VariableRecord | Count) -> str:
@@ -45,9 +44,9 @@ def outside(model: Model, values: Mapping[str, float]) -> dict[str, str]:
     result = {}
     for unknown in _unknowns(model):
         value, (low, high) = values[unknown.name], _ends(unknown)
-        within = low - END * abs(low) <= value <= high + END * abs(high)
+        inside = within(value, low, high, MARGINS.end)
         steps = _steps(unknown)
-        if not within or (len(steps) and np.min(np.abs(steps - value)) > END):
+        if not inside or (len(steps) and np.min(np.abs(steps - value)) > MARGINS.step):
             result[unknown.name] = f"{format_quantity(value, unknown.unit)}, searched is {shown_range(unknown)}"
     return result
 

@@ -11,7 +11,7 @@ import numpy as np
 from synth.declaration import Origin
 from synth.errors import InputError, at
 from synth.input_limits import INPUT_LIMITS
-from synth.margins import above
+from synth.margins import MARGINS, above
 from synth.model.constraint import Constraint
 from synth.model.model import Model
 from synth.question.count_domain import compares, entries, is_list, shown_set, values_of_set
@@ -194,4 +194,4 @@ def contradict(first: str, one: float, second: str, other: float) -> bool:
     """Tell whether two limits on one quantity leave nothing between them."""
     lows = [b for s, b in ((first, one), (second, other)) if s in ("at_least", "equal")]
     highs = [b for s, b in ((first, one), (second, other)) if s in ("at_most", "equal")]
-    return bool(lows and highs and max(lows) > above(min(highs), 1e-9))
+    return bool(lows and highs and max(lows) > above(min(highs), MARGINS.end))

@@ -9,7 +9,7 @@ import numpy as np
 
 from synth.declaration import VariableRecord
 from synth.errors import InputError
-from synth.margins import within
+from synth.margins import MARGINS, within
 from synth.model.constraint import Constraint
 from synth.units import format_quantity
 
@@ -78,7 +78,7 @@ class VariableRanges:
         if k is None:
             return
         v = self.variables[k]
-        if not within(value, v.lower, v.upper, 1e-12):
+        if not within(value, v.lower, v.upper, MARGINS.stated):
             raise InputError(f"fix: {v.name}", typed, _declared(v))
         self.lower[k] = self.upper[k] = value
         self.pinned[k] = True
@@ -94,7 +94,7 @@ class VariableRanges:
         result = []
         for k, v in enumerate(self.variables):
             values = v.grid if self.grid and not self.pinned[k] else np.empty(0)
-            inside = within(values, self.lower[k], self.upper[k], 1e-12)
+            inside = within(values, self.lower[k], self.upper[k], MARGINS.stated)
             if len(values) and not inside.any():
                 low, high = format_quantity(self.lower[k], v.unit), format_quantity(self.upper[k], v.unit)
                 right = "a range that holds a makeable value (or grid: false)"

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 
-from synth.bounds.shapes import Shape
+from synth.bounds.shapes import FLAT, Shape
 from synth.bounds.structure import classify
 from synth.declaration import Choice, Declaration, Limit, Origin, Part
 from synth.model.problem import DesignProblem
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from synth.model.model import Model
     from synth.results import Design
 
-FLAT = 1e-12
+# Part of what is asked, not of how it is searched: search, check and verification pose the same corners.
 MOST_OPEN = 3  # things of unknown direction that all corners are posed of
 Position = tuple[float | None, ...]
 

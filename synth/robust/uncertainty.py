@@ -17,7 +17,7 @@ import numpy as np
 
 from synth.declaration import Declaration
 from synth.errors import InputError, at
-from synth.margins import within
+from synth.margins import MARGINS, within
 from synth.question.uncertainty import EXAMPLE, KEYS, Uncertainty, check_number_of_ranges, words_of
 from synth.units import format_quantity, parse_quantity, parse_unit, to_si
 
@@ -223,7 +223,9 @@ class _RangeReader:
         if name in self.d.requirements:
             r = self.d.requirements[name]
             span = self._range(text, r.unit, field)
-            if span.kind == "ends" and not all(within(x, r.lower, r.upper, 1e-12) for x in (span.low, span.high)):
+            if span.kind == "ends" and not all(
+                within(x, r.lower, r.upper, MARGINS.stated) for x in (span.low, span.high)
+            ):
                 low, high = (format_quantity(x, r.unit) if math.isfinite(x) else "any" for x in (r.lower, r.upper))
                 raise InputError(field, text, f"a range within {low} .. {high}")
             return Scattered(name, r.unit, span, (Member("requirement", name),), text)
@@ -330,7 +332,7 @@ def check_values(
                 raise InputError(field, x.text, right, path)
             own = values[member.name]
             low, high = (x.moved(member, lambda m: values[m.name], p, None) for p in (0.0, 1.0))
-            slack = 1e-9 * max(abs(low), abs(high))
+            slack = MARGINS.end * max(abs(low), abs(high))
             if not low - slack <= own <= high + slack:
                 right = f"a range that holds the nominal {format_quantity(own, r.unit)}"
                 raise InputError(field, x.text, right, path)

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from synth.analysis.restate import problem_of
 from synth.errors import InputError
+from synth.margins import MARGINS
 
 if TYPE_CHECKING:
     from synth.question.request import Request
     from synth.question.settings import Progress, SearchSettings
     from synth.results import ParetoFront
     from synth.search.question import Question
-
-SAME = 1e-12  # relative: requirements are written with all their digits
 
 
 def improve(
@@ -159,7 +158,7 @@ def difference(front: ParetoFront, question: Question) -> str:
         return f"the options: {dict(frame.options)} there, {dict(instance.problem.options)} here"
     for key, value in frame.requirement_values.items():
         own = instance.values.requirements.get(key, math.nan)
-        if not (own == value or math.isclose(own, value, rel_tol=SAME)):
+        if not (own == value or math.isclose(own, value, rel_tol=MARGINS.stated)):
             return f"requirement {key}: {value:.12g} there, {own:.12g} here (SI)"
     if set(instance.values.requirements) != set(frame.requirement_values):
         more = sorted(set(instance.values.requirements) ^ set(frame.requirement_values))

@@ -18,6 +18,7 @@ from rich.table import Table
 from rich.text import Text
 
 from synth.files import csv_text
+from synth.margins import MARGINS
 from synth.plain_text import PlainStream, printable
 from synth.results import Design, ParetoFront
 from synth.units import format_quantity, from_si, split_header
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage
-SAME = 1e-9  # relative; a second opinion closer than this is the same
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "="}
 
 
@@ -295,7 +295,7 @@ def print_simulation(
         table = plain_table("quantity", "closed form", "simulation", "difference", "", right=(1, 2, 3, 4))
         for row in opinion.to_dict("records"):
             relative = row["relative_difference"]
-            if abs(relative) < SAME:
+            if abs(relative) < MARGINS.same:
                 relative = row["difference"] = 0.0  # rounding only
             numbers = [row[key] for key in ("closed_form", "simulation", "difference")]
             shown = [f"{x:.6g} {row['unit']}" if math.isfinite(x) else "does not exist" for x in numbers]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.feasibility import TOLERANCE
+from synth.margins import MARGINS, within
 from synth.model.model import DataInput, Evaluation, Model
 from synth.model.numbers import numeric
 from synth.model.problem import DesignProblem
@@ -22,7 +23,6 @@ from synth.tables.catalogs import Catalogs
 
 FloatArray = NDArray[np.float64]
 PAIRS = 40_000  # evaluated at a time
-SAME = 1e-9  # relative; values closer than this are one
 
 
 @dataclass(frozen=True)
@@ -197,12 +197,12 @@ def _serves(
             allowed &= np.isin(columns.rows[slot.slot], slot.rows)
         for name, values in {**instance.selection.counts, **instance.selection.choices}.items():
             own = columns.counts[name] if name in columns.counts else columns.choices[name]
-            allowed &= (np.abs(own[:, None] - values[None, :]) < SAME).any(axis=1)
+            allowed &= (np.abs(own[:, None] - values[None, :]) < MARGINS.step).any(axis=1)
         for k, variable in enumerate(model.variables):
             if variable.name not in used:
                 low, high = instance.ranges.lower[k], instance.ranges.upper[k]
                 own = columns.values[:, k]
-                allowed &= (own >= low - SAME * abs(low)) & (own <= high + SAME * abs(high))
+                allowed &= within(own, low, high, MARGINS.end)
         pairs = slice(q * count, (q + 1) * count)
         allowed &= evaluation.take(pairs).also(instance.limits.judging).feasible
         compared = columns.of(instance.model)

@@ -48,9 +48,6 @@ from synth.verification.pareto_regions import uncovered
 if TYPE_CHECKING:
     from synth.results import Design, ParetoFront
 
-SAME = 1e-9  # relative; numbers that agree so far are the same
-NOISE = 1e-15  # absolute; below it nothing is compared
-
 
 def verify(
     front: ParetoFront,
@@ -224,7 +221,7 @@ class VerificationRun:
     def _frame(self) -> None:
         frame, model = self.front.frame, self.model
         for name, value in self.instance.values.requirements.items():
-            if not _same(frame.requirement_values.get(name, math.nan), value):
+            if not self.limits.agree(frame.requirement_values.get(name, math.nan), value):
                 self.find(f"requirement_values_si: {name} is not what the requirements say")
         own = self.instance.limits.judging
         limits = {x.name: x.sense for x in model.limits} | {x.name: x.sense for x in own}
@@ -249,10 +246,10 @@ class VerificationRun:
             return
         values, limits, remarks = self._evaluate(point)
         for name, value in values.items():
-            if name not in design.values or not _same(design.values[name], value):
+            if name not in design.values or not self.limits.agree(design.values[name], value):
                 self.find(f"{label}: {name} is {design.values.get(name)}, evaluated it is {value}")
         for name in self.front.frame.objectives:
-            if name in values and not _same(design.objectives.get(name, math.nan), values[name]):
+            if name in values and not self.limits.agree(design.objectives.get(name, math.nan), values[name]):
                 self.find(f"{label}: objective {name} is {design.objectives.get(name)}, evaluated {values[name]}")
         if {text.split(":")[0] for text in design.advice} - {"unusual_part"} != remarks:
             self.find(f"{label}: the remarks are {sorted(design.advice)}, evaluated they are {sorted(remarks)}")
@@ -277,7 +274,7 @@ class VerificationRun:
             rows[slot.slot] = offered.index(str(part))
         selection = self.instance.selection
         for name, allowed in selection.counts.items():
-            if not np.any(np.abs(allowed - design.values.get(name, math.nan)) < SAME):
+            if not np.any(np.abs(allowed - design.values.get(name, math.nan)) < self.limits.same):
                 self.find(f"{label}: {name} {design.values.get(name)} is not a value that this question may use")
                 return None
         for name, indices in selection.choices.items():
@@ -313,11 +310,13 @@ class VerificationRun:
                 self.find(f"{label}: limit {name} does not hold")
             saved = design.limits.get(name, (math.nan, math.nan))
             told = design.utilisation.get(name)
-            if not (_same(saved[0], value) and _same(saved[1], bound)):
+            if not (self.limits.agree(saved[0], value) and self.limits.agree(saved[1], bound)):
                 self.find(f"{label}: limit {name} has sides {saved}, evaluated they are {(value, bound)}")
-            if (told is None) != (used is None) or (told is not None and used is not None and not _same(told, used)):
+            if (told is None) != (used is None) or (
+                told is not None and used is not None and not self.limits.agree(told, used)
+            ):
                 self.find(f"{label}: utilisation of {name} is {told}, evaluated it is {used}")
-            if not _close(design.residuals.get(name, math.nan), r):
+            if not self.limits.close(design.residuals.get(name, math.nan), r):
                 self.find(f"{label}: residual of {name} is {design.residuals.get(name)}, evaluated it is {r}")
             if void != any(text.startswith(f"not checked: {name},") for text in design.not_checked):
                 self.find(f"{label}: limit {name} is {'void' if void else 'not void'}, which not_checked does not say")
@@ -328,10 +327,10 @@ class VerificationRun:
         instance = self.instance
         for k, (v, grid) in enumerate(zip(self.model.variables, instance.ranges.grids(), strict=True)):
             x = float(point.variables[k])
-            reach = SAME * max(abs(instance.ranges.lower[k]), abs(instance.ranges.upper[k]))
+            reach = self.limits.same * max(abs(instance.ranges.lower[k]), abs(instance.ranges.upper[k]))
             if not instance.ranges.lower[k] - reach <= x <= instance.ranges.upper[k] + reach:
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is outside of its bounds")
-            elif len(grid) and not np.any(np.abs(grid - x) <= SAME * np.abs(grid)):
+            elif len(grid) and not np.any(np.abs(grid - x) <= self.limits.same * np.abs(grid)):
                 self.find(f"{label}: {v.name} {format_quantity(x, v.unit)} is not on its grid")
         for code, refused in self._refusals(point):
             if refused:
@@ -360,7 +359,7 @@ class VerificationRun:
         proven = certificate.kind == "global" and certificate.gap is not None
         if design.status is Status.OPTIMAL and not proven:
             self.find(f"{label}: status optimal, but the certificate proves no gap")
-        if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + SAME)):
+        if design.gap is not None and (not proven or design.gap > (certificate.gap or 0.0) * (1 + self.limits.same)):
             self.find(f"{label}: gap {percent(design.gap)} is above what the certificate claims")
 
     # -- the front -----------------------------------------------------------------------------
@@ -376,9 +375,9 @@ class VerificationRun:
         unit = (self.signed - low) / np.where(high > low, high - low, 1.0)
         scores = np.sqrt((unit**2 * shares).sum(axis=1) / shares.sum())
         for design, score in zip(designs, scores, strict=True):
-            if design.score is None or abs(design.score - score) > SAME:
+            if design.score is None or abs(design.score - score) > self.limits.same:
                 self.find(f"design {design.rank}: score {design.score}, ranked again it is {score}")
-        if np.any(np.diff(scores) < -SAME):
+        if np.any(np.diff(scores) < -self.limits.same):
             self.find("the designs are not in the order of their scores")
         self._notes(unit, low, high)
 
@@ -386,14 +385,14 @@ class VerificationRun:
         """Every remark stands at one design, and that one deserves it."""
         designs, frame = self.front.designs, self.front.frame
         deserving: dict[str, np.ndarray] = {}
-        reach = SAME * np.maximum(np.abs(low), np.abs(high))
+        reach = self.limits.same * np.maximum(np.abs(low), np.abs(high))
         if len(designs) > 1:
             for k, (name, sense) in enumerate(frame.objectives.items()):
                 word = "smallest" if sense == "min" else "largest"
                 deserving[f"{word} {name}"] = self.signed[:, k] <= low[k] + reach[k]
             if len(designs) > 2 and len(frame.objectives) > 1:
                 total = unit.sum(axis=1)
-                deserving["knee"] = total <= total.min() + SAME
+                deserving["knee"] = total <= total.min() + self.limits.same
         elif len(frame.objectives) == 1:
             deserving["optimum"] = np.ones(1, dtype=bool)
         elif self.front.complete:
@@ -408,7 +407,7 @@ class VerificationRun:
                 self.find(f"design {design.rank}: note {strange[0]!r} means nothing here")
 
     def _dominance(self) -> None:
-        reach = SAME * np.abs(self.signed)
+        reach = self.limits.same * np.abs(self.signed)
         for k, own in enumerate(self.signed):
             better = np.all(self.signed <= own + reach[k], axis=1)
             better[k] = False
@@ -506,7 +505,7 @@ class VerificationRun:
 
     def _thresholds(self, gap: float) -> np.ndarray:
         """Return, per design, what a design must undercut in every objective to improve it by more than the gap."""
-        ends: np.ndarray = self.signed - gap * self._sizes() - SAME * np.abs(self.signed)
+        ends: np.ndarray = self.signed - gap * self._sizes() - self.limits.same * np.abs(self.signed)
         return ends
 
     def _sizes(self) -> np.ndarray:
@@ -600,15 +599,3 @@ def _refusal_functions(instance: Instance) -> list[tuple[str, list[int], Any]]:
         used = ca.symvar(when)
         functions.append((refusal.code, [place[str(s)] for s in used], ca.Function("refused", used, [when])))
     return functions
-
-
-def _same(a: float | None, b: float) -> bool:
-    """Tell whether two numbers are the same as far as numbers can tell; not-a-number is the same as itself."""
-    if a is None:
-        return math.isnan(b)
-    return (math.isnan(a) and math.isnan(b)) or math.isclose(a, b, rel_tol=SAME, abs_tol=NOISE)
-
-
-def _close(a: float, b: float) -> bool:
-    """Tell whether two relative differences are the same."""
-    return (math.isnan(a) and math.isnan(b)) or abs(a - b) <= SAME

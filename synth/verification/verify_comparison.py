@@ -20,14 +20,13 @@ from synth.errors import InputError
 from synth.files import read_json
 from synth.model.registry import load
 from synth.output_folder import settle
+from synth.proof_limits import PROOF
 from synth.question.spec import read_spec
 from synth.results import ParetoFront
 from synth.results.loading import COMPARISON, unchecked_front
 from synth.results.verification import Verification
 from synth.robust.counterpart import robust_counterpart
 from synth.verification.verify import checked
-
-SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -160,7 +159,7 @@ def _values(path: Path, told: _Told, findings: list[str]) -> dict[str, np.ndarra
         for name, own in rows.items():
             value = float(design.values[name])
             own.append(value)
-            if abs(value - listed.objectives[name]) > SAME * abs(value):
+            if abs(value - listed.objectives[name]) > PROOF.same * abs(value):
                 findings.append(f"{label}: {name} is {listed.objectives[name]}, evaluated it is {value}")
     return {name: np.array(own) for name, own in rows.items()} if all(rows.values()) else {}
 
@@ -172,6 +171,6 @@ def _among(front: ParetoFront, label: str, designs: Sequence[_Listed], findings:
         own = np.array([listed.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
         for design in front.designs:
             mine = np.array([design.objectives[n] * (1 if s == "min" else -1) for n, s in objectives.items()])
-            room = SAME * np.abs(own)
+            room = PROOF.same * np.abs(own)
             if np.all(mine <= own + room) and np.any(mine < own - room):
                 findings.append(f"{label}: its design {design.rank} beats design {listed.rank} of the comparison")

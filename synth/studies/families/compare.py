@@ -18,6 +18,7 @@ import numpy as np
 from synth.deadline import Stopped, until
 from synth.errors import InputError
 from synth.feasibility import Status
+from synth.margins import MARGINS
 from synth.pareto import spread_subset
 from synth.question.instance import Instance
 from synth.question.settings import Progress, SearchSettings, check_progress
@@ -45,7 +46,6 @@ from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING, Tuning
 from synth.units import format_quantity
 
-SAME = 1e-9  # relative; objectives closer than this are the same
 ROUNDS = 6
 KINDS = ("heuristic", "exhaustive", "global")
 
@@ -496,14 +496,14 @@ class _Comparing:
 
 def _beaten(signed: np.ndarray, own: np.ndarray, of_others: bool = False) -> np.ndarray:
     """Tell which rows are as good as a design in every objective; ``of_others``: which ones it is as good as."""
-    room = SAME * np.maximum(np.abs(own), np.abs(signed))
+    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
     better = own <= signed + room if of_others else signed <= own + room
     result: np.ndarray = np.all(better, axis=1)
     return result
 
 
 def _strictly(signed: np.ndarray, own: np.ndarray) -> np.ndarray:
-    room = SAME * np.maximum(np.abs(own), np.abs(signed))
+    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
     result: np.ndarray = np.any(signed < own - room, axis=1)
     return result
 

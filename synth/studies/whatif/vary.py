@@ -10,6 +10,7 @@ from typing import Any
 
 from synth.errors import InputError, at, shortened
 from synth.input_limits import INPUT_LIMITS
+from synth.margins import MARGINS
 from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.question.uncertainty import KEYS, name_in_block
@@ -266,7 +267,7 @@ def _steps(field: str, text: str, numbers: Sequence[float]) -> list[float]:
     first, last, step = numbers
     if step == 0 or (last - first) * step < 0:
         raise InputError(field, text, f"a step that leads from the first value to the last, as in {RANGE}")
-    steps = (last - first) / step * (1 + 1e-12) + 1e-9
+    steps = (last - first) / step * (1 + MARGINS.stated) + MARGINS.step
     _check_number(field, math.floor(steps) + 1 if math.isfinite(steps) else steps)
     count = math.floor(steps) + 1
     if count == 1 and first != last:
