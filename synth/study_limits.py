@@ -28,6 +28,8 @@ class NearLimits:
         Boxes for making one design as good as its parts allow.
     settling_gap : float
         The gap of that.
+    widest : float
+        Share by which designs may be asked to be worse, at most: beyond it hardly a limit of the objective is left.
     """
 
     batch: int = 2048
@@ -37,6 +39,7 @@ class NearLimits:
     rounded: int = 256
     settling_boxes: int = 20_000
     settling_gap: float = 1e-3
+    widest: float = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +64,8 @@ class PriceLimits:
         Relative: what is better by more is better without a step.
     binds : float
         Multiplier from which a limit binds.
+    alike : float
+        Relative: prices upwards and downwards that differ by less are told as one.
     """
 
     all: int = 512
@@ -72,6 +77,7 @@ class PriceLimits:
     looser: float = 5.0
     even: float = 1e-6
     binds: float = 1e-4
+    alike: float = 5e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +124,8 @@ class WayOutLimits:
 
     Parameters
     ----------
+    farthest : float
+        The largest amount by which anything may give way, as the logarithm of a factor: twenty.
     gap : float
         Of the amount by which something must give way.
     boxes : int
@@ -134,6 +142,7 @@ class WayOutLimits:
         Roundings of an amount that are tried, each further on the side where it does.
     """
 
+    farthest: float = 3.0
     gap: float = 8e-3
     boxes: int = 100_000
     nothing: float = 1e-7
@@ -143,6 +152,64 @@ class WayOutLimits:
     further: int = 5
 
 
+@dataclass(frozen=True, kw_only=True)
+class GuardLimits:
+    """How far and how closely is looked for what a requirement must become so that a refusal goes away.
+
+    Parameters
+    ----------
+    farthest : float
+        As the logarithm of a factor: twenty.
+    steps : int
+        Into which that is divided.
+    halvings : int
+        Of the step that frees it: to nine digits.
+    """
+
+    farthest: float = 3.0
+    steps: int = 12
+    halvings: int = 26
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComparisonLimits:
+    """How long families are made to compete.
+
+    Parameters
+    ----------
+    rounds : int
+        In which every family looks for designs that beat those of the others; mostly two or three are enough.
+    """
+
+    rounds: int = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class StudyTexts:
+    """How much of a study a drawing and a line of text hold.
+
+    Parameters
+    ----------
+    binding : float
+        A limit that is used by more than this share binds.
+    lines : int
+        Of a drawing; one with more is not read.
+    labels, ticks : int
+        Of a drawing.
+    missed : int
+        Limits that a line names.
+    """
+
+    binding: float = 0.999
+    lines: int = 7
+    labels: int = 8
+    ticks: int = 20
+    missed: int = 2
+
+
+GUARDS = GuardLimits()
+COMPARING = ComparisonLimits()
+STUDY_TEXTS = StudyTexts()
 NEAR = NearLimits()
 PRICES = PriceLimits()
 BREAKS = BreakLimits()

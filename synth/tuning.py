@@ -40,6 +40,10 @@ class Tolerances:
         ties twice may give away.
     point_share : float
         Of a range. As how wide a box counts that is a point, where extents of boxes are summed up.
+    multiplier_noise : float
+        A multiplier as small as this, as an elasticity, is none: what solvers leave of limits that do not bind.
+    tight : float
+        Relative. A limit that no variable can move is active if it is met this closely.
     """
 
     limit: float = 1e-8
@@ -49,6 +53,8 @@ class Tolerances:
     tie: float = 1e-9
     rounded: float = 2e-9
     point_share: float = 1e-8
+    multiplier_noise: float = 1e-6
+    tight: float = 1e-5
 
     @property
     def margins(self) -> tuple[float, float]:
@@ -464,7 +470,7 @@ class JointLimits:
 
 @dataclass(frozen=True, kw_only=True)
 class RobustLimits:
-    """How often a question is asked again whose designs do not keep their limits over the whole range.
+    """How designs are rated over a range, and how often others are asked for that keep their limits over all of it.
 
     Parameters
     ----------
@@ -472,10 +478,19 @@ class RobustLimits:
         At most so many, each with more points at which limits are posed.
     scenarios : int
         New points per limit.
+    parts : int
+        Boxes that a range is cut into, to prove a limit that is not monotone.
+    steep : float
+        Relative: a derivative as small as this may have the wrong sign by rounding.
+    points : int
+        That are evaluated at a time. The result is the same for any number.
     """
 
     searches: int = 5
     scenarios: int = 4
+    parts: int = 48
+    steep: float = 1e-12
+    points: int = 2**15
 
 
 @dataclass(frozen=True, kw_only=True)

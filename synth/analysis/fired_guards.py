@@ -15,10 +15,9 @@ from synth.model.numbers import numeric
 from synth.question.instance import Instance
 from synth.question.requirement_values import RequirementValues
 from synth.special import expanded
+from synth.study_limits import GUARDS
 from synth.units import format_quantity, outward, parse_quantity
 
-MOST = 3.0  # how far a requirement is looked at, as the logarithm of a factor: twenty
-STEPS, HALVINGS = 12, 26
 AT_LEAST, AT_MOST = "at_least", "at_most"
 
 
@@ -191,12 +190,14 @@ class _RefusedChoices:
         found: list[tuple[float, str]] = []
         for sign in (1.0, -1.0):
             end = r.upper if sign > 0 else r.lower
-            room = min(MOST, abs(math.log(end / value))) if 0 < end < math.inf else MOST
-            free = next((s for s in np.linspace(0, room, STEPS + 1)[1:] if not self._fires_at(name, sign * s)), None)
+            room = min(GUARDS.farthest, abs(math.log(end / value))) if 0 < end < math.inf else GUARDS.farthest
+            free = next(
+                (s for s in np.linspace(0, room, GUARDS.steps + 1)[1:] if not self._fires_at(name, sign * s)), None
+            )
             if free is None:
                 continue
-            low, high = free - room / STEPS, float(free)
-            for _ in range(HALVINGS):
+            low, high = free - room / GUARDS.steps, float(free)
+            for _ in range(GUARDS.halvings):
                 middle = (low + high) / 2
                 low, high = (middle, high) if self._fires_at(name, sign * middle) else (low, middle)
             needed = value * math.exp(sign * high)

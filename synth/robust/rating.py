@@ -28,11 +28,9 @@ from synth.question.request import Request
 from synth.question.uncertainty import Uncertainty
 from synth.results import Design
 from synth.robust.uncertainty import Member, check_values, scattered
+from synth.tuning import TUNING, RobustLimits
 
 PROVEN, BOUNDED, SAMPLED = "proven", "bounded", "sampled"
-PARTS = 48  # boxes that a range is cut into where a limit is not monotone
-STEEP = 1e-12  # a derivative this small may have the wrong sign by rounding
-BATCH = 2**15  # points evaluated at once
 
 
 class Rater:
@@ -44,6 +42,7 @@ class Rater:
         The problem without limits over the range, its requirements, tables and the user's own limits count.
     asked : Uncertainty
         What scatters.
+    settings : RobustLimits, optional
 
     Raises
     ------
@@ -51,7 +50,8 @@ class Rater:
         When the problem has no such thing.
     """
 
-    def __init__(self, request: Request, asked: Uncertainty) -> None:
+    def __init__(self, request: Request, asked: Uncertainty, settings: RobustLimits = TUNING.robust) -> None:
+        self.settings = settings
         self.instance = Instance(replace(request, parts={}, fix={}), restrict=False)
         self.model, self.asked = self.instance.model, asked
         d = self.model.declaration
@@ -174,8 +174,9 @@ class Rater:
 
     def residuals(self, design: Design, positions: np.ndarray) -> np.ndarray:
         """Return residuals (limits, positions): infinite where not met at all, minus infinite where void."""
+        at_once = self.settings.points
         return np.concatenate(
-            [self._residuals(design, positions[k : k + BATCH]) for k in range(0, len(positions), BATCH)], axis=1
+            [self._residuals(design, positions[k : k + at_once]) for k in range(0, len(positions), at_once)], axis=1
         )
 
     def _residuals(self, design: Design, positions: np.ndarray) -> np.ndarray:
@@ -243,7 +244,7 @@ class Rater:
         """Return, per limit, what intervals prove of it."""
         whole = [(0.0, 1.0)] * len(self.things)
         found = self._enclosed(design, whole, range(len(self.limits)))
-        proofs = [found[j].proof(len(self.things)) for j in range(len(self.limits))]
+        proofs = [found[j].proof(len(self.things), self.settings.steep) for j in range(len(self.limits))]
         unproven = [j for j, proof in enumerate(proofs) if proof.kind == SAMPLED]
         for j in self._bounded(design, whole, unproven):
             proofs[j] = _Proof(BOUNDED)
@@ -253,7 +254,7 @@ class Rater:
         """Return those limits that intervals over parts of the range show to hold in all of them."""
         stack = [(whole, limits)]
         failed: set[int] = set()
-        for _ in range(PARTS):
+        for _ in range(self.settings.parts):
             if not stack:
                 break
             box, rest = stack.pop()
@@ -356,14 +357,14 @@ class _Sides:
         """Return by how much one thing moves the limit."""
         return float(max(abs(self.slope(k)[0]), abs(self.slope(k)[1])) * self._reach[k])
 
-    def proof(self, count: int) -> _Proof:
-        """Return the worst corner where the limit is monotone in everything."""
+    def proof(self, count: int, least: float) -> _Proof:
+        """Return the worst corner where the limit is monotone in everything; slopes below ``least`` have no sign."""
         if not self.smooth:
             return _Proof(SAMPLED)
         corner = []
         for k in range(count):
             low, high = (float(x) for x in self.slope(k))
-            steep = STEEP * max(1.0, abs(low), abs(high)) if math.isfinite(low + high) else STEEP
+            steep = least * max(1.0, abs(low), abs(high)) if math.isfinite(low + high) else least
             if low >= -steep:
                 corner.append(1.0)
             elif high <= steep:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-ROWS = 4096  # boxes at a time; the result is the same for any number
+from synth.tuning import TUNING
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,9 @@ class Bound:
     tolerance: np.ndarray
     corners: np.ndarray
 
-    def gaps(self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    def gaps(
+        self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray, at_once: int = TUNING.arrays.boxes
+    ) -> np.ndarray:
         """Return, per design listed, by how much at most another one improves it in every objective.
 
         Parameters
@@ -36,6 +38,8 @@ class Bound:
             Whether phi is a logarithm.
         sizes : array (objectives,)
             In phi, of what a share is meant where it is none.
+        at_once : int, optional
+            Boxes. The result is the same for any number.
         """
 
         def share(better: np.ndarray) -> np.ndarray:
@@ -44,8 +48,8 @@ class Bound:
             return result
 
         worst = np.full(len(phi), share(self.tolerance).max())
-        for first in range(0, len(self.corners), ROWS):
-            corners = self.corners[first : first + ROWS]
+        for first in range(0, len(self.corners), at_once):
+            corners = self.corners[first : first + at_once]
             improved = share(phi[:, None, :] - corners[None, :, :]).min(axis=2)
             worst = np.maximum(worst, improved.max(axis=1))
         return worst

@@ -18,9 +18,6 @@ from synth.search.archive import Candidate
 from synth.search.formulation import Formulation
 from synth.special import expanded
 
-NOISE = 1e-6
-TIGHT = 1e-5
-
 
 @dataclass(frozen=True)
 class Optima:
@@ -81,13 +78,13 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
     _, follows = _shares(form, combinations)
     spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
-    logs = np.array(form.continuous.rows.log_cuts, dtype=bool)
+    logs, noise = np.array(form.continuous.rows.log_cuts, dtype=bool), form.tuning.tolerances.multiplier_noise
     for k in range(chosen):
         if not form.objectives.log[k]:
             continue
         found = optima(form, combinations, start, phi, chosen, k, sizes)
         counts = np.concatenate(
-            [logs & (np.abs(found.limits) > NOISE), (np.abs(found.requirements) > NOISE) & ~spoken], axis=1
+            [logs & (np.abs(found.limits) > noise), (np.abs(found.requirements) > noise) & ~spoken], axis=1
         )
         numbers = np.concatenate([found.limits, found.requirements], axis=1).tolist()
         labels = [*names, *positions]
@@ -314,7 +311,7 @@ def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
     for j in np.flatnonzero(fixed):
         x = form.constraints[j]
-        tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < TIGHT
+        tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < form.tuning.tolerances.tight
     return tight
 
 

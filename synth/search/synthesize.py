@@ -117,7 +117,7 @@ def find_front(
     if request.robust is None:
         question = pose(request, settings, tuning=tuning)
         return question.within(settings.since(begun).time_limit).answer(progress)
-    rater = Rater(request, request.robust)
+    rater = Rater(request, request.robust, tuning.robust)
     left = settings.since(begun).time_limit
 
     def posed_for(wanted: Uncertainty) -> Question:

@@ -44,8 +44,6 @@ from synth.units import parse_quantity
 if TYPE_CHECKING:
     import pandas as pd
 
-WIDEST = 0.5
-
 
 @dataclass(frozen=True)
 class NearEquals:
@@ -192,8 +190,8 @@ def _chosen(front: ParetoFront, design: Any) -> Design:
 
 def _share(within: Any) -> float:
     share = parse_quantity(within, "-", "within")
-    if not 0 < share <= WIDEST:
-        raise InputError("within", within, f"more than 0 and at most {100 * WIDEST:g} %, for example '2 %'")
+    if not 0 < share <= NEAR.widest:
+        raise InputError("within", within, f"more than 0 and at most {100 * NEAR.widest:g} %, for example '2 %'")
     return share
 
 

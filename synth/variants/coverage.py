@@ -22,7 +22,6 @@ from synth.special import expanded
 from synth.tables.catalogs import Catalogs
 
 FloatArray = NDArray[np.float64]
-PAIRS = 40_000  # evaluated at a time
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class SharedModel:
 
 
 def objective_of_pairs(
-    structure: SharedModel, variants: Sequence[Variant], objective: str, used: frozenset[str]
+    structure: SharedModel, variants: Sequence[Variant], objective: str, used: frozenset[str], pairs: int
 ) -> tuple[FloatArray, list[str]]:
     """Evaluate every variant for every question of a structure.
 
@@ -74,6 +73,8 @@ def objective_of_pairs(
         A quantity.
     used : set of str
         Variables that belong to the use: each question pins them, variants have none.
+    pairs : int
+        That are evaluated at a time.
 
     Returns
     -------
@@ -90,7 +91,7 @@ def objective_of_pairs(
     columns = _VariantColumns(model, structure, variants)
     if not columns.complete.any():
         return result, ["no design of this family fits its options"] * len(structure.asked)
-    step = max(PAIRS // len(variants), 1)
+    step = max(pairs // len(variants), 1)
     for begin in range(0, len(instances), step):
         some = instances[begin : begin + step]
         evaluation = _evaluate(model, some, columns, used)

@@ -23,12 +23,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.variants.variant_settings import VARIANTS, MedianSettings
+
 FloatArray = NDArray[np.float64]
-ROUNDS = 60
-PRICINGS = 600  # of the Lagrangean bound
-BROKEN = 1e-7  # a cut counts as broken from here on, as a share of the scale of the costs
-SWAPS = 200
-ROUNDING = 1e-9  # a gap below it is the arithmetic's
 
 
 @dataclass(frozen=True)
@@ -38,12 +35,13 @@ class Medians:
     columns: tuple[int, ...]
     cost: float
     bound: float
+    rounding: float = VARIANTS.medians.rounding
 
     @property
     def gap(self) -> float:
         """How far from proven the cost is, as a share of it."""
         open_share = (self.cost - self.bound) / self.cost if self.cost > 0 else 0.0
-        return open_share if open_share > ROUNDING else 0.0
+        return open_share if open_share > self.rounding else 0.0
 
 
 class Chooser:
@@ -57,10 +55,13 @@ class Chooser:
         How often each row counts.
     gap : float
         Share of the cost that need not be proven.
+    settings : MedianSettings, optional
     """
 
-    def __init__(self, costs: FloatArray, weights: FloatArray, gap: float) -> None:
-        self.gap = gap
+    def __init__(
+        self, costs: FloatArray, weights: FloatArray, gap: float, settings: MedianSettings = VARIANTS.medians
+    ) -> None:
+        self.gap, self.settings = gap, settings
         self._prices: FloatArray | None = None  # of the last number: a good beginning for the next
         merged, inverse = np.unique(costs, axis=0, return_inverse=True)
         self.weights: FloatArray = np.bincount(inverse.ravel(), weights=weights, minlength=len(merged)).astype(
@@ -146,10 +147,10 @@ class Chooser:
                 binary[found] = 1.0
                 if not self._cut(binary, np.full(self.rows, -np.inf)):
                     break
-        return Medians(tuple(sorted(int(self.kept[k]) for k in chosen)), cost, min(bound, cost))
+        return Medians(tuple(sorted(int(self.kept[k]) for k in chosen)), cost, min(bound, cost), self.settings.rounding)
 
     def _proven(self, cost: float, bound: float) -> bool:
-        return cost - bound <= self.gap * cost + BROKEN * self.scale
+        return cost - bound <= self.gap * cost + self.settings.broken * self.scale
 
     def inner(self, columns: Iterable[int]) -> list[int]:
         """Return columns of the matrix as this object counts them; those that others dominate are left out."""
@@ -183,7 +184,7 @@ class Chooser:
     def _improved(self, chosen: list[int]) -> list[int]:
         """Exchange columns, always the two that save most, as long as that makes the choice cheaper."""
         chosen = list(chosen)
-        for _ in range(SWAPS):
+        for _ in range(self.settings.swaps):
             first, second, of = self._two_best(chosen)
             near = np.minimum(self.costs, first[:, None])
             gain = self.weights @ (near - first[:, None])
@@ -197,7 +198,7 @@ class Chooser:
             totals += gain
             totals[:, chosen] = np.inf
             out, into = np.unravel_index(int(np.argmin(totals)), totals.shape)
-            if not totals[out, into] < -1e-12 * self.scale:
+            if not totals[out, into] < -self.settings.saving * self.scale:
                 break
             chosen[int(out)] = int(into)
         return chosen
@@ -211,39 +212,39 @@ class Chooser:
         if prices is None:
             prices = np.asarray(np.minimum(self._two_best(chosen)[1], self.scale), dtype=np.float64)
         best = _Priced(-np.inf, prices, np.zeros(self.columns), chosen)
-        step, since = 1.5, 0
+        step, since = self.settings.first_step, 0
         tried: set[frozenset[int]] = set()
-        for _ in range(PRICINGS):
+        for _ in range(self.settings.pricings):
             earned = self.weights @ np.minimum(self.costs - prices[:, None], 0.0)
             taken = np.argpartition(earned, number - 1)[:number]
             bound = float(self.weights @ prices + earned[taken].sum())
-            if bound > best.bound + 1e-9 * self.scale:
+            if bound > best.bound + self.settings.rise * self.scale:
                 best, since = _Priced(bound, prices.copy(), earned, best.chosen), 0
-                if frozenset(taken.tolist()) not in tried and len(tried) < SWAPS:
+                if frozenset(taken.tolist()) not in tried and len(tried) < self.settings.swaps:
                     tried.add(frozenset(taken.tolist()))
                     other = self._filled([int(k) for k in taken], number)
-                    if self.cost(other) < 1.02 * cost:
+                    if self.cost(other) < self.settings.promising * cost:
                         other = self._improved(other)
                     if self.cost(other) < cost:
                         best.chosen, cost = other, self.cost(other)
             else:
                 since += 1
-                if since >= 15:
+                if since >= self.settings.patience:
                     step, since, prices = step / 2, 0, best.prices.copy()
-            if self._proven(cost, best.bound) or step < 1e-3 or time.monotonic() > deadline:
+            if self._proven(cost, best.bound) or step < self.settings.least_step or time.monotonic() > deadline:
                 break
             slope = 1.0 - np.count_nonzero(self.costs[:, taken] < prices[:, None], axis=1).astype(float)
             length = float(self.weights @ slope**2)
             if length == 0.0:
                 break  # the choice serves every row once: it is the best one
-            prices = np.maximum(prices + step * (1.001 * cost - bound) / length * slope, 0.0)
+            prices = np.maximum(prices + step * (self.settings.target * cost - bound) / length * slope, 0.0)
         self._prices = best.prices
         return best
 
     def _settle(self, priced: _Priced, number: int, cost: float) -> NDArray[np.int_]:
         """Return the columns that a choice better than the best known may have, by their reduced costs."""
         earned = np.sort(priced.earned)
-        may = priced.bound + priced.earned - earned[number - 1] <= cost + BROKEN * self.scale
+        may = priced.bound + priced.earned - earned[number - 1] <= cost + self.settings.broken * self.scale
         may[np.argsort(priced.earned, kind="stable")[:number]] = True
         may[priced.chosen] = True
         return np.flatnonzero(may)
@@ -257,7 +258,7 @@ class Chooser:
     def _relaxed(self, number: int, free: NDArray[np.int_], deadline: float) -> float:
         """Return the bound of the linear relaxation over some columns."""
         bound = 0.0
-        for _ in range(ROUNDS):
+        for _ in range(self.settings.rounds):
             value, y, theta = self._master(number, free, False, deadline)
             if y is None or theta is None:
                 break
@@ -284,7 +285,7 @@ class Chooser:
         level = np.where(np.isfinite(level), level, 0.0)
         saved = np.maximum(level[:, None] - self.costs, 0.0)
         met = level if y is None else level - saved @ y
-        broken = np.flatnonzero((level > 0) & (theta < met - BROKEN * self.scale))
+        broken = np.flatnonzero((level > 0) & (theta < met - self.settings.broken * self.scale))
         return self._cuts.add(broken, saved[broken], level[broken])
 
     def _master(

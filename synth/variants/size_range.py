@@ -27,6 +27,7 @@ from synth.results import shown_value
 from synth.units import header
 from synth.variants.coverage import ServedQuestion, SharedModel, Variant, objective_of_pairs, pinned_by_all
 from synth.variants.p_median import Chooser, Medians
+from synth.variants.variant_settings import VARIANTS, VariantSettings
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
     from synth.jobs.models import Job
 
 SIZE_RANGE_FORMAT = 1  # of size_range.json
-CANDIDATES = 500
-CURVE_POINTS = 40
-SAMPLE = 400  # questions that candidates are tried on where there are too many of them
 
 
 @dataclass(frozen=True)
@@ -116,7 +114,7 @@ def size_range(
     objective: str | None = None,
     *,
     per_row: Sequence[str] | None = None,
-    candidates: int = CANDIDATES,
+    candidates: int = VARIANTS.candidates,
     gap: float = 1e-3,
     time_limit: float = 60.0,
     database: str | None = None,
@@ -160,7 +158,7 @@ def size_range(
         catalogs = own = None
     with _opened(source, database) as store:
         found = _job(store, source, job)
-        batch = _Batch(store, found, objective, catalogs, own)
+        batch = _Batch(store, found, objective, catalogs, own, VARIANTS)
     batch.prepare(per_row)
     chosen_from = batch.thinned(candidates)
     costs, values = batch.costs(chosen_from)
@@ -170,14 +168,14 @@ def size_range(
         raise InputError("rows", batch.job.source, "at least one row with a feasible design")
     weights = np.array([asked.weight for asked in batch.asked], dtype=float)
     begin = time.monotonic()
-    chooser = Chooser(costs[served], weights[served], gap)
+    chooser = Chooser(costs[served], weights[served], gap, VARIANTS.medians)
     fewest, bound = chooser.fewest(begin + 0.25 * time_limit)
     if variants is not None and variants < len(fewest):
         proven = "" if bound == len(fewest) else f" (not fewer than {bound} in any case)"
         raise InputError("variants", variants, f"at least {len(fewest)}: fewer do not serve all rows{proven}")
     number = len(fewest) if variants is None else variants
     choice = chooser.best(number, begin + 0.6 * time_limit, fewest)
-    points = _curve(chooser, choice, number, fewest, begin + time_limit)
+    points = _curve(chooser, choice, number, fewest, begin + time_limit, VARIANTS.curve_points)
     statistics = {
         "rows_served": int(weights[served].sum()),
         "questions": len(batch.asked),
@@ -225,8 +223,10 @@ def _job(store: Store, source: Any, job: str | None) -> Job:
 class _Batch:
     """The questions and designs of a job, and everything that is said of them."""
 
-    def __init__(self, store: Store, job: Job, objective: str | None, catalogs: Any, own: Any) -> None:
-        self.job = job
+    def __init__(
+        self, store: Store, job: Job, objective: str | None, catalogs: Any, own: Any, settings: VariantSettings
+    ) -> None:
+        self.job, self.settings = job, settings
         content = job.content
         if content["own"] is not None and own is None:
             raise InputError("DIR", job.source, "the BatchResult itself: its problem is not registered")
@@ -331,7 +331,7 @@ class _Batch:
         """Return at most about so many candidates: over all sizes those that serve most, and one for every row."""
         if len(self.candidates) <= most:
             return list(range(len(self.candidates)))
-        step = max(len(self.asked) // SAMPLE, 1)
+        step = max(len(self.asked) // self.settings.sample, 1)
         sample = set(range(0, len(self.asked), step))
         costs, values = self.costs(list(range(len(self.candidates))), sample)
         finite = np.isfinite(costs)
@@ -356,7 +356,11 @@ class _Batch:
             places = [k for k in self.place[name] if only is None or k in only]
             part = SharedModel(structure.problem, structure.catalogs, [self.asked[k] for k in places])
             found, why = objective_of_pairs(
-                part, [self.candidates[chosen[j]] for j in columns], self.objective, self.used[family]
+                part,
+                [self.candidates[chosen[j]] for j in columns],
+                self.objective,
+                self.used[family],
+                self.settings.pairs,
             )
             if places and columns:
                 values[np.ix_(places, columns)] = found
@@ -471,7 +475,9 @@ class _Batch:
         return {**sizes, **variant.choices, **variant.parts}
 
 
-def _curve(chooser: Chooser, choice: Medians, number: int, fewest: list[int], deadline: float) -> list[Medians]:
+def _curve(
+    chooser: Chooser, choice: Medians, number: int, fewest: list[int], deadline: float, points: int
+) -> list[Medians]:
     """Return the best choice for every number of variants, from the fewest until no row has an excess.
 
     Where the time does not reach for every number, numbers further and further apart are taken.
@@ -484,7 +490,7 @@ def _curve(chooser: Chooser, choice: Medians, number: int, fewest: list[int], de
             left = deadline - time.monotonic()
             found[k] = chooser.best(k, time.monotonic() + max(left / 4, 0.5), start, exact=left > 30.0)
         start, before = chooser.inner(found[k].columns), found[k].cost
-        if len(found) > CURVE_POINTS / 2:
+        if len(found) > points / 2:
             step = max(step, k // 8)
         k += step
     if before > 0.0 and chooser.columns >= len(fewest):

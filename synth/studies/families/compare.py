@@ -42,11 +42,11 @@ from synth.studies.families.requirement_sheet import (
     refuse_all,
     sheet_of,
 )
+from synth.study_limits import COMPARING
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING, Tuning
 from synth.units import format_quantity
 
-ROUNDS = 6
 KINDS = ("heuristic", "exhaustive", "global")
 
 
@@ -271,7 +271,7 @@ class _Comparing:
         if request.robust is None:
             front = ask(None).within(limit).answer(shown)
         else:
-            rater = Rater(request, request.robust)
+            rater = Rater(request, request.robust, self.tuning.robust)
             front = robust_front(ask, rater, shown, limit)
         state = next(k.state for k in reversed(kept) if k.state is not None)
         return _Member(one, state, front, list(front.designs), np.zeros(len(self.objectives)), rater)
@@ -299,7 +299,7 @@ class _Comparing:
         able = [m for m in self.members if m.designs or m.front.status is Status.FEASIBLE]
         if len(able) < 2 or len(self.objectives) < 2 or self.interrupted:
             return
-        for _ in range(ROUNDS):
+        for _ in range(COMPARING.rounds):
             quiet = closed = True
             for member in able:
                 listed, _ = self._listed()

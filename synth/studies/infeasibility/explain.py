@@ -32,7 +32,7 @@ from synth.results import Design
 from synth.robust.counterpart import nominal, robust_counterpart
 from synth.search.question import one_best
 from synth.special import expanded
-from synth.studies.infeasibility.relaxation import AMOUNT, COLUMN, LIMIT, MOST, REQUIREMENT, Relaxed
+from synth.studies.infeasibility.relaxation import AMOUNT, COLUMN, LIMIT, REQUIREMENT, Relaxed
 from synth.study_limits import WAYS_OUT, WayOutLimits
 from synth.units import Quantity, format_quantity, from_si, outward, parse_unit
 
@@ -447,7 +447,7 @@ class _Explaining:
         self,
         give: Mapping[tuple[str, str], float],
         kept: Sequence[str] | None = None,
-        most: float = MOST,
+        most: float | None = None,
         pins: Sequence[_Pin] = (),
         free: Collection[str] = (),
         rooms: Mapping[str, float] | None = None,
@@ -462,13 +462,15 @@ class _Explaining:
         ends = [end for pin in pins for end in pin.ends(self.instance.model)]
         give = {**give, **{(LIMIT, x.name): sign for x, sign in ends if x.bound}}
         limits = [*(self.limits if kept is None else kept), *(x.name for x, _ in ends)]
-        relaxed = Relaxed(self.instance, [*self.own, *(x for x, _ in ends)], give, limits, rooms, free)
+        relaxed = Relaxed(
+            self.instance, [*self.own, *(x for x, _ in ends)], give, limits, rooms, free, self.ways.farthest
+        )
         loose = {*free, *(pin.name for pin in pins)}
         fix: dict[str, Any] = {name: value for name, value in self.fix.items() if name not in loose}
         bounds: dict[str, Any] = {name: value for name, value in self.bounded.items() if name not in loose}
         # Where nothing gives way any design will do.
         fix |= {} if give else {AMOUNT: 0.0}
-        bounds |= {AMOUNT: f"<= {most!r}"} if most < MOST else {}
+        bounds |= {AMOUNT: f"<= {most!r}"} if most is not None and most < self.ways.farthest else {}
         parts = {name: rule for name, rule in self.parts.items() if name not in loose}
         try:
             instance = Instance(
@@ -601,7 +603,7 @@ class _Explaining:
         """Return what one thing alone must become; a sentence where that is not settled."""
         if kind == CHOICE:
             return self._chosen(name)
-        most = self._room(name, sign) if kind == REQUIREMENT else MOST
+        most = self._room(name, sign) if kind == REQUIREMENT else self.ways.farthest
         if most <= self.ways.nothing:
             return None
         pins = [self.pins[name]] if kind == PIN else []
@@ -628,8 +630,8 @@ class _Explaining:
         r, value = self.instance.model.declaration.requirements[name], self.instance.values.requirements[name]
         end = r.upper if sign > 0 else r.lower
         if not (end > 0 and math.isfinite(end)):
-            return MOST
-        return min(MOST, abs(math.log(end / value))) * (1 - 1e-12)
+            return self.ways.farthest
+        return min(self.ways.farthest, abs(math.log(end / value))) * (1 - 1e-12)
 
     def _way(self, kind: str, name: str, sign: float, factor: float, found: _LeastAmount) -> Relaxation:
         assert found.design is not None

@@ -23,10 +23,10 @@ from synth.model.problem import DesignProblem
 from synth.model.slot_comparison import SlotComparison
 from synth.question.instance import Instance
 from synth.special import expanded
+from synth.study_limits import WAYS_OUT
 from synth.tables.catalogs import Catalogs
 
 AMOUNT = "relaxation"
-MOST = 3.0  # of the amount: a factor of twenty
 REQUIREMENT, LIMIT, COLUMN = "requirement", "limit", "column"
 
 
@@ -47,6 +47,8 @@ class Relaxed(DesignProblem):
         Requirement -> the largest amount that its declared range allows, where others may move on.
     free : collection of str
         Slots whose rules do not count.
+    farthest : float, optional
+        The largest amount.
     """
 
     def __init__(
@@ -57,12 +59,13 @@ class Relaxed(DesignProblem):
         kept: Collection[str],
         rooms: Mapping[str, float] | None = None,
         free: Collection[str] = (),
+        farthest: float = WAYS_OUT.farthest,
     ) -> None:
         self.name = f"{instance.problem.name} (relaxed)"
         self.title = instance.problem.title
         super().__init__(**instance.problem.options)
         self._instance, self._own, self._give, self._kept, self._rooms = instance, own, give, kept, rooms or {}
-        self._free = free
+        self._free, self._farthest = free, farthest
         self._model = self._traced()
 
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
@@ -73,7 +76,7 @@ class Relaxed(DesignProblem):
         original = self._instance.model
         source = original.declaration
         amount = VariableRecord(
-            AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, MOST, np.empty(0), ca.SX.sym(AMOUNT)
+            AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, self._farthest, np.empty(0), ca.SX.sym(AMOUNT)
         )
         before, after = self._moved_inputs(amount.sx)
         negative = {x.name for x in self._own if x.bound < 0}
@@ -135,8 +138,8 @@ class Relaxed(DesignProblem):
                 value = ca.substitute([expanded(r.default, calls)], before, after)[0]
             if sign or value is not r.sx:
                 before.append(r.sx)
-                room = self._rooms.get(r.name, MOST)
-                step = ca.fmin(amount, room) if room < MOST else amount
+                room = self._rooms.get(r.name, self._farthest)
+                step = ca.fmin(amount, room) if room < self._farthest else amount
                 after.append(value * np.exp(sign * step) if sign else value)
         for part in d.slots.values():
             for key, column in part.columns.items():

@@ -13,6 +13,7 @@ from synth.errors import InputError
 from synth.files import csv_text, read_json, write_atomically
 from synth.output_folder import PRICES, loses_nothing, save_files, save_result, settle
 from synth.results import Frame
+from synth.study_limits import PRICES as LIMITS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +22,6 @@ PRICES_FORMAT = 1  # of the record of prices found
 RECORD = "prices.json"
 CONFIRMED, FIXED, CHANGE, NOTHING = "confirmed", "parts fixed", "parts change", "no influence"
 WITHHELD = "withheld"
-ALIKE = 5e-3  # prices that differ by less are told as one
 
 
 @dataclass(frozen=True)
@@ -223,7 +223,7 @@ def told(
     less = f"lowering it by {other}" if kind == "limit" else f"{other} less"
     if up is None and down is None:
         return f"what {more} costs in {objective} is withheld"
-    alike = up is not None and down is not None and abs(up - down) <= ALIKE * max(abs(up), abs(down))
+    alike = up is not None and down is not None and abs(up - down) <= LIMITS.alike * max(abs(up), abs(down))
     first = f"{more}: withheld" if up is None else f"{more} {_effect(up, steps[0], objective, sense)}{_note(notes[0])}"
     if alike and not any(notes) and steps[0] == steps[1]:
         return first

@@ -29,7 +29,7 @@ from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront
 from synth.results.provenance import hash_of
 from synth.search.formulation import Formulation
-from synth.search.sensitivity import NOISE, Optima, optima
+from synth.search.sensitivity import Optima, optima
 from synth.studies.prices.price_list import (
     CHANGE,
     CONFIRMED,
@@ -213,7 +213,9 @@ class _Case:
         self.base = float(best.phi[0])
         self.others = others
         # phi times this is the share of the objective; nothing where the objective is 0.
-        self.unit = 1.0 if form.objectives.log[k] else 1.0 / abs(self.base) if abs(self.base) > NOISE else math.nan
+        self.noise = form.tuning.tolerances.multiplier_noise
+        size = abs(self.base)
+        self.unit = 1.0 if form.objectives.log[k] else 1.0 / size if size > self.noise else math.nan
         self.compared = ""
         self.already: dict[int, float] = {}
 
@@ -338,7 +340,7 @@ class _Case:
             slopes = self.best.limits if move.kind == "limit" else self.best.requirements
             slope = float(slopes[0, move.position])
         found = self.goal.sign * slope * self.unit
-        return found if math.isnan(found) or abs(found) > NOISE else 0.0
+        return found if math.isnan(found) or abs(found) > self.noise else 0.0
 
     def _row(
         self, number: int, own: tuple[Solutions, np.ndarray, np.ndarray], better: list[tuple[float, int] | None]

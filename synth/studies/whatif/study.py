@@ -18,16 +18,12 @@ from synth.results.rating_tables import COLUMNS, rating_row
 from synth.robust.robust_front import NOTHING_STANDS
 from synth.studies.study_store import STEPS, StudyStore
 from synth.studies.whatif.vary import Value, Varied
+from synth.study_limits import STUDY_TEXTS
 from synth.units import format_quantity, from_si, header
 
 if TYPE_CHECKING:
     import pandas as pd
 
-BINDING = 0.999  # a limit used more than this binds
-MOST_LINES = 7  # a drawing with more is not read
-MOST_LABELS = 8
-MOST_TICKS = 20
-MOST_MISSED = 2  # limits that a line has room for
 NO_DESIGN = "no design"
 NOT_REACHED = "not reached"
 
@@ -63,10 +59,10 @@ class StudyStep:
     def brief_reason(self) -> str:
         """Return the reason with the limits alone that are missed by most."""
         conflicts = sorted(self._conflicts(), key=lambda c: -c["missed_by"])
-        more = len(conflicts) - MOST_MISSED
+        more = len(conflicts) - STUDY_TEXTS.missed
         if more <= 0:
             return self.reason
-        missed = ", ".join(_missed(c) for c in conflicts[:MOST_MISSED])
+        missed = ", ".join(_missed(c) for c in conflicts[: STUDY_TEXTS.missed])
         return f"the nearest design misses {missed} and {more} more"
 
     def _conflicts(self) -> Sequence[Mapping[str, Any]]:
@@ -282,7 +278,7 @@ class Study:
         x = self._headers()[k] if numeric else header(varied.label, "-")
         single = len(self.varied) == 1
         groups = list(dict.fromkeys(_without(s.values, k) for s in self._with_designs())) or [()]
-        drawn = _spread(groups, MOST_LINES)
+        drawn = _spread(groups, STUDY_TEXTS.lines)
         # Words stand in the order in which they were given.
         places_of = {v: float(v) if isinstance(v, float) else n for n, v in enumerate(varied.values, start=1)}
         along = [float(places_of[s.values[k]]) for s in self.steps]
@@ -302,7 +298,7 @@ class Study:
             panels.append({"label": header(name, unit), "columns": columns, "points": True, "apart": not numeric})
         frame = pd.DataFrame(data)
         marks: list[dict[str, Any]] = [{"x": b.value} for b in self.breaks] if numeric else []
-        if len(marks) <= MOST_LABELS:
+        if len(marks) <= STUDY_TEXTS.labels:
             marks = [{"x": b.value, "label": f"{b.objective.replace('_', ' ')}: {_brief(b)}"} for b in self.breaks]
         spans = self._without_design(along)
         legend = _left_out(len(drawn), len(groups), "lines") + self._nowhere(k, groups)
@@ -312,7 +308,7 @@ class Study:
             title=f"{self._title()} over {varied.label.replace('_', ' ')}",
             x=x,
             panels=panels,
-            ticks=_spread(ticks, MOST_TICKS),
+            ticks=_spread(ticks, STUDY_TEXTS.ticks),
             marks=marks,
             spans=spans,
             source=self._footer(*legend),
@@ -335,7 +331,7 @@ class Study:
                 spans[-1]["to"] = _edge(places, k, 1, ends)
             else:
                 spans.append({"from": _edge(places, k, -1, ends), "to": _edge(places, k, 1, ends), "shaded": True})
-        if len(spans) <= MOST_LABELS:
+        if len(spans) <= STUDY_TEXTS.labels:
             spans = [{**span, "label": NO_DESIGN} for span in spans]
         return spans
 
@@ -350,7 +346,7 @@ class Study:
         (first, unit), (second, other) = objectives[:2]
         x = header(first, unit)
         data: dict[str, list[float]] = {x: []}
-        shown = _spread(steps, MOST_LINES)
+        shown = _spread(steps, STUDY_TEXTS.lines)
         labels = [
             header(", ".join(v.shown(w) for v, w in zip(self.varied, s.values, strict=True)), other) for s in shown
         ]
@@ -385,8 +381,8 @@ class Study:
         empty = [g for g in dict.fromkeys(_without(s.values, k) for s in self.steps) if g not in groups]
         if not empty or len(self.varied) == 1:
             return []
-        shown = "; ".join(self._words(k, g) for g in empty[:MOST_MISSED])
-        more = f" and {len(empty) - MOST_MISSED} more" if len(empty) > MOST_MISSED else ""
+        shown = "; ".join(self._words(k, g) for g in empty[: STUDY_TEXTS.missed])
+        more = f" and {len(empty) - STUDY_TEXTS.missed} more" if len(empty) > STUDY_TEXTS.missed else ""
         return [f"{NO_DESIGN}: {shown}{more}"]
 
     def _with_designs(self) -> list[StudyStep]:
@@ -443,7 +439,7 @@ def binding(design: Design) -> list[str]:
     return [
         name
         for name, used in design.utilisation.items()
-        if used is not None and used >= BINDING and design.frame.limit_senses[name] != "equal"
+        if used is not None and used >= STUDY_TEXTS.binding and design.frame.limit_senses[name] != "equal"
     ]
 
 
