@@ -569,7 +569,10 @@ def _principal_lambert(argument: Quantity) -> Quantity:
 
 
 def _scaled_limit(start: Quantity) -> Quantity:
-    """Root y > 0 of start (1 - exp(-y)) = y; 0 where start <= 1, because then there is none."""
+    """Root y > 0 of start (1 - exp(-y)) = y; 0 where start <= 1, because then there is none. Refuses symbols."""
+    if not isinstance(start, (float, int, np.ndarray, np.generic)):
+        # NumPy takes a symbol for not-a-number, which is above nothing: it would be told that there is no root.
+        raise TypeError(f"a limit of surfaces is for numbers, not for {type(start).__name__}")
     start = np.asarray(start, dtype=float)
     return np.where(start > 1, start + _principal_lambert(-start * np.exp(-start)), 0.0)
 

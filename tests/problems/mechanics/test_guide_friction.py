@@ -2,6 +2,7 @@
 
 import math
 
+import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -12,6 +13,7 @@ from problems.mechanics import guide_friction as gf
 from problems.mechanics import ring
 from synth.errors import InputError
 
+ca.GlobalOptions.setNumpyMode(-1)  # as the engine does
 QUICK = settings(deadline=None, derandomize=True, max_examples=80)
 S_SERIES = ("geometric", "exponential_form", "lipka", "exponential_K")
 
@@ -163,6 +165,20 @@ def test_plate_limits_are_where_the_effectiveness_meets_the_threshold(guide, thr
 def test_no_plate_is_allowed_where_no_root_exists():
     # ln(1.5)/(0.9 x 0.5) < 1
     assert float(gf.surface_limit_geometric(0.5, 0.9)) == 0.0
+
+
+@pytest.mark.parametrize(
+    "limit",
+    [
+        lambda symbol: gf.surface_limit_geometric(symbol),
+        lambda symbol: gf.surface_limit_lipka(0.1, symbol),
+        lambda symbol: gf.surface_limit_exponential(0.1, symbol),
+    ],
+)
+def test_limits_of_surfaces_refuse_symbols(limit):
+    """NumPy reads a symbol as not-a-number, of which the formula says that there is no limit."""
+    with pytest.raises(TypeError, match="for numbers"):
+        limit(ca.SX.sym("S"))
 
 
 def test_fourteen_and_fifteen_differ_by_eleven_per_cent_and_the_appendix_by_sqrt_two():
