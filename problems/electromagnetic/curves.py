@@ -10,7 +10,7 @@ import numpy as np
 
 from problems.electromagnetic import formulas as pot_magnet
 from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS
+from problems.magnet.coil_curves import POINTS, CoilDrawings
 from problems.sources import S4
 
 if TYPE_CHECKING:
@@ -58,15 +58,8 @@ def built(spec: Mapping[str, Any], design: Any) -> Built:
     return Built(circuit, spec["return_spring_force"])
 
 
-def _torques(spec: Mapping[str, Any], design: Any) -> list[dict[str, Any]]:
-    return [
-        {"panel": 0, "y": design.values["required_torque"], "label": "sizing torque"},
-        {"panel": 0, "y": spec["load_torque"], "label": "load_torque"},
-    ]
-
-
-def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Torque, forces, flux densities and temperature rise over the current, with their limits.
+def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
+    """Return what is drawn of the coil of a design; torque is in proportion to the force on the pack.
 
     Parameters
     ----------
@@ -76,81 +69,61 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
         Requirements in SI.
     design : Design
         The design.
+    """
+    body, value = built(spec, design), design.values
+    unit = value["torque"] / value["actuation_force"]
+    return CoilDrawings(
+        problem=problem,
+        design=design,
+        heat=coil_curves.warmth(spec, design, "insulation"),
+        torque_of=lambda ampere_turns: unit * body.force(body.flux_density(ampere_turns)),
+        torques=[
+            {"panel": 0, "y": value["required_torque"], "label": "sizing torque"},
+            {"panel": 0, "y": spec["load_torque"], "label": "load_torque"},
+        ],
+        source=SOURCE,
+    )
+
+
+def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Torque, forces, flux densities and temperature rise over the current, with their limits.
+
+    Parameters
+    ----------
+    coil : CoilDrawings
+        Of the design.
+    spec : mapping
+        Requirements in SI.
 
     Returns
     -------
     pandas.DataFrame
         From no current to half as much again as the design has.
     """
-    import pandas as pd
-
-    body, warm, value = built(spec, design), coil_curves.warmth(spec, design, "insulation"), design.values
-    current = np.linspace(0.0, 1.5, POINTS) * value["current"]
-    turned = current * value["turns"]
+    body, value = built(spec, coil.design), coil.design.values
+    turned = coil.currents * value["turns"]
     flux_density = body.flux_density(turned)
     force = body.force(flux_density)
     share = turned / value["ampere_turns"]
-    frame = pd.DataFrame(
+    needed = spec["pull_in_margin"] * coil.design.steps["springs_and_drag"]
+    overload = spec["overload_torque"]
+    return coil.torque_over_current(
         {
-            "current [A]": current,
             "torque [N*m]": force / value["actuation_force"] * value["torque"],
             "on the pack [N]": force,
             "pull on the released armature [N]": share**2 * value["pull_in_force"],
             "poles [T]": body.circuit.pole(flux_density),
             "yoke [T]": body.circuit.yoke(flux_density),
-            "temperature rise [K]": warm.rise(current),
-        }
-    )
-    needed = spec["pull_in_margin"] * design.steps["springs_and_drag"]
-    lines = _torques(spec, design)
-    if spec["overload_torque"] is not None:
-        lines.append({"panel": 0, "y": spec["overload_torque"], "label": "overload_torque"})
-    frame.attrs = {
-        "title": f"{problem.title}: torque over current",
-        "panels": [
-            {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
+        },
+        [
             {"label": "force [N]", "columns": ["on the pack [N]", "pull on the released armature [N]"]},
             {"label": "flux density [T]", "columns": ["poles [T]", "yoke [T]"]},
-            {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
         ],
-        "marks": coil_curves.current_marks(design),
-        "lines": [
-            *lines,
+        [
+            *([] if overload is None else [{"panel": 0, "y": overload, "label": "overload_torque"}]),
             {"panel": 1, "y": needed, "label": "pull_in"},
             {"panel": 2, "y": spec["iron_flux_limit"], "label": "iron_flux_limit"},
-            {"panel": 3, "y": warm.limit - warm.ambient, "label": "insulation"},
         ],
-        "source": SOURCE,
-    }
-    return frame
-
-
-def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Torque and current over the temperature of the coil; see :mod:`problems.magnet.coil_curves`.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    body, value = built(spec, design), design.values
-    unit = value["torque"] / value["actuation_force"]
-    return coil_curves.torque_over_temperature(
-        problem,
-        design,
-        coil_curves.warmth(spec, design, "insulation"),
-        lambda ampere_turns: unit * body.force(body.flux_density(ampere_turns)),
-        _torques(spec, design),
-        SOURCE,
     )
 
 
@@ -200,23 +173,3 @@ def force_over_gap(problem: DesignProblem, spec: Mapping[str, Any], design: Any)
         "source": SOURCE,
     }
     return frame
-
-
-def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Heat made and heat given off by the magnet over its temperature; see :mod:`problems.magnet.coil_curves`.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    return coil_curves.heat_balance(problem, design, coil_curves.warmth(spec, design, "insulation"), SOURCE)

@@ -91,10 +91,11 @@ class ElectromagneticClutch(DesignProblem):
         else:
             frames["torque_over_plates"] = pack_curves.torque_over_plates(self, spec, design)
         if design is not None:
-            frames["torque_over_current"] = magnet_curves.torque_over_current(self, spec, design)
-            frames["torque_over_temperature"] = magnet_curves.torque_over_temperature(self, spec, design)
+            coil = magnet_curves.drawings(self, spec, design)
+            frames["torque_over_current"] = magnet_curves.torque_over_current(coil, spec)
+            frames["torque_over_temperature"] = coil.torque_over_temperature()
             frames["force_over_gap"] = magnet_curves.force_over_gap(self, spec, design)
-            frames["heat_balance"] = magnet_curves.heat_balance(self, spec, design)
+            frames["heat_balance"] = coil.heat_balance()
         return frames
 
     def _declare_multi_plate(self, d: Declaration) -> None:

@@ -98,21 +98,9 @@ def flux_densities(ampere_turns: Any, excitation: Callable[[Any], Any], highest:
     return np.array([magnetics.flux_density_at(x, below_saturation, highest) for x in given])
 
 
-def current_marks(design: Any) -> list[dict[str, Any]]:
-    """Return the current of a design and the highest that its wire may carry [A] as marks."""
-    highest = design.steps["wire_current_limit"]
-    return [{"x": design.values["current"], "label": "design"}, {"x": highest, "label": "current_density_limit"}]
-
-
-def torque_over_temperature(
-    problem: DesignProblem,
-    design: Any,
-    heat: Warmth,
-    torque_of: Callable[[np.ndarray], Any],
-    lines: Sequence[dict[str, Any]],
-    source: str,
-) -> pd.DataFrame:
-    """Torque and current over the temperature of the coil, fed with constant voltage or with constant current.
+@dataclass(frozen=True, kw_only=True)
+class CoilDrawings:
+    """The drawings of one design with a coil, and what they share.
 
     Parameters
     ----------
@@ -124,78 +112,133 @@ def torque_over_temperature(
         What heats and cools it.
     torque_of : callable
         Torque [N m] of ampere-turns [A].
-    lines : list of dict
-        Torques to compare with.
+    torques : list of dict
+        Torques to compare with, as lines of the first panel.
     source : str
-        Shown below the drawing.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
+        Shown below the drawings.
     """
-    import pandas as pd
 
-    value, temperature = design.values, heat.temperatures
-    hot = heat.resistance * magnetics.resistance_ratio(temperature)
-    current = (value["coil_voltage"] - heat.brush_drop) / hot
-    frame = pd.DataFrame(
-        {
-            "coil temperature [degC]": temperature - ZERO_CELSIUS,
-            "constant voltage [N*m]": torque_of(current * value["turns"]),
-            "constant current [N*m]": np.full_like(temperature, value["torque"]),
-            "constant voltage [A]": current,
+    problem: DesignProblem
+    design: Any
+    heat: Warmth
+    torque_of: Callable[[np.ndarray], Any]
+    torques: Sequence[dict[str, Any]]
+    source: str
+
+    @property
+    def currents(self) -> np.ndarray:
+        """Currents to draw, from none to half as much again as the design has [A]."""
+        result: np.ndarray = np.linspace(0.0, 1.5, POINTS) * self.design.values["current"]
+        return result
+
+    def torque_over_current(
+        self,
+        columns: Mapping[str, Any],
+        panels: Sequence[Mapping[str, Any]],
+        lines: Sequence[dict[str, Any]],
+    ) -> pd.DataFrame:
+        """Torque, what the family adds, and temperature rise over the current, with their limits.
+
+        Parameters
+        ----------
+        columns : mapping
+            Heading -> values at :attr:`currents`, the torque [N*m] first.
+        panels : list of mapping
+            Of the other columns, between the first (torque) and the last (temperature rise).
+        lines : list of dict
+            Limits of these panels.
+
+        Returns
+        -------
+        pandas.DataFrame
+            From no current to half as much again as the design has.
+        """
+        import pandas as pd
+
+        value, current, heat = self.design.values, self.currents, self.heat
+        frame = pd.DataFrame(
+            {
+                "current [A]": current,
+                **columns,
+                "temperature rise [K]": heat.rise(current),
+            }
+        )
+        highest = self.design.steps["wire_current_limit"]
+        frame.attrs = {
+            "title": f"{self.problem.title}: torque over current",
+            "panels": [
+                {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
+                *panels,
+                {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
+            ],
+            "marks": [{"x": value["current"], "label": "design"}, {"x": highest, "label": "current_density_limit"}],
+            "lines": [
+                *self.torques,
+                *lines,
+                {"panel": len(panels) + 1, "y": heat.limit - heat.ambient, "label": heat.limited_by},
+            ],
+            "source": self.source,
         }
-    )
-    frame.attrs = {
-        "title": f"{problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
-        "panels": [
-            {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
-            {"label": "current [A]", "columns": ["constant voltage [A]"]},
-        ],
-        "marks": heat.marks(design.steps["coil_temperature"]),
-        "lines": list(lines),
-        "source": source,
-    }
-    return frame
+        return frame
 
+    def torque_over_temperature(self) -> pd.DataFrame:
+        """Torque and current over the temperature of the coil, fed with constant voltage or with constant current.
 
-def heat_balance(problem: DesignProblem, design: Any, heat: Warmth, source: str) -> pd.DataFrame:
-    """Heat made and heat given off over the temperature of the body, under constant current.
+        Returns
+        -------
+        pandas.DataFrame
+            From ambient temperature to a little above the limit.
+        """
+        import pandas as pd
 
-    Where the lines cross the clutch stays; where they never cross it runs away.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    design : Design
-        The design.
-    heat : Warmth
-        What heats and cools it.
-    source : str
-        Shown below the drawing.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    import pandas as pd
-
-    value, temperature = design.values, heat.temperatures
-    other = heat.other_heat + heat.brush_drop * value["current"]
-    frame = pd.DataFrame(
-        {
-            "temperature [degC]": temperature - ZERO_CELSIUS,
-            "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
-            "heat given off [W]": heat.conductance * (temperature - heat.ambient),
+        value, heat, temperature = self.design.values, self.heat, self.heat.temperatures
+        hot = heat.resistance * magnetics.resistance_ratio(temperature)
+        current = (value["coil_voltage"] - heat.brush_drop) / hot
+        frame = pd.DataFrame(
+            {
+                "coil temperature [degC]": temperature - ZERO_CELSIUS,
+                "constant voltage [N*m]": self.torque_of(current * value["turns"]),
+                "constant current [N*m]": np.full_like(temperature, value["torque"]),
+                "constant voltage [A]": current,
+            }
+        )
+        frame.attrs = {
+            "title": f"{self.problem.title}: torque over temperature at {value['coil_voltage']:.3g} V",
+            "panels": [
+                {"label": "torque [N*m]", "columns": ["constant voltage [N*m]", "constant current [N*m]"]},
+                {"label": "current [A]", "columns": ["constant voltage [A]"]},
+            ],
+            "marks": heat.marks(self.design.steps["coil_temperature"]),
+            "lines": list(self.torques),
+            "source": self.source,
         }
-    )
-    frame.attrs = {
-        "title": f"{problem.title}: steady heat at {value['current']:.3g} A",
-        "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
-        "marks": heat.marks(design.steps["coil_temperature"]),
-        "source": source,
-    }
-    return frame
+        return frame
+
+    def heat_balance(self) -> pd.DataFrame:
+        """Heat made and heat given off over the temperature of the body, under constant current.
+
+        Where the lines cross the clutch stays; where they never cross it runs away.
+
+        Returns
+        -------
+        pandas.DataFrame
+            From ambient temperature to a little above the limit.
+        """
+        import pandas as pd
+
+        value, heat, temperature = self.design.values, self.heat, self.heat.temperatures
+        other = heat.other_heat + heat.brush_drop * value["current"]
+        frame = pd.DataFrame(
+            {
+                "temperature [degC]": temperature - ZERO_CELSIUS,
+                "heat made [W]": heat.copper_loss(value["current"], temperature) + other,
+                "heat given off [W]": heat.conductance * (temperature - heat.ambient),
+            }
+        )
+        frame.attrs = {
+            "title": f"{self.problem.title}: steady heat at {value['current']:.3g} A",
+            "panels": [{"label": "heat [W]", "columns": list(frame.columns[1:])}],
+            "marks": heat.marks(self.design.steps["coil_temperature"]),
+            "source": self.source,
+        }
+        return frame

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems.magnet import coil_curves
-from problems.magnet.coil_curves import POINTS
+from problems.magnet.coil_curves import POINTS, CoilDrawings
 from problems.magnetic_powder import formulas as powder
 from problems.sources import S4
 
@@ -103,8 +103,8 @@ def stress_over_radius(problem: DesignProblem, spec: Mapping[str, Any]) -> pd.Da
     return frame
 
 
-def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Torque, flux densities and temperature rise over the current, with their limits.
+def drawings(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> CoilDrawings:
+    """Return what is drawn of the coil of a design.
 
     Parameters
     ----------
@@ -114,97 +114,49 @@ def torque_over_current(problem: DesignProblem, spec: Mapping[str, Any], design:
         Requirements in SI.
     design : Design
         The design.
+    """
+    body, needed = built(spec, design), spec["required_torque"]
+    return CoilDrawings(
+        problem=problem,
+        design=design,
+        heat=coil_curves.warmth(spec, design, "insulation and powder"),
+        torque_of=lambda ampere_turns: body.torque(body.flux_density(ampere_turns)),
+        torques=[
+            {"panel": 0, "y": needed, "label": "required_torque"},
+            {"panel": 0, "y": spec["torque_reserve"] * needed, "label": "with torque_reserve"},
+        ],
+        source=SOURCE,
+    )
+
+
+def torque_over_current(coil: CoilDrawings, spec: Mapping[str, Any]) -> pd.DataFrame:
+    """Torque, flux densities and temperature rise over the current, with their limits.
+
+    Parameters
+    ----------
+    coil : CoilDrawings
+        Of the design.
+    spec : mapping
+        Requirements in SI.
 
     Returns
     -------
     pandas.DataFrame
         From no current to half as much again as the design has.
     """
-    import pandas as pd
-
-    body, heat, value = built(spec, design), coil_curves.warmth(spec, design, "insulation and powder"), design.values
-    current = np.linspace(0.0, 1.5, POINTS) * value["current"]
-    flux_density = body.flux_density(current * value["turns"])
+    body = built(spec, coil.design)
+    flux_density = body.flux_density(coil.currents * coil.design.values["turns"])
     iron = body.circuit.iron(flux_density)
-    frame = pd.DataFrame(
+    return coil.torque_over_current(
         {
-            "current [A]": current,
             "torque [N*m]": body.torque(flux_density),
             "powder [T]": flux_density,
             "yoke [T]": iron.yoke,
             "rotor [T]": iron.rotor,
-            "temperature rise [K]": heat.rise(current),
-        }
-    )
-    frame.attrs = {
-        "title": f"{problem.title}: torque over current",
-        "panels": [
-            {"label": "torque [N*m]", "columns": ["torque [N*m]"]},
-            {"label": "flux density [T]", "columns": ["powder [T]", "yoke [T]", "rotor [T]"]},
-            {"label": "temperature rise [K]", "columns": ["temperature rise [K]"]},
-        ],
-        "marks": coil_curves.current_marks(design),
-        "lines": [
-            *_torques(spec),
+        },
+        [{"label": "flux density [T]", "columns": ["powder [T]", "yoke [T]", "rotor [T]"]}],
+        [
             {"panel": 1, "y": spec["powder_flux_limit"], "label": "powder_flux_limit"},
             {"panel": 1, "y": spec["iron_flux_limit"], "label": "iron_flux_limit"},
-            {"panel": 2, "y": heat.limit - heat.ambient, "label": "insulation and powder"},
         ],
-        "source": SOURCE,
-    }
-    return frame
-
-
-def torque_over_temperature(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Torque and current over the temperature of the coil; see :mod:`problems.magnet.coil_curves`.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    body = built(spec, design)
-    return coil_curves.torque_over_temperature(
-        problem,
-        design,
-        coil_curves.warmth(spec, design, "insulation and powder"),
-        lambda ampere_turns: body.torque(body.flux_density(ampere_turns)),
-        _torques(spec),
-        SOURCE,
     )
-
-
-def heat_balance(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
-    """Heat made and heat given off over the temperature; see :mod:`problems.magnet.coil_curves`.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    pandas.DataFrame
-        From ambient temperature to a little above the limit.
-    """
-    return coil_curves.heat_balance(problem, design, coil_curves.warmth(spec, design, "insulation and powder"), SOURCE)
-
-
-def _torques(spec: Mapping[str, Any]) -> list[dict[str, Any]]:
-    return [
-        {"panel": 0, "y": spec["required_torque"], "label": "required_torque"},
-        {"panel": 0, "y": spec["torque_reserve"] * spec["required_torque"], "label": "with torque_reserve"},
-    ]

@@ -301,9 +301,10 @@ class MagneticPowderClutch(DesignProblem):
         """
         frames = {"stress_over_radius": powder_curves.stress_over_radius(self, spec)}
         if design is not None:
-            frames["torque_over_current"] = powder_curves.torque_over_current(self, spec, design)
-            frames["torque_over_temperature"] = powder_curves.torque_over_temperature(self, spec, design)
-            frames["heat_balance"] = powder_curves.heat_balance(self, spec, design)
+            coil = powder_curves.drawings(self, spec, design)
+            frames["torque_over_current"] = powder_curves.torque_over_current(coil, spec)
+            frames["torque_over_temperature"] = coil.torque_over_temperature()
+            frames["heat_balance"] = coil.heat_balance()
         return frames
 
 
