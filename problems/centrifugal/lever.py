@@ -5,27 +5,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
-from problems.centrifugal import curves as centrifugal_curves
-from problems.centrifugal import lever_curves as centrifugal_lever_curves
 from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal import state as states
-from problems.centrifugal.levers import RECONSTRUCTED
+from problems.centrifugal.lever_clutch import LeverClutch
+from problems.centrifugal.lever_curves import ROD
+from problems.centrifugal.levers import LOADED, RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4, S4
-from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement, Variable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import pandas as pd
+    pass
 
 
 # Ranges of the arms [mm]; refusals reason with them.
 SPRING_ARM, ROD_ARM = (10.0, 200.0), (3.0, 150.0)
 PLACES = f"{S4}, what if rod and spring change places; {NOT_IN_S4}"
 # Guards: the rod inside the spring, and springs under load at the stop.
-GUARDS = ("rod_inside_spring", "clamp_springs_loaded")
+GUARDS = ("rod_inside_spring", LOADED)
 
 
 class Rods(Block):
@@ -67,7 +63,7 @@ class Rods(Block):
         return self.spring_arm - self.rod_arm
 
 
-class CentrifugalLever(DesignProblem):
+class CentrifugalLever(LeverClutch):
     """Centrifugal clutch with levers, clamp springs and headed rods.
 
     A flyweight swings its lever outwards. The rod carries the plate along until it touches; then the rod goes slack and
@@ -76,9 +72,7 @@ class CentrifugalLever(DesignProblem):
 
     name = "centrifugal_lever"
     title = "Centrifugal clutch, levers with headed rods"
-    sources = blocks.SOURCES
-    understands = (*blocks.COMMON, "lining_wear", "contact_travel")
-    operating_point = states.OPERATING_POINT
+    kind = ROD
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -135,41 +129,6 @@ class CentrifugalLever(DesignProblem):
         )
         blocks.declare_objectives(d)
 
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
-        """Return clamp force over lining; of a design what happens over the speed, with new and with worn linings.
-
-        Parameters
-        ----------
-        spec : mapping
-            Requirements in SI by name, None where an optional one is not given.
-        design : Design, optional
-            The design to draw.
-
-        Returns
-        -------
-        dict of str to DataFrame
-            ``clamp_force_over_lining``, or of a design ``over_speed`` and ``over_speed_worn``.
-        """
-        if design is None:
-            return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
-        return centrifugal_lever_curves.rod_lever_curves(self, spec, design)
-
-    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
-        """Return where the flyweights stand at a speed, what presses and what can be carried.
-
-        Parameters
-        ----------
-        spec : mapping
-            Requirements in SI by name, None where an optional one is not given.
-        design : Design
-            The design.
-        point : mapping
-            ``speed`` of the driving side [rad/s].
-        """
-        lever = centrifugal_lever_curves.rod_lever(spec, design)
-        regimes, own = centrifugal_lever_curves.ROD_REGIMES, centrifugal_lever_curves.ROD_OWN
-        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
-
     def _declare_guards(self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(
             GUARDS[0],
@@ -181,15 +140,7 @@ class CentrifugalLever(DesignProblem):
             "stays engaged",
             source=PLACES,
         )
-        d.at_least(
-            GUARDS[1],
-            lever.deflection + squeeze,
-            lever.contact_travel,
-            "mm",
-            guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force",
-            source=NOT_IN_S4,
-        )
+        lever_blocks.require_loaded_springs(d, lever=lever, squeeze=squeeze)
 
     def _declare_speeds(
         self,
@@ -214,7 +165,7 @@ class CentrifugalLever(DesignProblem):
         worn = full - springs.rate * lever.wear
         blocks.declare_contact(d, duty=duty, contact=contact, needs=GUARDS)
         blocks.declare_full_clamp(
-            d, duty=duty, lining=lining, worn_force=worn, full_clamp_speed=stop, source=RECONSTRUCTED, needs=GUARDS[1]
+            d, duty=duty, lining=lining, worn_force=worn, full_clamp_speed=stop, source=RECONSTRUCTED, needs=LOADED
         )
         blocks.declare_band(
             d, band=band, text="Full-clamp speed over contact speed; a small one is sharp", needs=GUARDS

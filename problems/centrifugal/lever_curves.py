@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from problems.centrifugal import curves as centrifugal_curves
@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from synth import DesignProblem
 
 POINTS = 41
-# Stretches of the motion, and what each lever shows beside what both do: heading, name in Motion, unit.
-ROD_REGIMES = ("rest", "travel", "rod unloads", "spring clamps", "stop")
-ROD_OWN = (("spring force [N]", "spring_force", 1.0), ("rod force [N]", "link_force", 1.0))
-REVERSED_REGIMES = ("rest", "travel", "leg clamps", "disc 1 lifts", "stop")
-REVERSED_OWN = (
-    ("spring force [N]", "spring_force", 1.0),
-    ("housing force [N]", "link_force", 1.0),
-    ("return force [N]", "return_force", 1.0),
-    ("lift of disc 1 [mm]", "lift", MM),
-)
 
 
 def rod_lever(spec: Mapping[str, Any], design: Any) -> RodLever:
@@ -83,57 +73,67 @@ def reversed_lever(spec: Mapping[str, Any], design: Any) -> ReversedLever:
     )
 
 
-def rod_lever_curves(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
-    """Return everything of a lever with a headed rod over the speed.
+@dataclass(frozen=True)
+class LeverKind:
+    """What tells the drawings of one kind of lever from those of another.
 
     Parameters
     ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    dict of str to DataFrame
-        ``over_speed`` with new linings, ``over_speed_worn`` with worn ones.
+    lever : callable
+        Requirements and design -> the lever with new linings.
+    regimes : tuple of str
+        Names of the stretches of its motion.
+    own : tuple of (str, str, float)
+        What it shows beside what all do: heading, name in ``Motion``, and unit.
     """
-    return _both(problem, spec, design, rod_lever(spec, design), ROD_REGIMES, ROD_OWN)
+
+    lever: Callable[[Mapping[str, Any], Any], RodLever | ReversedLever]
+    regimes: tuple[str, ...]
+    own: tuple[tuple[str, str, float], ...]
 
 
-def reversed_lever_curves(problem: DesignProblem, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
-    """Return everything of a reversed lever over the speed.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-        The family.
-    spec : mapping
-        Requirements in SI.
-    design : Design
-        The design.
-
-    Returns
-    -------
-    dict of str to DataFrame
-        ``over_speed`` with new linings, ``over_speed_worn`` with worn ones.
-    """
-    return _both(problem, spec, design, reversed_lever(spec, design), REVERSED_REGIMES, REVERSED_OWN)
+ROD = LeverKind(
+    rod_lever,
+    ("rest", "travel", "rod unloads", "spring clamps", "stop"),
+    (("spring force [N]", "spring_force", 1.0), ("rod force [N]", "link_force", 1.0)),
+)
+REVERSED = LeverKind(
+    reversed_lever,
+    ("rest", "travel", "leg clamps", "disc 1 lifts", "stop"),
+    (
+        ("spring force [N]", "spring_force", 1.0),
+        ("housing force [N]", "link_force", 1.0),
+        ("return force [N]", "return_force", 1.0),
+        ("lift of disc 1 [mm]", "lift", MM),
+    ),
+)
 
 
-def _both(
-    problem: DesignProblem,
-    spec: Mapping[str, Any],
-    design: Any,
-    lever: RodLever | ReversedLever,
-    regimes: Sequence[str],
-    own: Sequence[tuple[str, str, float]],
+def over_speed(
+    problem: DesignProblem, spec: Mapping[str, Any], design: Any, kind: LeverKind
 ) -> dict[str, pd.DataFrame]:
+    """Return everything of a lever over the speed.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+        The family.
+    spec : mapping
+        Requirements in SI.
+    design : Design
+        The design.
+    kind : LeverKind
+        Of the family.
+
+    Returns
+    -------
+    dict of str to DataFrame
+        ``over_speed`` with new linings, ``over_speed_worn`` with worn ones.
+    """
+    lever = kind.lever(spec, design)
     return {
-        "over_speed": _over_speed(problem, spec, design, lever, "new linings", regimes, own),
-        "over_speed_worn": _over_speed(problem, spec, design, worn(lever, spec), "worn linings", regimes, own),
+        "over_speed": _over_speed(problem, spec, design, kind, lever, "new linings"),
+        "over_speed_worn": _over_speed(problem, spec, design, kind, worn(lever, spec), "worn linings"),
     }
 
 
@@ -172,17 +172,16 @@ def _over_speed(
     problem: DesignProblem,
     spec: Mapping[str, Any],
     design: Any,
+    kind: LeverKind,
     lever: RodLever | ReversedLever,
     words: str,
-    regimes: Sequence[str],
-    own: Sequence[tuple[str, str, float]],
 ) -> pd.DataFrame:
     """Return one drawing; the lever angle is the parameter, so that a lever that snaps runs back in speed."""
     import pandas as pd
 
     borders = lever.borders()
     top = 1.5 * max(spec["full_torque_speed"], *borders.speeds)
-    columns = columns_of(lever.motion(top, POINTS), design, own)
+    columns = columns_of(lever.motion(top, POINTS), design, kind.own)
     frame = pd.DataFrame(columns)
     forces = [name for name in columns if name.endswith("[N]")]
     gaps = [name for name in columns if name.endswith("[mm]") and not name.startswith("radius")]
@@ -203,7 +202,7 @@ def _over_speed(
         ],
         "spans": [
             {"from": low / RPM, "to": high / RPM, "label": label}
-            for (low, high), label in zip(itertools.pairwise(edges), regimes, strict=True)
+            for (low, high), label in zip(itertools.pairwise(edges), kind.regimes, strict=True)
             if high > low
         ],
         "lines": [{"panel": 1, "y": spec["torque_reserve"] * spec["required_torque"], "label": "required"}],

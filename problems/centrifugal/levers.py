@@ -21,6 +21,7 @@ RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
 # Range of the stop angle [rad] and of the rest radius [mm]; refusals reason with them.
 STOP_ANGLE_MIN, STOP_ANGLE_MAX = 0.05, 0.35
 REST_RADIUS_MAX = 250.0
+LOADED = "clamp_springs_loaded"  # a guard
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,29 @@ def limit_contact(d: Declaration, *, lever: Lever, plate_arm: Any, longest: floa
         lever.stop_angle,
         "rad",
         text="With worn linings too the plate is on the disc before the lever meets its stop",
+        source=NOT_IN_S4,
+    )
+
+
+def require_loaded_springs(d: Declaration, *, lever: Lever, squeeze: Any) -> None:
+    """Declare the guard that the clamp springs are under load at the stop.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    lever : Lever
+        Lever.
+    squeeze : symbol
+        Travel of the springs' end from rest to the stop, that of the plate included [m].
+    """
+    d.at_least(
+        LOADED,
+        lever.deflection + squeeze,
+        lever.contact_travel,
+        "mm",
+        guard=True,
+        text="At the stop the clamp springs are under load; otherwise there is no clamp force",
         source=NOT_IN_S4,
     )
 

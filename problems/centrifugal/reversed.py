@@ -8,25 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import centrifugal as blocks
-from problems.centrifugal import curves as centrifugal_curves
-from problems.centrifugal import lever_curves as centrifugal_lever_curves
 from problems.centrifugal import levers as lever_blocks
-from problems.centrifugal import state as states
-from problems.centrifugal.levers import RECONSTRUCTED
+from problems.centrifugal.lever_clutch import LeverClutch
+from problems.centrifugal.lever_curves import REVERSED
+from problems.centrifugal.levers import LOADED, RECONSTRUCTED
 from problems.mechanics import centrifugal_levers as formulas
 from problems.sources import NOT_IN_S4
-from synth import DesignProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import pandas as pd
-
     from synth.declaration import Declaration
 
 # Range of the short leg [mm]; refusals reason with it.
 PLATE_ARM = (3.0, 150.0)
-LOADED = "clamp_springs_loaded"
 
 
 @dataclass(frozen=True)
@@ -42,7 +35,7 @@ class Leg:
         return self.springs.force(self.deflection + travel)
 
 
-class CentrifugalReversed(DesignProblem):
+class CentrifugalReversed(LeverClutch):
     """Reversed centrifugal clutch: springs preloaded between a disc and the housing clamp once the disc lifts.
 
     The levers turn on disc 1. Their short legs first push the plate against its return springs, then against the
@@ -51,9 +44,7 @@ class CentrifugalReversed(DesignProblem):
 
     name = "centrifugal_reversed"
     title = "Centrifugal clutch, reversed"
-    sources = blocks.SOURCES
-    understands = (*blocks.COMMON, "lining_wear", "contact_travel")
-    operating_point = states.OPERATING_POINT
+    kind = REVERSED
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
@@ -72,15 +63,7 @@ class CentrifugalReversed(DesignProblem):
         )
 
         squeeze = leg.arm * lever.stop_angle
-        d.at_least(
-            LOADED,
-            lever.deflection + squeeze,
-            lever.contact_travel,
-            "mm",
-            guard=True,
-            text="At the stop the clamp springs are under load; otherwise there is no clamp force",
-            source=NOT_IN_S4,
-        )
+        lever_blocks.require_loaded_springs(d, lever=lever, squeeze=squeeze)
         lift = squeeze - lever.contact_travel
         push = springs.force(lever.deflection + lift)
         clamp = push - leg.force(lever.contact_travel)
@@ -120,41 +103,6 @@ class CentrifugalReversed(DesignProblem):
             what="the return springs",
         )
         blocks.declare_objectives(d)
-
-    def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
-        """Return clamp force over lining; of a design what happens over the speed, with new and with worn linings.
-
-        Parameters
-        ----------
-        spec : mapping
-            Requirements in SI by name, None where an optional one is not given.
-        design : Design, optional
-            The design to draw.
-
-        Returns
-        -------
-        dict of str to DataFrame
-            ``clamp_force_over_lining``, or of a design ``over_speed`` and ``over_speed_worn``.
-        """
-        if design is None:
-            return {"clamp_force_over_lining": centrifugal_curves.clamp_force_over_lining(self, spec)}
-        return centrifugal_lever_curves.reversed_lever_curves(self, spec, design)
-
-    def state(self, spec: Mapping[str, Any], design: Any, point: Mapping[str, float]) -> pd.DataFrame:
-        """Return where the flyweights stand at a speed, what presses and what can be carried.
-
-        Parameters
-        ----------
-        spec : mapping
-            Requirements in SI by name, None where an optional one is not given.
-        design : Design
-            The design.
-        point : mapping
-            ``speed`` of the driving side [rad/s].
-        """
-        lever = centrifugal_lever_curves.reversed_lever(spec, design)
-        regimes, own = centrifugal_lever_curves.REVERSED_REGIMES, centrifugal_lever_curves.REVERSED_OWN
-        return states.of_lever(spec, design, lever, regimes, own, point["speed"])
 
     def _declare_leg(self, d: Declaration) -> Leg:
         return Leg(

@@ -115,9 +115,7 @@ def of_path(spec: Mapping[str, Any], path: Path, speed: float) -> pd.DataFrame:
 def of_lever(
     spec: Mapping[str, Any],
     design: Any,
-    lever: RodLever | ReversedLever,
-    regimes: Sequence[str],
-    own: Sequence[tuple[str, str, float]],
+    kind: lever_curves.LeverKind,
     speed: float,
 ) -> pd.DataFrame:
     """Return the state of a clutch whose levers clamp by springs, with new and with worn linings.
@@ -130,16 +128,12 @@ def of_lever(
         Requirements in SI.
     design : Design
         Values and parts in SI.
-    lever : RodLever or ReversedLever
-        With new linings.
-    regimes : sequence of str
-        Names of the stretches.
-    own : sequence
-        What this lever shows beside what both do: heading, name and unit.
+    kind : LeverKind
+        Of the family.
     speed : float
         [rad/s]
     """
-    rows = []
+    rows, lever = [], kind.lever(spec, design)
     for words, one in (("new linings", lever), ("worn linings", lever_curves.worn(lever, spec))):
         borders, contact = one.borders(), one.contact_angle
         knots = list(zip(borders.forces, (0.0, contact, contact, one.stop_angle), strict=True))
@@ -152,8 +146,8 @@ def of_lever(
             found = balance(knots, pull, outward)
             stretch, angle, force = (np.array([x]) for x in (found.stretch, found.position, found.force))
             motion = one.along((stretch, angle, force))
-            columns = {name: float(v[0]) for name, v in lever_curves.columns_of(motion, design, own).items()}
-            rows.append({"course": course, "regime": regimes[found.stretch], **columns})
+            columns = {name: float(v[0]) for name, v in lever_curves.columns_of(motion, design, kind.own).items()}
+            rows.append({"course": course, "regime": kind.regimes[found.stretch], **columns})
     return _frame(spec, rows, RECONSTRUCTED)
 
 
