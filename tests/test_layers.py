@@ -113,9 +113,10 @@ def test_imports_point_one_way() -> None:
     assert wrong == set()
 
 
-SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "question_bounds", "propagation"}
+SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "boxes"}
+SOUND |= {"question_bounds", "propagation", "compiled_rules"}
 STEERING = {"influences", "branching"}
-BOTH = {"compiled_rules", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
+BOTH = {"box_batches", "box_source", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
 # What kind of function a formula is: not of the search.
 OF_FORMULAS = {"structure", "shapes", "composition", "log_terms", "feasible_intervals", "curvature", "elementary"}
 

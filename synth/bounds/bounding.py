@@ -10,6 +10,7 @@ from synth.bounds.compiled_propagation import CompiledPropagation
 from synth.bounds.influences import Influences
 from synth.bounds.propagation import Propagation
 from synth.bounds.question_bounds import QuestionBounds
+from synth.compiled.execution import Execution
 from synth.question.search_space import SearchSpace
 from synth.tuning import Tuning
 
@@ -20,10 +21,7 @@ class Bounding:
     Parameters
     ----------
     question : QuestionBounds
-    compiled : bool
-        Whether code may be compiled for this question alone.
-    alike : int
-        How many questions of this kind are asked.
+    execution : Execution
     tuning : Tuning
 
     Attributes
@@ -40,26 +38,27 @@ class Bounding:
         Median sizes of the objectives over the question.
     """
 
-    def __init__(self, question: QuestionBounds, compiled: bool, alike: int, tuning: Tuning) -> None:
-        self._allowed, self._alike, self._tuning = compiled, alike, tuning
+    def __init__(self, question: QuestionBounds, execution: Execution, tuning: Tuning) -> None:
+        self._tuning = tuning
         self._influences = Influences(question, tuning.branching)
         self.goal_sizes = self._influences.goal_sizes
         trees = [self._influences.clusters(factor) for factor in question.factors]
-        self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)))
+        self._begin(Propagation(question, Cells(trees, question.instance.combinations.radix)), execution)
 
-    def among(self, instance: SearchSpace) -> Bounding | None:
+    def among(self, instance: SearchSpace, execution: Execution) -> Bounding | None:
         """Return the same for other rows of the first factor, with nothing learned: :meth:`QuestionBounds.among`."""
         question = self.question.among(instance)
         if question is None:
             return None
         own = copy.copy(self)
-        own._begin(self.propagation.among(question, self._influences.clusters(question.factors[0])))
+        first = self._influences.clusters(question.factors[0])
+        own._begin(self.propagation.among(question, first), execution)
         return own
 
-    def _begin(self, propagation: Propagation) -> None:
+    def _begin(self, propagation: Propagation, execution: Execution) -> None:
         tuning = self._tuning
         self.question, self.propagation = propagation.question, propagation
         self.branching = BranchingWeights(self.question, propagation.cells.trees, self._influences, tuning.branching)
         self.compiled = CompiledPropagation(
-            propagation, self.branching, self._allowed, self._alike, tuning.tolerances.margins, tuning.compiling
+            propagation, self.branching, execution, tuning.tolerances.margins, tuning.compiling
         )

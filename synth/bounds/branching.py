@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.bounds.clusters import ClusterTree
 from synth.bounds.influences import Influences
 from synth.bounds.question_bounds import QuestionBounds
@@ -109,39 +110,36 @@ class BranchingWeights:
         return result
 
     def scores(
-        self,
-        cell: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        undecided: Sequence[Any],
-        goals: int,
-        caps: np.ndarray | None = None,
+        self, boxes: Boxes, undecided: Sequence[Any], goals: int, cutoffs: np.ndarray | None = None
     ) -> np.ndarray:
         """Return, per variable and factor, how far limits that are undecided and objectives spread over it.
 
         Parameters
         ----------
-        cell : array (boxes, factors)
-        low, high : array (boxes, variables)
+        boxes : Boxes
         undecided : list of array (boxes,)
             Per limit.
         goals : int
             How many objectives count, from the first.
-        caps : array (..., objectives), optional
-            Cutoffs; what they are for is seen by which are finite.
+        cutoffs : array (objectives,) or (boxes, objectives), optional
+            What boxes are looked into for is seen by which are finite.
+
+        Returns
+        -------
+        array (boxes, variables + factors)
         """
         question = self._question
-        count, limits, width = len(cell), len(question.cuts), question.width
+        count, limits, width = len(boxes), len(question.cuts), question.width
         counted = np.zeros((count, limits + len(question.goals)), dtype=np.float32)
         for j, flag in enumerate(undecided):
             counted[:, j] = flag
         counted[:, limits : limits + goals] = 1.0
-        counted *= self.weights[0 if caps is None else self._pattern(np.isfinite(caps[..., : self._bits]))]
+        counted *= self.weights[0 if cutoffs is None else self._pattern(np.isfinite(cutoffs[..., : self._bits]))]
         result = np.zeros((count, width + len(self._trees)), dtype=np.float32)
         if width:
-            result[:, :width] = (counted @ self.tables.steep) * self.widths(low, high)
+            result[:, :width] = (counted @ self.tables.steep) * self.widths(boxes.low, boxes.high)
         for f, spread in enumerate(self.tables.spreads):
-            result[:, width + f] = np.einsum("bj,bj->b", counted, spread.take(cell[:, f], axis=0))
+            result[:, width + f] = np.einsum("bj,bj->b", counted, spread.take(boxes.cell[:, f], axis=0))
         return result
 
     def focus(self, variables: np.ndarray, combinations: np.ndarray) -> None:
@@ -231,7 +229,7 @@ class BranchingWeights:
         with np.errstate(all="ignore"):
             width = np.where(low > 0, np.log(high / low), high - low)
         width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], width)
-        # A cap is as far off as the objective that it caps.
+        # The cutoff of a row is as far off as its objective.
         capped = np.eye(len(influence))[:, [len(question.cuts) + g for g in factor.capped]]
         own = np.concatenate([influence[:, [question.n + i for i in factor.inputs]], capped], axis=1)
         first = self._settings.parts_first if factor.name else self._settings.questions_first

@@ -26,9 +26,9 @@ class Factor:
     inputs : list of int
         Which data inputs of the model the columns are.
     columns : array (rows, columns)
-        SI values; not-a-number where a row has none. First those of the inputs, then caps of objectives.
+        SI values; not-a-number where a row has none. First those of the inputs, then cutoffs of objectives.
     capped : list of int
-        Numbers of the objectives that rows cap.
+        Numbers of the objectives that rows have a cutoff of.
     """
 
     name: str

@@ -10,10 +10,13 @@ from collections import Counter
 
 import numpy as np
 
+from synth.bounds.box_batches import CompiledQuestion, Prepared
+from synth.bounds.boxes import Boxes, Subtrees
 from synth.bounds.branching import BranchingWeights, ScoreTables
-from synth.bounds.compiled_boxes import BoxCode, CompiledQuestion, Packed, Prepared, compiled
-from synth.bounds.compiled_subtrees import CapTables, Grown, Halves
+from synth.bounds.compiled_boxes import BoxCode, compiled
+from synth.bounds.compiled_subtrees import CutoffTables, Halves
 from synth.bounds.propagation import Propagation
+from synth.compiled.execution import Execution
 from synth.tuning import CompilingLimits
 
 
@@ -24,96 +27,77 @@ class CompiledPropagation:
     ----------
     propagation : Propagation
     branching : BranchingWeights
-    allowed : bool
-        Whether code may be compiled for this question alone.
-    alike : int
-        How many questions of this kind are asked: code serves them all.
+    execution : Execution
     margins : (float, float)
         By how much a value may miss the grid, relative and absolute.
     limits : CompilingLimits
+
+    Attributes
+    ----------
+    at_once : bool
+        Whether code for boxes with cutoffs is compiled from the first: by the question alone.
     """
 
     def __init__(
         self,
         propagation: Propagation,
         branching: BranchingWeights,
-        allowed: bool,
-        alike: int,
+        execution: Execution,
         margins: tuple[float, float],
         limits: CompilingLimits,
     ) -> None:
         self._propagation, self._branching, self._margins, self._limits = propagation, branching, margins, limits
         combinations = propagation.question.instance.combinations.count
-        self._allowed, self.at_once = allowed, allowed and combinations * alike >= limits.combinations
+        self._execution = execution
+        self.at_once = execution.compiled and combinations * execution.alike >= limits.combinations
         self._contracted: Counter[tuple[bool, bool]] = Counter()
         self._prepared: dict[bool, tuple[ScoreTables, Prepared]] = {}
         self._halved: Halves | None = None
 
-    def packed(
-        self,
-        cell: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: np.ndarray,
-        tag: np.ndarray,
-        caps: np.ndarray | None,
-        passes: int,
-        every: bool,
-        workers: int = 1,
-    ) -> Packed | None:
-        """Tighten, snap and score boxes, and pack what is alive; None where no code is compiled.
+    def contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Boxes | None:
+        """Tighten, snap and score boxes; return what is alive, and None where no code is compiled.
 
         Parameters
         ----------
-        cell, low, high, bounds, tag : array (boxes, ...)
-        caps : array (objectives,) or (boxes, objectives), optional
+        boxes : Boxes
+        cutoffs : array (objectives,) or (boxes, objectives), optional
+            Upper bounds of the objectives, with their sign.
         passes : int
+            Forward-backward sweeps.
         every : bool
-        workers : int
-            Threads.
+            Whether objectives that only settle ties count.
         """
-        code = self._code(every, caps is not None, len(cell))
+        code = self._code(every, cutoffs is not None, len(boxes))
         if code is None:
             return None
-        weights = self._branching.weights
-        return code.contract(self._read(every), cell, low, high, bounds, tag, caps, weights, passes, workers)
+        weights, workers = self._branching.weights, self._execution.workers
+        return code.contract(self._read(every), boxes, cutoffs, weights, passes, workers).boxes
 
-    def grown(
-        self,
-        cell: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        bounds: np.ndarray,
-        tag: np.ndarray,
-        caps: CapTables,
-        passes: int,
-        levels: int,
-        workers: int = 1,
-    ) -> Grown | None:
+    def grow(self, boxes: Boxes, cutoffs: CutoffTables, passes: int, levels: int) -> Subtrees | None:
         """Tighten and split boxes for some generations; None where no code is compiled.
 
         Parameters
         ----------
-        cell, low, high, bounds, tag, passes, workers
-            As for :meth:`packed`, for the objectives that are bounded in every box.
-        caps : CapTables
+        boxes : Boxes
+            With bounds of those objectives alone that are bounded in every box.
+        cutoffs : CutoffTables
+        passes : int
+            Forward-backward sweeps.
         levels : int
             Generations.
         """
         code = self._code(False, True, 0)
         if code is None:
             return None
-        weights = self._branching.weights
-        found = code.grow(
-            self._read(False), self._halves(), cell, low, high, bounds, tag, caps, weights, passes, levels, workers
-        )
-        self._contracted[False, True] += found.contracted
+        prepared, weights, workers = self._read(False), self._branching.weights, self._execution.workers
+        found = code.subtrees.grow(prepared, self._halves(), boxes, cutoffs, weights, passes, levels, workers)
+        self._contracted[False, True] += found.looked
         return found
 
     def to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
         """Count so many boxes more, and tell whether they are worth compiling: by the question, not by what exists."""
         self._contracted[every, capped] += boxes
-        many = self._allowed and self._contracted[every, capped] > self._limits.boxes
+        many = self._execution.compiled and self._contracted[every, capped] > self._limits.boxes
         return many or (self.at_once and capped and not every)
 
     def _code(self, every: bool, capped: bool, boxes: int) -> BoxCode | None:
@@ -136,13 +120,12 @@ class CompiledPropagation:
         return CompiledQuestion(
             tables=self._propagation.tables[every],
             constants=np.array(question.constants[every]),
-            rights=np.array(question.right_sides),
+            right_sides=np.array(question.right_sides),
             root=question.root,
             lower=np.concatenate([instance.ranges.lower, question.low[n:]]),
             upper=np.concatenate([instance.ranges.upper, question.high[n:]]),
             spans=self._branching.spans,
-            steep=self._branching.tables.steep,
-            spreads=self._branching.tables.spreads,
+            scoring=self._branching.tables,
             grids=question.grids,
             margins=self._margins,
             sizes=self._limits.sizes,

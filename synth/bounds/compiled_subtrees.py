@@ -1,8 +1,8 @@
 """Whole subtrees of boxes in compiled code: tighten, compare with what is known, split, and again.
 
 What a search does with a box between two looks for designs, written once in C: the same steps as
-:func:`synth.search.branch_and_bound.cover` takes over arrays. Boxes that a later generation is left for come back, and
-those that are too small to be split.
+:func:`synth.search.branch_and_bound.branch_and_bound` takes over arrays. Boxes that a later generation is left for come
+back, and those that are too small to be split.
 """
 
 from __future__ import annotations
@@ -10,19 +10,16 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from synth.tuning import CodeSizes
-
-# Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
-# must not depend on it.
+from synth.bounds.box_batches import Batches, BatchStructure, Prepared, all_done
+from synth.bounds.boxes import Boxes, Subtrees
 
 NUMBERS = ("levels", "capacity", "columns", "known", "steps", "contracted")
 PLACES = (
     "column",
-    "plain",
+    "fixed",
     "of_cluster",
     "known_at_first",
     "known_least_first",
@@ -43,8 +40,8 @@ PLACES = (
 
 
 @dataclass(frozen=True)
-class CapTables:
-    """What designs must keep to be of use, as tables from which the caps of any box can be read.
+class CutoffTables:
+    """What designs must keep to be of use, as tables from which the cutoffs of any box can be read.
 
     All numbers are signed values of objectives, not phi.
 
@@ -52,43 +49,47 @@ class CapTables:
     ----------
     columns : list of int
         One or two objectives that are traded off.
-    plain : array (objectives,)
-        Caps of every box.
+    fixed : array (objectives,)
+        Cutoffs of every box.
     of_cluster : array (clusters, objectives), optional
-        Caps of boxes by their cluster of the first factor.
+        Cutoffs of boxes by their cluster of the first factor.
     known : list of (at, least), optional
         For each of two objectives: in order, values of the other one from which a known design covers, and the least
         value of this one among the designs that cover from there.
     steps : (at, largest), optional
-        Of a staircase: its steps in order of the first objective, and the largest second one among each and all later
-        ones. Boxes below none of them are of no use.
+        Of a front that is being proven: its steps in order of the first objective, and the largest second one among
+        each and all later ones. Boxes below none of them are of no use.
     """
 
     columns: Sequence[int]
-    plain: np.ndarray
+    fixed: np.ndarray
     of_cluster: np.ndarray | None = None
     known: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
     steps: tuple[np.ndarray, np.ndarray] | None = None
 
+    def numbers(self) -> dict[str, int]:
+        """Return the numbers of the record that the compiled code reads."""
+        return {
+            "columns": len(self.columns),
+            "known": len(self.known[0][0]) if self.known else 0,
+            "steps": -1 if self.steps is None else len(self.steps[0]),
+        }
 
-@dataclass(frozen=True)
-class Grown:
-    """What subtrees leave: boxes to go on with, marked where they are too small to be split.
-
-    ``contracted``: how many boxes were tightened.
-    """
-
-    cell: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    bounds: np.ndarray
-    tag: np.ndarray
-    too_small: np.ndarray
-    contracted: int
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Return the arrays of the record that the compiled code reads."""
+        result = {"fixed": self.fixed}
+        if self.of_cluster is not None:
+            result["of_cluster"] = self.of_cluster
+        for name, (at, least) in zip(("first", "second"), self.known, strict=False):
+            result |= {f"known_at_{name}": at, f"known_least_{name}": least}
+        if self.steps is not None:
+            result["steps_at"], result["steps_largest"] = self.steps
+        result = {name: np.ascontiguousarray(values, dtype=float) for name, values in result.items()}
+        return result | {"column": np.array([*self.columns, 0], dtype=np.int64)}
 
 
-class _Tree(ctypes.Structure):
-    """The structure of the same name in the C source."""
+class _TreeStructure(ctypes.Structure):
+    """The structure ``Tree`` of the C source."""
 
     _fields_ = (
         *((name, ctypes.c_longlong) for name in NUMBERS),
@@ -117,95 +118,95 @@ class Halves:
         }
 
 
-def bind(loaded: ctypes.CDLL, batch: type[ctypes.Structure]) -> Any:
-    """Return the compiled function."""
-    function = loaded.grow
-    function.argtypes = [ctypes.POINTER(batch), ctypes.POINTER(_Tree)]
-    function.restype = ctypes.c_longlong
-    return function
-
-
-def grow(
-    function: Any,
-    batch_of: Callable[[int, int], ctypes.Structure],
-    count: int,
-    widths: tuple[int, int, int],
-    halves: Halves,
-    caps: CapTables,
-    levels: int,
-    sizes: CodeSizes,
-    run: Callable[[Sequence[Callable[[], None]]], None],
-) -> Grown:
-    """Grow the subtrees of boxes.
+class SubtreeCode:
+    """Compiled growth of subtrees.
 
     Parameters
     ----------
-    function
-        As :func:`bind` returns it.
-    batch_of : callable
-        Returns the boxes from a first to a last one as the code reads them.
-    count : int
-        Boxes.
-    widths : (int, int, int)
-        Factors, variables, objectives.
-    halves : Halves
-    caps : CapTables
-    levels : int
-        Generations.
-    sizes : CodeSizes
-    run : callable
-        Does all of some work, which may be shared among threads.
-
-    Returns
-    -------
-    Grown
+    loaded : CDLL
     """
-    factors, n, goals = widths
-    fixed = dict(halves.kept)
-    fixed["plain"] = np.ascontiguousarray(caps.plain, dtype=float)
-    fixed["column"] = np.array([*caps.columns, 0], dtype=np.int64)
-    if caps.of_cluster is not None:
-        fixed["of_cluster"] = np.ascontiguousarray(caps.of_cluster, dtype=float)
-    for name, (at, least) in zip(("first", "second"), caps.known, strict=False):
-        fixed[f"known_at_{name}"] = np.ascontiguousarray(at, dtype=float)
-        fixed[f"known_least_{name}"] = np.ascontiguousarray(least, dtype=float)
-    if caps.steps is not None:
-        fixed["steps_at"], fixed["steps_largest"] = (np.ascontiguousarray(x, dtype=float) for x in caps.steps)
-    numbers = {
-        "levels": levels,
-        "columns": len(caps.columns),
-        "known": len(caps.known[0][0]) if caps.known else 0,
-        "steps": -1 if caps.steps is None else len(caps.steps[0]),
+
+    def __init__(self, loaded: ctypes.CDLL) -> None:
+        self._grow = loaded.grow
+        self._grow.argtypes = [ctypes.POINTER(BatchStructure), ctypes.POINTER(_TreeStructure)]
+        self._grow.restype = ctypes.c_longlong
+
+    def grow(
+        self,
+        prepared: Prepared,
+        halves: Halves,
+        boxes: Boxes,
+        cutoffs: CutoffTables,
+        weights: np.ndarray,
+        passes: int,
+        levels: int,
+        workers: int = 1,
+    ) -> Subtrees:
+        """Tighten and split boxes, and what comes of them, for some generations.
+
+        Parameters
+        ----------
+        prepared : Prepared
+        halves : Halves
+        boxes : Boxes
+            With bounds of the objectives that the code knows, no others. Scores of what comes back say nothing.
+        cutoffs : CutoffTables
+        weights : array (sets, limits + objectives)
+        passes : int
+            Forward-backward sweeps.
+        levels : int
+            Generations.
+        workers : int
+            Threads; the result is the same for any number.
+
+        Raises
+        ------
+        MemoryError
+            Where the code found no room to work in.
+        """
+        batches, sizes = Batches(prepared, boxes, weights, passes), prepared.sizes
+        fixed, numbers = halves.kept | cutoffs.arrays(), {"levels": levels, **cutoffs.numbers()}
+        # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
+        # must not depend on it.
+        ends = [(k, min(k + sizes.tree_part, len(boxes))) for k in range(0, len(boxes), sizes.tree_part)]
+        found: list[tuple[Boxes, np.ndarray, int] | None] = [None] * len(ends)
+
+        def part(k: int) -> Callable[[], None]:
+            def work() -> None:
+                first, last = ends[k]
+                capacity = sizes.tree_room * (last - first) + sizes.tree_beside
+                taken = _places(prepared, boxes, capacity)
+                places = {name: a.ctypes.data for name, a in (fixed | taken).items()}
+                tree = _TreeStructure(capacity=capacity, **numbers, **places)
+                kept = self._grow(ctypes.byref(batches.part(first, last)), ctypes.byref(tree))
+                if kept >= 0:  # else told below: an exception would end a thread, not the search
+                    found[k] = (*_taken(taken, kept, boxes.scores.shape[1]), int(tree.contracted))
+
+            return work
+
+        all_done([part(k) for k in range(len(ends))], workers)
+        parts = [own for own in found if own is not None]
+        if len(parts) < len(found):
+            raise MemoryError
+        both = Boxes.joined([own for own, _, _ in parts])
+        too_small = np.concatenate([small for _, small, _ in parts])
+        return Subtrees(both.take(~too_small), both.take(too_small), sum(contracted for _, _, contracted in parts))
+
+
+def _places(prepared: Prepared, boxes: Boxes, capacity: int) -> dict[str, np.ndarray]:
+    """Return arrays for what comes of boxes."""
+    return {
+        "out_cell": np.empty((capacity, prepared.factors), dtype=np.int32),
+        "out_low": np.empty((capacity, prepared.n)),
+        "out_high": np.empty((capacity, prepared.n)),
+        "out_bounds": np.empty((capacity, boxes.bounds.shape[1])),
+        "out_tag": np.empty(capacity, dtype=np.int32),
+        "too_small": np.empty(capacity, dtype=bool),
     }
-    found: list[Grown | None] = [None] * -(-count // sizes.tree_part)
 
-    def part(k: int) -> Callable[[], None]:
-        def work() -> None:
-            first, last = k * sizes.tree_part, min((k + 1) * sizes.tree_part, count)
-            capacity = sizes.tree_room * (last - first) + sizes.tree_beside
-            taken: dict[str, np.ndarray] = {
-                "out_cell": np.empty((capacity, factors), dtype=np.int32),
-                "out_low": np.empty((capacity, n)),
-                "out_high": np.empty((capacity, n)),
-                "out_bounds": np.empty((capacity, goals)),
-                "out_tag": np.empty(capacity, dtype=np.int32),
-                "too_small": np.empty(capacity, dtype=bool),
-            }
-            places = {name: a.ctypes.data for name, a in (fixed | taken).items()}
-            tree = _Tree(capacity=capacity, **numbers, **places)
-            kept = function(ctypes.byref(batch_of(first, last)), ctypes.byref(tree))
-            if kept < 0:
-                return  # told below: an exception would end a thread, not the search
-            # Copies: what is kept shall not hold the room that was there for more.
-            own = {name.removeprefix("out_"): a[:kept].copy() for name, a in taken.items()}
-            found[k] = Grown(**own, contracted=int(tree.contracted))
 
-        return work
-
-    run([part(k) for k in range(len(found))])
-    parts = [g for g in found if g is not None]
-    if len(parts) < len(found):
-        raise MemoryError
-    names = ("cell", "low", "high", "bounds", "tag", "too_small")
-    joined = {name: np.concatenate([getattr(g, name) for g in parts]) for name in names}
-    return Grown(**joined, contracted=sum(g.contracted for g in parts))
+def _taken(taken: dict[str, np.ndarray], kept: int, scores: int) -> tuple[Boxes, np.ndarray]:
+    """Return boxes, and which are too small: copies, so that what is kept holds no room that was there for more."""
+    own = {name.removeprefix("out_"): a[:kept].copy() for name, a in taken.items()}
+    too_small = own.pop("too_small")
+    return Boxes(scores=np.ones((kept, scores), dtype=np.float32), **own), too_small

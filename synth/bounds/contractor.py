@@ -395,7 +395,7 @@ class _Writer:
         most = [f"h{a}" if up else f"l{a}" for a, up in zip(node.args, rising, strict=True)]
         return least, most
 
-    # -- limits and caps
+    # -- limits and cutoffs
 
     def _cap(self, j: int) -> None:
         goal = self.owner.goals[j]

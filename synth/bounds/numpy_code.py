@@ -17,7 +17,7 @@ def python_text(sweeps: SweepStatements, narrowed: np.ndarray) -> str:
     """Return the code of ``contract(V, L, K, B, C, RL, RH, passes, n) -> (dead, goals, open)``.
 
     V: ends of the variables (tightened in place), L: ends of tables, K: constants, B: constant right
-    sides, C: caps of the goals, RL and RH: what holds over the whole question. Only nodes that are
+    sides, C: cutoffs of the goals, RL and RH: what holds over the whole question. Only nodes that are
     ``narrowed`` are held within it.
     """
     out = ["def contract(V, L, K, B, C, RL, RH, passes, n):"]

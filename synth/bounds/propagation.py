@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.bounds.clusters import Cells, ClusterTree
 from synth.bounds.contractor import Code
 from synth.bounds.question_bounds import QuestionBounds
@@ -79,43 +79,34 @@ class Propagation:
         own.tables = own._in_order()
         return own
 
-    def run(
-        self,
-        cell: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        caps: Sequence[np.ndarray] | None,
-        passes: int,
-        every: bool,
-    ) -> Propagated:
+    def run(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Propagated:
         """Tighten boxes.
 
         Parameters
         ----------
-        cell : array (boxes, factors)
-            A cluster per factor.
-        low, high : array (boxes, variables)
-        caps : list of arrays (boxes,) or numbers, optional
+        boxes : Boxes
+        cutoffs : array (objectives,) or (boxes, objectives), optional
             Upper bounds of the objectives, with their sign.
         passes : int
             Forward-backward sweeps.
         every : bool
             Whether objectives that only settle ties count.
         """
-        count, question, width = len(cell), self.question, self.question.width
+        count, question, width = len(boxes), self.question, self.question.width
         root = question.root
-        function = self.code(every, caps is not None).function(root)
-        variables = [(low[:, i], high[:, i]) for i in range(width)]
-        tables = [(a.take(cell[:, f]), b.take(cell[:, f])) for f, a, b in self.tables[every]]
+        function = self.code(every, cutoffs is not None).function(root)
+        variables = [(boxes.low[:, i], boxes.high[:, i]) for i in range(width)]
+        tables = [(a.take(boxes.cell[:, f]), b.take(boxes.cell[:, f])) for f, a, b in self.tables[every]]
         constants, right_sides = question.constants[every], question.right_sides
+        most = None if cutoffs is None else list(np.moveaxis(cutoffs, -1, 0))
         with np.errstate(all="ignore"):
             dead, goals, undecided = function(
-                variables, tables, constants, right_sides, caps, root.low, root.high, passes, count
+                variables, tables, constants, right_sides, most, root.low, root.high, passes, count
             )
-        a, b = np.empty((count, width)), np.empty((count, width))
+        low, high = np.empty((count, width)), np.empty((count, width))
         for i, (x, y) in enumerate(variables):
-            a[:, i], b[:, i] = x, y
-        return Propagated(~dead, a, b, goals, undecided)
+            low[:, i], high[:, i] = x, y
+        return Propagated(~dead, low, high, goals, undecided)
 
     def code(self, every: bool, capped: bool) -> Code:
         """Return the generated code; ``every``: with objectives that only settle ties, ``capped``: with cutoffs."""

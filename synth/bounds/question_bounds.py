@@ -164,11 +164,11 @@ class QuestionBounds:
         """Return a factor with the numbers of its rows that anything depends on."""
         instance = self.instance
         inputs = tuple(k for k, own in enumerate(owner) if own == f and k in self._read)
-        caps = instance.cutoffs if f < instance.scenario_factors else {}
-        columns = np.empty((instance.combinations.radix[f], len(inputs) + len(caps)))
-        for position, column in enumerate([*(instance.column(k) for k in inputs), *caps.values()]):
+        cutoffs = instance.cutoffs if f < instance.scenario_factors else {}
+        columns = np.empty((instance.combinations.radix[f], len(inputs) + len(cutoffs)))
+        for position, column in enumerate([*(instance.column(k) for k in inputs), *cutoffs.values()]):
             columns[:, position] = column
-        return Factor(name, inputs, columns, tuple(caps))
+        return Factor(name, inputs, columns, tuple(cutoffs))
 
     def _fixed(self, owner: Sequence[int]) -> list[float]:
         """Return the data that belong to no factor."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.nlp.batch import Tasks
 from synth.parametric.joint_question import BestPerScenario, JointInstance
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.primal_heuristics import PrimalHeuristics

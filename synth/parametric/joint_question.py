@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.bounds.compiled_subtrees import CapTables
+from synth.bounds.boxes import Boxes
+from synth.bounds.compiled_subtrees import CutoffTables
 from synth.model.model import DataInput
 from synth.question.combinations import JointCombinations
 from synth.question.inputs import inputs_of_combination
@@ -21,7 +22,6 @@ from synth.question.instance import Instance
 from synth.question.requirement_values import RequirementValues
 from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive, Candidate
-from synth.search.boxes import Boxes
 from synth.search.formulation import Formulation
 from synth.search.pruning import reaches_beyond
 from synth.search.question import Question
@@ -242,14 +242,14 @@ class BestPerScenario:
         self._polished = np.minimum(best, self._polished)
         return [c for c, q in zip(self.known, self.known.questions(), strict=True) if better[q]]
 
-    def tables(self, form: Formulation) -> CapTables | None:
+    def tables(self, form: Formulation) -> CutoffTables | None:
         """Return the cutoffs by the cluster of questions that a box speaks of."""
         if reaches_beyond(self, form.bounded) or np.any(np.isfinite(self._fixed_cutoffs[:, form.bounded :])):
             return None
         cutoffs = self._fixed_cutoffs[:, : form.bounded] + self.tie
         clusters = np.arange(len(cutoffs))[:, None]
         cutoffs[:, self.columns[0]] = np.minimum(cutoffs[:, self.columns[0]], self._cutoff(clusters))
-        return CapTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(cutoffs))
+        return CutoffTables(self.columns, np.full(form.bounded, np.inf), of_cluster=form.objectives.values_of(cutoffs))
 
     def open_questions(self, left: Boxes) -> np.ndarray:
         """Tell of which questions boxes that were left open may hold something of use."""

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from synth.analysis.designs import make_frame, offered
+from synth.bounds.boxes import Boxes
+from synth.compiled.execution import Execution
 from synth.feasibility import Status
 from synth.parametric.joint_heuristics import JointHeuristics
 from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
@@ -18,10 +20,8 @@ from synth.question.objectives import with_ties
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.search.archive import Candidate, rows_of
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
-from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
 from synth.search.polishing import break_ties

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.search.boxes import Boxes
+from synth.bounds.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, further
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation

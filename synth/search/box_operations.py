@@ -8,10 +8,10 @@ import numpy as np
 
 from synth import deadline
 from synth.bounds.bounding import Bounding
-from synth.bounds.compiled_subtrees import CapTables
+from synth.bounds.boxes import Boxes, Subtrees
+from synth.bounds.compiled_subtrees import CutoffTables
 from synth.margins import above
 from synth.search.archive import Archive
-from synth.search.boxes import Boxes, Subtrees
 from synth.search.counters import SearchCounters
 from synth.search.log_objectives import LogObjectives
 from synth.search.makeable_values import MakeableValues
@@ -34,8 +34,6 @@ class BoxOperations:
         How many objectives, from the first, are bounded in every box.
     counters : SearchCounters
         Counts the boxes that are tightened.
-    workers : int
-        Threads.
     tuning : Tuning
     """
 
@@ -46,11 +44,10 @@ class BoxOperations:
         objectives: LogObjectives,
         bounded: int,
         counters: SearchCounters,
-        workers: int = 1,
         tuning: Tuning = TUNING,
     ) -> None:
         self.bounding, self.makeable, self.objectives, self.bounded = bounding, makeable, objectives, bounded
-        self.counters, self.workers, self.tuning = counters, workers, tuning
+        self.counters, self.tuning = counters, tuning
         question = bounding.question
         self.instance = instance = question.instance
         self.n, self.goals = len(instance.model.variables), len(question.goals)
@@ -137,29 +134,16 @@ class BoxOperations:
             kept.append(self._contract(boxes.take(rows), own, passes, every_goal))
         return Boxes.joined(kept)
 
-    def grow(self, boxes: Boxes, cutoffs: CapTables, levels: int, passes: int = 2) -> Subtrees | None:
+    def grow(self, boxes: Boxes, cutoffs: CutoffTables, levels: int, passes: int = 2) -> Subtrees | None:
         """Tighten and split boxes, and what comes of them, for some generations; None where no code is compiled.
 
         The boxes carry their auxiliary variables and the bounds of the first objectives alone.
         """
-        found = self.bounding.compiled.grown(
-            boxes.cell,
-            boxes.low,
-            boxes.high,
-            boxes.bounds,
-            boxes.tag,
-            cutoffs,
-            passes,
-            levels,
-            self.workers,
-        )
+        found = self.bounding.compiled.grow(boxes, cutoffs, passes, levels)
         if found is None:
             return None
-        self.counters.contracted += found.contracted
-        scores = np.ones((len(found.cell), boxes.scores.shape[1]), dtype=np.float32)
-        both = Boxes(found.cell, found.low, found.high, found.bounds, scores, found.tag)
-        halves, small = both.take(~found.too_small), both.take(found.too_small)
-        return Subtrees(self._without_refused(halves), self._without_refused(small), found.contracted)
+        self.counters.contracted += found.looked
+        return Subtrees(self._without_refused(found.halves), self._without_refused(found.small), found.looked)
 
     def _with_auxiliary(self, boxes: Boxes) -> Boxes:
         """Return boxes of variables with all that the auxiliary variables could be."""
@@ -172,30 +156,18 @@ class BoxOperations:
     def _contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Boxes:
         self.counters.contracted += len(boxes)
         values = None if cutoffs is None else self.objectives.values_of(cutoffs)
-        packed = self.bounding.compiled.packed(
-            boxes.cell,
-            boxes.low,
-            boxes.high,
-            boxes.bounds,
-            boxes.tag,
-            values,
-            passes,
-            every,
-            self.workers,
-        )
-        if packed is not None:
-            return self._without_refused(
-                Boxes(packed.cell, packed.low, packed.high, packed.bounds, packed.scores, packed.tag)
-            )
-        limits = None if values is None else list(np.moveaxis(values, -1, 0))
-        found = self.bounding.propagation.run(boxes.cell, boxes.low, boxes.high, limits, passes, every)
+        compiled = self.bounding.compiled.contract(boxes, values, passes, every)
+        if compiled is not None:
+            return self._without_refused(compiled)
+        found = self.bounding.propagation.run(boxes, values, passes, every)
         low, high = found.low, found.high
         alive = found.alive & self._snap(low, high)
         bounds = boxes.bounds.copy()
         for j, least in enumerate(found.goals):
             bounds[:, j] = np.fmax(bounds[:, j], least)
-        scores = self.bounding.branching.scores(boxes.cell, low, high, found.undecided, len(found.goals), values)
-        return self._without_refused(Boxes(boxes.cell, low, high, bounds, scores, boxes.tag).take(alive))
+        tightened = replace(boxes, low=low, high=high, bounds=bounds)
+        scores = self.bounding.branching.scores(tightened, found.undecided, len(found.goals), values)
+        return self._without_refused(replace(tightened, scores=scores).take(alive))
 
     def _without_refused(self, boxes: Boxes) -> Boxes:
         """Return the boxes that may hold a combination that no refusal over several slots forbids."""

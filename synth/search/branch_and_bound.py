@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes, Subtrees
 from synth.search.archive import Candidate
-from synth.search.boxes import Boxes, Subtrees
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics

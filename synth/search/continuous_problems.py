@@ -12,12 +12,12 @@ import numpy as np
 from synth.bounds.branching import BranchingWeights
 from synth.bounds.question_bounds import QuestionBounds
 from synth.compiled.compilation import NotCompiled, switched_on
+from synth.compiled.execution import Execution
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.nlp.rows import Rows
 from synth.search.counters import SearchCounters
-from synth.search.execution import Execution
 from synth.tuning import TUNING, Tuning
 
 

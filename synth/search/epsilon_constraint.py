@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.search.archive import Candidate
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation

@@ -10,6 +10,7 @@ import numpy as np
 
 from synth.bounds.bounding import Bounding
 from synth.bounds.question_bounds import QuestionBounds
+from synth.compiled.execution import EXECUTION, Execution
 from synth.model.constraint import Goal, NodeConstraint
 from synth.question.requirement_values import RequirementValues
 from synth.question.search_space import SearchSpace
@@ -17,7 +18,6 @@ from synth.search.archive import Archive
 from synth.search.box_operations import BoxOperations
 from synth.search.continuous_problems import ContinuousProblems, open_kinks, rows_of_question
 from synth.search.counters import SearchCounters
-from synth.search.execution import EXECUTION, Execution
 from synth.search.log_objectives import LogObjectives
 from synth.search.makeable_values import MakeableValues
 from synth.search.point_evaluation import PointEvaluation
@@ -77,7 +77,7 @@ class Formulation:
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
         question = QuestionBounds(instance, self.cuts, self.goals, self.bounded, infeasibility, tuning.branching)
-        self.bounding = Bounding(question, execution.compiled, execution.alike, tuning)
+        self.bounding = Bounding(question, execution, tuning)
         self.objectives = self._log_objectives()
         self._immovable = self.unmoved(gridded=False)
         self._rows = rows_of_question(question, self.objectives.log.tolist())
@@ -99,11 +99,12 @@ class Formulation:
         Formulation, optional
             That knows no design yet; None as for :meth:`QuestionBounds.among`.
         """
-        bounding = self.bounding.among(instance)
+        execution = replace(self.execution, workers=workers)
+        bounding = self.bounding.among(instance, execution)
         if bounding is None:
             return None
         own = copy.copy(self)
-        own.instance, own.bounding, own.execution = instance, bounding, replace(self.execution, workers=workers)
+        own.instance, own.bounding, own.execution = instance, bounding, execution
         own._begin(SearchCounters())
         return own
 
@@ -120,7 +121,6 @@ class Formulation:
             self.objectives,
             self.bounded,
             counters,
-            self.execution.workers,
             self.tuning,
         )
         self.points = PointEvaluation(

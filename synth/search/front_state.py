@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
+from synth.compiled.execution import Execution
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings
 from synth.search.archive import Candidate, rows_of
-from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.counters import SearchCounters
-from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.given_front import GivenFront
 from synth.search.proven_gap import Bound

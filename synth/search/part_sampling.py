@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.file_locks import alone
 from synth.nlp.batch import Tasks
 from synth.question.instance import Instance
 from synth.results.provenance import hash_of
-from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import roundings

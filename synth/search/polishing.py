@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from synth import deadline
+from synth.bounds.boxes import Boxes
 from synth.nlp.batch import Tasks
 from synth.question.search_space import SearchSpace
 from synth.search.archive import Candidate
-from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.pruning import PruningRule

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.margins import below
 from synth.nlp.batch import Solutions, Tasks
 from synth.pareto import spread_subset
 from synth.search.archive import Candidate, rows_of
-from synth.search.boxes import Boxes
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.polishing import polish_variables

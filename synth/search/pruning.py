@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from synth.bounds.compiled_subtrees import CapTables
+from synth.bounds.compiled_subtrees import CutoffTables
 from synth.search.archive import Archive, Candidate
 from synth.search.formulation import Formulation
 
@@ -40,7 +40,7 @@ class PruningRule(Protocol):
 class TabledPruningRule(PruningRule, Protocol):
     """A rule whose cutoffs compiled code may read from tables."""
 
-    def tables(self, form: Formulation) -> CapTables | None:
+    def tables(self, form: Formulation) -> CutoffTables | None:
         """Return what :meth:`cutoffs` and :meth:`possible_gain` say as tables; None where they cannot say it."""
 
 
@@ -98,7 +98,7 @@ class EpsilonCover:
         k = self.columns[0]
         return [archive[int(allowed[np.argmin(archive.phi[allowed, k])])]] if len(allowed) else []
 
-    def tables(self, form: Formulation) -> CapTables | None:
+    def tables(self, form: Formulation) -> CutoffTables | None:
         """Return what the cutoffs are as tables, for one objective or two."""
         columns, bounded = self.columns, form.bounded
         if reaches_beyond(self, bounded) or len(columns) > 2:
@@ -108,7 +108,7 @@ class EpsilonCover:
             least = (self.known.phi[:, columns[0]] - self.tolerance[0]).min(initial=np.inf)
             fixed_cutoffs[columns[0]] = min(fixed_cutoffs[columns[0]], least)
         known = _covered_from(form, self.known, self.tolerance) if len(columns) == 2 else ()
-        return CapTables(columns, form.objectives.values_of(fixed_cutoffs), known=known)
+        return CutoffTables(columns, form.objectives.values_of(fixed_cutoffs), known=known)
 
 
 class NonImprovement:
@@ -215,14 +215,14 @@ class NonImprovement:
         steps = self.steps[np.argsort(self.steps[:, 0], kind="stable")]
         return steps[:, 0], np.maximum.accumulate(steps[::-1, 1])[::-1]
 
-    def tables(self, form: Formulation) -> CapTables | None:
+    def tables(self, form: Formulation) -> CutoffTables | None:
         """Return what the cutoffs are as tables, for two objectives."""
         columns = self.columns
         if reaches_beyond(self, form.bounded) or len(columns) != 2:
             return None
         (first, highest), known = self._in_order(), _covered_from(form, self.known, self.tolerance)
         steps = form.objectives.signed(columns[0], first), form.objectives.signed(columns[1], highest)
-        return CapTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
+        return CutoffTables(columns, np.full(form.bounded, np.inf), known=known, steps=steps)
 
     def take(self, combinations: np.ndarray, variables: np.ndarray, phi: np.ndarray) -> int:
         """Replace designs that are beaten; return how many were."""

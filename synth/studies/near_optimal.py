@@ -19,6 +19,7 @@ import numpy as np
 
 from synth.analysis.designs import make_design, part_row
 from synth.analysis.restate import question_of
+from synth.bounds.boxes import Boxes
 from synth.deadline import Stopped, until
 from synth.errors import InputError, whole_number
 from synth.feasibility import Status
@@ -31,7 +32,6 @@ from synth.question.objectives import with_ties
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.search.archive import Archive, Candidate
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation

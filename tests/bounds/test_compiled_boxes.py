@@ -11,7 +11,10 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from problems.mechanics.startup import reactive_slip_time
-from synth.bounds import compiled_boxes as native_boxes
+from synth.bounds import box_source, compiled_boxes
+from synth.bounds.box_batches import CompiledQuestion, Prepared
+from synth.bounds.boxes import Boxes
+from synth.bounds.branching import ScoreTables
 from synth.bounds.contractor import Contractor, MovingInputs
 from synth.bounds.intervals import BACKWARD, FORWARD
 from synth.compiled import compiler
@@ -40,17 +43,17 @@ def own_cache(tmp_path_factory):
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
         # No optimisation: most of the code is used only once, and bits do not depend on it.
-        patch.setattr(native_boxes, "BOX_FLAGS", (*native_boxes.BOX_FLAGS, "-O0"))
+        patch.setattr(compiled_boxes, "BOX_FLAGS", (*compiled_boxes.BOX_FLAGS, "-O0"))
         yield
 
 
 def loaded(code):
     """Return compiled code."""
-    text = native_boxes.source(code)
+    text = box_source.source(code)
     assert text is not None
-    library = native.library("test", text, CompilingEffort(), native_boxes.BOX_FLAGS)
+    library = native.library("test", text, CompilingEffort(), compiled_boxes.BOX_FLAGS)
     assert library is not None
-    return native_boxes.BoxCode(library, code.sweeps.limits)
+    return compiled_boxes.BoxCode(library)
 
 
 class Case:
@@ -125,7 +128,7 @@ class Case:
 
     def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes()):  # noqa: B008 - it is frozen
         unbounded = np.full(self.n, np.inf)
-        question = native_boxes.CompiledQuestion(
+        question = CompiledQuestion(
             self.tables,
             np.array(self.constants),
             np.array(self.bounds),
@@ -133,20 +136,23 @@ class Case:
             -unbounded,
             unbounded,
             np.ones(self.n),
-            self.steep,
-            self.spreads,
+            ScoreTables(self.steep, self.spreads),
             [np.empty(0)] * self.n,
             TUNING.tolerances.margins,
             sizes,
         )
-        prepared = native_boxes.Prepared(self.contractor, question)
-        return loaded(code).contract(
-            prepared,
+        prepared = Prepared(self.contractor, question)
+        boxes = Boxes(
             self.cell,
             self.low,
             self.high,
             np.full(self.caps.shape, -np.inf),
+            np.ones((self.boxes, self.n + 2), dtype=np.float32),
             np.arange(self.boxes),
+        )
+        return loaded(code).contract(
+            prepared,
+            boxes,
             self.caps if capped else None,
             np.ones((1, len(self.steep))),
             passes,
@@ -159,17 +165,17 @@ class Case:
         alive, low, high, goals, opens = self.numpy(code, capped, passes)
         found = self.compiled(code, capped, passes)
         np.testing.assert_array_equal(found.alive, alive)
-        np.testing.assert_array_equal(found.tag, np.flatnonzero(alive))
-        np.testing.assert_array_equal(found.cell, self.cell[alive])
-        np.testing.assert_array_equal(found.open[alive], opens[alive])
-        np.testing.assert_allclose(found.low, low[alive], rtol, atol)
-        np.testing.assert_allclose(found.high, high[alive], rtol, atol)
+        np.testing.assert_array_equal(found.boxes.tag, np.flatnonzero(alive))
+        np.testing.assert_array_equal(found.boxes.cell, self.cell[alive])
+        np.testing.assert_array_equal(found.undecided[alive], opens[alive])
+        np.testing.assert_allclose(found.boxes.low, low[alive], rtol, atol)
+        np.testing.assert_allclose(found.boxes.high, high[alive], rtol, atol)
         expected = np.where(np.isnan(goals), -np.inf, goals)[alive]
-        np.testing.assert_allclose(found.bounds, expected, rtol, atol)
+        np.testing.assert_allclose(found.boxes.bounds, expected, rtol, atol)
         counted = np.concatenate([opens, np.ones(goals.shape, dtype=bool)], axis=1)[alive].astype(float)
         spreads = [np.einsum("bj,bj->b", counted, s[self.cell[alive, f]]) for f, s in enumerate(self.spreads)]
         scores = np.concatenate([counted @ self.steep * (high[alive] - low[alive]), np.stack(spreads, axis=1)], axis=1)
-        np.testing.assert_allclose(found.scores, scores, 1e-5, 1e-6)
+        np.testing.assert_allclose(found.boxes.scores, scores, 1e-5, 1e-6)
         return int(alive.sum())
 
 
@@ -247,7 +253,7 @@ def test_every_rule_agrees(range_, capped):
 
 
 def test_every_operation_with_a_rule_has_one_in_c():
-    rules = native_boxes.rules
+    rules = box_source.rules
     assert set(rules.FORWARD) | set(rules.POWERS) == set(FORWARD)
     assert set(rules.BACKWARD) | set(rules.POWERS) == set(BACKWARD)
 
@@ -325,8 +331,9 @@ def test_the_result_is_the_same_for_any_number_of_threads():
     alone = case.compiled(code, False, 2)
     for workers in (2, 3, 8):
         shared = case.compiled(code, False, 2, workers, small)
-        for name in ("alive", "cell", "low", "high", "bounds", "scores", "tag"):
-            np.testing.assert_array_equal(getattr(shared, name), getattr(alone, name))
+        np.testing.assert_array_equal(shared.alive, alone.alive)
+        for name in ("cell", "low", "high", "bounds", "scores", "tag"):
+            np.testing.assert_array_equal(getattr(shared.boxes, name), getattr(alone.boxes, name))
 
 
 # -- special functions -------------------------------------------------------------------------------
@@ -342,14 +349,14 @@ def test_special_functions_agree(name):
     text = "\n".join(
         [
             template("compiled", "vectors"),
-            native_boxes.rules.common(),
-            native_boxes.formula_source("value", function),
+            box_source.rules.common(),
+            box_source.formula_source("value", function),
             "void run(const double *in, double *out, long long count) {",
             f"    for (long long i = 0; i < count; i += LANES) *(vd *)(out + i) = value({places});",
             "}",
         ]
     )
-    library = native.library("test", text, CompilingEffort(), native_boxes.BOX_FLAGS)
+    library = native.library("test", text, CompilingEffort(), compiled_boxes.BOX_FLAGS)
     # Registers are read from places that are multiples of their length.
     memory = np.empty((len(arguments) + 1) * count + 8)
     start = (-memory.ctypes.data // 8) % 8
@@ -420,11 +427,11 @@ def test_the_family_agrees(options, grid, monkeypatch):
 
 def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
     asked = []
-    monkeypatch.setattr(native_boxes, "library", lambda *given: asked.append(given))
+    monkeypatch.setattr(compiled_boxes, "library", lambda *given: asked.append(given))
     case = random_case(5, ARITHMETIC, boxes=8)
     code = case.contractor.code(case.root, False)
-    assert native_boxes.compiled(code, CompilingEffort()) is None
-    assert native_boxes.compiled(code, CompilingEffort()) is None
+    assert compiled_boxes.compiled(code, CompilingEffort()) is None
+    assert compiled_boxes.compiled(code, CompilingEffort()) is None
     assert len(asked) == 1
 
 
@@ -452,16 +459,16 @@ def test_requirements_do_not_enter_the_source():
         form.bounding.propagation.code(False, True)
         for form in (formulation({}), formulation({}, requirements={**REQUIREMENTS, "load_torque": "612.345 N*m"}))
     ]
-    assert native_boxes.source(code[0]) == native_boxes.source(code[1])
+    assert box_source.source(code[0]) == box_source.source(code[1])
 
 
 def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
-    monkeypatch.delitem(native_boxes.rules.FORWARD, ca.OP_FLOOR)
+    monkeypatch.delitem(box_source.rules.FORWARD, ca.OP_FLOOR)
     x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
     program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
     cuts = [NodeConstraint("at_most", program.outputs[0], None, 1e-9, 1.0)]
     case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
-    assert native_boxes.source(code) is None
-    assert native_boxes.compiled(code, CompilingEffort()) is None
+    assert box_source.source(code) is None
+    assert compiled_boxes.compiled(code, CompilingEffort()) is None
     assert code.hopeless

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from synth.bounds.boxes import Boxes
 from synth.compiled import compiler
+from synth.compiled.execution import Execution
 from synth.search.archive import Archive
-from synth.search.boxes import Boxes
-from synth.search.execution import Execution
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.tuning import TUNING, CodeSizes
 from tests.sample_problems.strut import designs_of, strut_form

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import synth
+from synth.compiled.execution import Execution
 from synth.model.constraint import void_limits
 from synth.nlp.batch import Tasks
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.question.objectives import chosen_objectives, with_ties
-from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of

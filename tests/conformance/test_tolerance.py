@@ -4,9 +4,9 @@ import casadi as ca
 import numpy as np
 import pytest
 
+from synth.compiled.execution import Execution
 from synth.feasibility import TOLERANCE
 from synth.nlp.ipopt import Task
-from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import synth
+from synth.compiled.execution import Execution
 from synth.declaration import Origin
 from synth.feasibility import SMALLEST, holds
 from synth.model.constraint import SIGNS, Constraint, NodeConstraint, void_limits
@@ -19,7 +20,6 @@ from synth.question.instance import Instance
 from synth.question.objectives import chosen_objectives
 from synth.question.uncertainty import read_block
 from synth.robust.counterpart import robust_counterpart
-from synth.search.execution import Execution
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.studies.infeasibility.relaxation import AMOUNT, Relaxed

@@ -3,9 +3,9 @@
 import pandas as pd
 
 import synth
+from synth.compiled.execution import EXECUTION
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Candidate
-from synth.search.execution import EXECUTION
 from synth.search.formulation import Formulation
 from synth.tuning import TUNING
 from tests.asking import instance_of

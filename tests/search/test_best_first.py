@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import synth
+from synth.bounds.boxes import Boxes
 from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.best_first import OpenBoxes, Progress, best_first
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation

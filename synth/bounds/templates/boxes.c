@@ -67,12 +67,12 @@ static float dot(const float *a, const float *b, long long width) {
 typedef struct {
     vd RL[NODES], RH[NODES], B[ANY(LIMITS)], C[ANY(GOALS)], V[ANY(N)][2], T[ANY(TABLES)][2];
     vd goals[ANY(GOALS)], scores[ANY(N)];
-    vi open[ANY(LIMITS)];
+    vi undecided[ANY(LIMITS)];
 } Registers;
 
 static void begin(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
     for (int k = 0; k < NODES; k++) { r->RL[k] = all(b->root_low[k]); r->RH[k] = all(b->root_high[k]); }
-    for (int j = 0; j < LIMITS; j++) { r->B[j] = all(b->rights[j]); r->open[j] = all_i(0); }
+    for (int j = 0; j < LIMITS; j++) { r->B[j] = all(b->right_sides[j]); r->undecided[j] = all_i(0); }
     memset(counted, 0, LANES * sizeof counted[0]);
 }
 
@@ -87,7 +87,7 @@ static void score(const Batch *b, Registers *r, float counted[LANES][b->score_wi
     }
     for (int j = 0; j < LIMITS + GOALS; j++) {
         vd weight;
-        for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || r->open[j][l] ? own[l][j] : 0.0;
+        for (int l = 0; l < LANES; l++) weight[l] = j >= LIMITS || r->undecided[j][l] ? own[l][j] : 0.0;
         for (int i = 0; i < N; i++) r->scores[i] += weight * b->steep[j * N + i];
         for (int l = 0; l < LANES; l++) counted[l][j] = (float)weight[l];
     }
@@ -108,14 +108,14 @@ long long contract(const Batch *b) {
         for (int l = 0; l < LANES; l++) {
             const long long box = first + (l < left ? l : left - 1);
             for (int i = 0; i < N; i++) { r.V[i][0][l] = b->low[box * N + i]; r.V[i][1][l] = b->high[box * N + i]; }
-            for (int j = 0; j < GOALS; j++) r.C[j][l] = b->caps[box * b->caps_step + j];
+            for (int j = 0; j < GOALS; j++) r.C[j][l] = b->cutoffs[box * b->cutoffs_step + j];
             load_tables(b, b->cell + box * b->factors, r.T, l);
         }
-        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.open);
+        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.undecided);
         dead |= snap(b, r.V);
         for (int l = 0; l < LANES && l < left; l++) {
             b->alive[first + l] = !dead[l];
-            for (int j = 0; j < LIMITS; j++) b->open[(first + l) * LIMITS + j] = r.open[j][l] != 0;
+            for (int j = 0; j < LIMITS; j++) b->undecided[(first + l) * LIMITS + j] = r.undecided[j][l] != 0;
         }
         if (!any(~dead)) continue;
         score(b, &r, counted);

@@ -5,7 +5,7 @@
 typedef struct {
     long long levels, capacity, columns, known, steps, contracted;
     const long long *column;
-    const double *plain, *of_cluster, *known_at[2][2], *steps_at, *steps_largest;
+    const double *fixed, *of_cluster, *known_at[2][2], *steps_at, *steps_largest;
     const int *const *left, *const *right;
     const double *ranges;
     int *out_cell;
@@ -15,16 +15,16 @@ typedef struct {
 } Tree;
 
 /* What a design of a box must keep to be of use; whether the box may hold any. */
-static int caps_of(const Tree *t, const double *lower, const int *cell, double *caps) {
+static int cutoffs_of(const Tree *t, const double *lower, const int *cell, double *cutoffs) {
     for (int j = 0; j < GOALS; j++) {
-        caps[j] = t->plain[j];
-        if (t->of_cluster) caps[j] = fmin(caps[j], t->of_cluster[cell[0] * GOALS + j]);
+        cutoffs[j] = t->fixed[j];
+        if (t->of_cluster) cutoffs[j] = fmin(cutoffs[j], t->of_cluster[cell[0] * GOALS + j]);
     }
     if (t->columns == 2) {
         const double own[2] = {lower[t->column[0]], lower[t->column[1]]};
         for (int k = 0; k < 2; k++) {
             const long long place = above(t->known_at[k][0], t->known, own[1 - k]);
-            if (place) caps[t->column[k]] = fmin(caps[t->column[k]], t->known_at[k][1][place - 1]);
+            if (place) cutoffs[t->column[k]] = fmin(cutoffs[t->column[k]], t->known_at[k][1][place - 1]);
         }
         if (t->steps >= 0) {
             const long long from = above(t->steps_at, t->steps, own[0]);
@@ -36,11 +36,11 @@ static int caps_of(const Tree *t, const double *lower, const int *cell, double *
                 count = right ? count - half - 1 : half;
             }
             if (from >= first) return 0;
-            caps[t->column[0]] = fmin(caps[t->column[0]], t->steps_at[first - 1]);
-            caps[t->column[1]] = fmin(caps[t->column[1]], t->steps_largest[from]);
+            cutoffs[t->column[0]] = fmin(cutoffs[t->column[0]], t->steps_at[first - 1]);
+            cutoffs[t->column[1]] = fmin(cutoffs[t->column[1]], t->steps_largest[from]);
         }
     }
-    for (int j = 0; j < GOALS; j++) if (lower[j] >= caps[j]) return 0;
+    for (int j = 0; j < GOALS; j++) if (lower[j] >= cutoffs[j]) return 0;
     return 1;
 }
 
@@ -135,14 +135,14 @@ long long grow(const Batch *b, Tree *t) {
         int own_cells[LANES][ANY(factors)];
         int number = 0;
         while (number < LANES && waiting) {
-            double caps[ANY(GOALS)];
+            double cutoffs[ANY(GOALS)];
             const Box *box = stack + --waiting;
             const int *cell = cells + waiting * factors;
-            if (!caps_of(t, box->bounds, cell, caps)) continue;
+            if (!cutoffs_of(t, box->bounds, cell, cutoffs)) continue;
             taken[number] = *box;
             memcpy(own_cells[number], cell, factors * sizeof *cell);
             for (int i = 0; i < N; i++) { r.V[i][0][number] = box->low[i]; r.V[i][1][number] = box->high[i]; }
-            for (int j = 0; j < GOALS; j++) r.C[j][number] = caps[j];
+            for (int j = 0; j < GOALS; j++) r.C[j][number] = cutoffs[j];
             load_tables(b, cell, r.T, number++);
         }
         if (!number) break;
@@ -152,13 +152,13 @@ long long grow(const Batch *b, Tree *t) {
             for (int i = 0; i < TABLES; i++) { r.T[i][0][l] = r.T[i][0][0]; r.T[i][1][l] = r.T[i][1][0]; }
         }
         t->contracted += number;
-        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.open);
+        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.undecided);
         dead |= snap(b, r.V);
         if (!any(~dead)) continue;
         score(b, &r, counted);
         for (int l = 0; l < number; l++) {
             if (dead[l]) continue;
-            double caps[ANY(GOALS)];
+            double cutoffs[ANY(GOALS)];
             Box *box = taken + l;
             for (int i = 0; i < N; i++) {
                 box->low[i] = r.V[i][0][l];
@@ -169,7 +169,7 @@ long long grow(const Batch *b, Tree *t) {
                 const double least = r.goals[j][l];
                 box->bounds[j] = box->bounds[j] >= least || least != least ? box->bounds[j] : least;
             }
-            if (!caps_of(t, box->bounds, own_cells[l], caps)) continue;
+            if (!cutoffs_of(t, box->bounds, own_cells[l], cutoffs)) continue;
             for (int f = 0; f < factors; f++)
                 scores[N + f] = dot(counted[l], b->spreads[f] + own_cells[l][f] * b->score_width, b->score_width);
             box->level++;

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from synth.bounds.boxes import Boxes
 from synth.search.archive import Archive, Candidate, rows_of
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, best
 from synth.search.front_state import FrontState
 from synth.search.pruning import EpsilonCover

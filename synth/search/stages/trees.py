@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from synth.bounds.boxes import Boxes
 from synth.search.best_first import best_first
-from synth.search.boxes import Boxes
 from synth.search.branch_and_bound import TreeOutcome, branch_and_bound
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.search.front_state import FrontState

@@ -10,12 +10,21 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Boxes:
-    """A batch of boxes: the cell of combinations of each, its ends, and lower bounds of the objectives.
+    """A batch of boxes.
 
-    The bounds are those of all objectives, or of the first ones where the others do not matter.
-
-    ``scores`` tell how much each variable and factor still blurs limits and objectives; ``tag`` which of
-    several questions a box belongs to, when they share a batch.
+    Parameters
+    ----------
+    cell : array (boxes, factors)
+        A cluster of rows per factor.
+    low, high : array (boxes, variables)
+        Ends of the variables and, where boxes carry them, of the auxiliary variables.
+    bounds : array (boxes, objectives)
+        Lower bounds, with the sign of the objective: of all objectives, or of the first ones where the others do not
+        matter.
+    scores : array (boxes, variables + factors)
+        How much each variable and factor still blurs limits and objectives: where to split.
+    tag : array (boxes,)
+        Which of several questions a box belongs to, when they share a batch.
     """
 
     cell: np.ndarray
@@ -51,7 +60,17 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Subtrees:
-    """What some generations of boxes leave: halves to go on with, boxes too small to be split, how many were seen."""
+    """What some generations of boxes leave.
+
+    Parameters
+    ----------
+    halves : Boxes
+        To go on with.
+    small : Boxes
+        Too small to be split.
+    looked : int
+        How many boxes were tightened.
+    """
 
     halves: Boxes
     small: Boxes

@@ -1,0 +1,235 @@
+"""Batches of boxes as the compiled code reads and writes them: records with addresses of arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from synth.bounds.boxes import Boxes
+from synth.bounds.branching import ScoreTables
+from synth.bounds.contractor import Contractor, Root
+from synth.tuning import CodeSizes
+
+# Rows of scores are as long as a multiple of it, so that registers hold whole ones.
+SCORE_WIDTH = 16
+
+# The record of a batch, in C and here: numbers, arrays that are read, and arrays that are written.
+NUMBERS = {
+    "count": "long long",
+    "passes": "long long",
+    "factors": "long long",
+    "goals": "long long",
+    "cutoffs_step": "long long",
+    "weights_step": "long long",
+    "bits": "long long",
+    "score_width": "long long",
+    "snap": "double",
+    "pinned": "double",
+}
+GIVEN = {
+    "cell": "int",
+    "low": "double",
+    "high": "double",
+    "bounds": "double",
+    "tag": "int",
+    "cutoffs": "double",
+    "constants": "double",
+    "right_sides": "double",
+    "root_low": "double",
+    "root_high": "double",
+    "lower": "double",
+    "upper": "double",
+    "spans": "double",
+    "weights": "double",
+    "steep": "double",
+    "rows": "double *const",
+    "spreads": "float *const",
+    "grids": "double *const",
+    "grid_sizes": "long long",
+}
+TAKEN = {
+    "out_cell": "int",
+    "out_low": "double",
+    "out_high": "double",
+    "out_bounds": "double",
+    "out_tag": "int",
+    "out_scores": "float",
+    "alive": "unsigned char",
+    "undecided": "unsigned char",
+}
+CTYPES: dict[str, type[ctypes.c_longlong | ctypes.c_double]] = {
+    "long long": ctypes.c_longlong,
+    "double": ctypes.c_double,
+}
+
+
+class BatchStructure(ctypes.Structure):
+    """The structure ``Batch`` of the C source."""
+
+    _fields_ = (
+        *((name, CTYPES[kind]) for name, kind in NUMBERS.items()),
+        *((name, ctypes.c_void_p) for name in (*GIVEN, *TAKEN)),
+    )
+
+
+def structure_source() -> str:
+    """Return the definition of the structure in C."""
+    lines = [f"    {kind} {name};" for name, kind in NUMBERS.items()]
+    lines += [f"    const {kind} *{name};" for name, kind in GIVEN.items()]
+    lines += [f"    {kind} *{name};" for name, kind in TAKEN.items()]
+    return "\n".join(["typedef struct {", *lines, "} Batch;"])
+
+
+@dataclass(frozen=True)
+class CompiledQuestion:
+    """What the contraction of boxes reads of one question.
+
+    Parameters
+    ----------
+    tables : list of (factor, low, high)
+        Ends of every tabulated node per cluster.
+    constants, right_sides : array
+        Values of constant nodes, and constant right sides.
+    root : Root
+        What holds over the whole question.
+    lower, upper : array (variables,)
+    spans : array (variables,)
+        Unit of the width of each variable; 0 where widths are logarithms of ratios.
+    scoring : ScoreTables
+    grids : list of arrays
+        Makeable values per variable; empty where it is continuous.
+    margins : (float, float)
+        By how much a value may miss the grid, relative and absolute.
+    sizes : CodeSizes
+    """
+
+    tables: Sequence[tuple[int, np.ndarray, np.ndarray]]
+    constants: np.ndarray
+    right_sides: np.ndarray
+    root: Root
+    lower: np.ndarray
+    upper: np.ndarray
+    spans: np.ndarray
+    scoring: ScoreTables
+    grids: Sequence[np.ndarray]
+    margins: tuple[float, float]
+    sizes: CodeSizes
+
+
+class Prepared:
+    """The arrays of one question as the compiled code reads them.
+
+    Parameters
+    ----------
+    contractor : Contractor
+    question : CompiledQuestion
+    """
+
+    def __init__(self, contractor: Contractor, question: CompiledQuestion) -> None:
+        steep, of_clusters = question.scoring.steep, question.scoring.spreads
+        self.n, self.factors, self.sizes = len(question.lower), len(of_clusters), question.sizes
+        self.limits = len(contractor.cuts)
+        width = -(-steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
+        self.kept: dict[str, Any] = {
+            name: np.ascontiguousarray(getattr(question, name), dtype=float)
+            for name in ("constants", "right_sides", "lower", "upper", "spans")
+        }
+        self.kept["steep"] = np.ascontiguousarray(steep, dtype=float)
+        for name, end in (("root_low", question.root.low), ("root_high", question.root.high)):
+            self.kept[name] = np.where(question.root.narrowed, end, np.nan)
+        per_factor: list[list[np.ndarray]] = [[] for _ in range(self.factors)]
+        for f, low, high in question.tables:
+            per_factor[f] += [low, high]
+        rows = [np.stack(own, axis=1) if own else np.zeros((1, 1)) for own in per_factor]
+        spreads = [np.zeros((len(s), width), dtype=np.float32) for s in of_clusters]
+        for padded, spread in zip(spreads, of_clusters, strict=True):
+            padded[:, : spread.shape[1]] = spread
+        grids = [np.ascontiguousarray(g, dtype=float) for g in question.grids]
+        self.kept["grid_sizes"] = np.array([len(g) for g in grids] or [0], dtype=np.int64)
+        self._lists = {"rows": rows, "spreads": spreads, "grids": grids}
+        for name, arrays in self._lists.items():
+            self.kept[name] = np.array([a.ctypes.data for a in arrays] or [0], dtype=np.uintp)
+        self.numbers = {
+            "factors": self.factors,
+            "score_width": width,
+            "snap": question.margins[0],
+            "pinned": question.margins[1],
+        }
+
+
+class Batches:
+    """Some boxes as the compiled code reads them, from any first to any last one.
+
+    Parameters
+    ----------
+    prepared : Prepared
+    boxes : Boxes
+    weights : array (sets, limits + objectives)
+        One row per set of objectives with a cutoff, a power of 2; or one row alone.
+    passes : int
+        Forward-backward sweeps.
+    moving : mapping, optional
+        Further arrays with a row per box, so that a batch begins so many rows further on.
+    still : mapping, optional
+        Further arrays that serve all boxes.
+    numbers : int
+        Further numbers of the record.
+    """
+
+    def __init__(
+        self,
+        prepared: Prepared,
+        boxes: Boxes,
+        weights: np.ndarray,
+        passes: int,
+        moving: Mapping[str, np.ndarray] | None = None,
+        still: Mapping[str, np.ndarray] | None = None,
+        **numbers: int,
+    ) -> None:
+        own = {
+            "cell": np.ascontiguousarray(boxes.cell, dtype=np.int32),
+            "low": np.ascontiguousarray(boxes.low, dtype=float),
+            "high": np.ascontiguousarray(boxes.high, dtype=float),
+            "bounds": np.ascontiguousarray(boxes.bounds, dtype=float),
+            "tag": np.ascontiguousarray(boxes.tag, dtype=np.int32),
+        }
+        self._moving = own | dict(moving or {})
+        self._fixed = prepared.kept | {"weights": np.ascontiguousarray(weights, dtype=float)} | dict(still or {})
+        self._numbers = {
+            **prepared.numbers,
+            "weights_step": weights.shape[1],
+            "bits": len(weights).bit_length() - 1,
+            "goals": boxes.bounds.shape[1],
+            "passes": passes,
+            **numbers,
+        }
+
+    def part(self, first: int, last: int) -> BatchStructure:
+        """Return the boxes from a first to a last one; it knows addresses only, of arrays that live as long as this."""
+        places = {name: a.ctypes.data for name, a in self._fixed.items()}
+        places |= {name: a.ctypes.data + first * a.strides[0] for name, a in self._moving.items()}
+        return BatchStructure(count=last - first, **self._numbers, **places)
+
+
+def all_done(work: Sequence[Callable[[], None]], workers: int) -> None:
+    """Do all of some work, shared among threads.
+
+    Threads take the next part when they are free: a core that is busy with something else holds nobody up.
+    """
+    waiting = iter(work)
+
+    def run() -> None:
+        for part in waiting:
+            part()
+
+    threads = [threading.Thread(target=run) for _ in range(min(workers, len(work)) - 1)]
+    for thread in threads:
+        thread.start()
+    run()
+    for thread in threads:
+        thread.join()
