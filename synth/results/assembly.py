@@ -13,6 +13,8 @@ from synth.pareto import rank
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame
 from synth.results.front import ParetoFront
+from synth.results.least_infeasible import LeastInfeasible
+from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
 
@@ -51,10 +53,10 @@ def front_of(
     designs: Sequence[Design],
     certificate: Certificate,
     statistics: SearchStatistics,
-    settings: Mapping[str, Any],
+    settings: SettingsRecord,
     *,
     complete: bool,
-    explanation: Mapping[str, Any] | None = None,
+    explanation: LeastInfeasible | None = None,
     interrupted: str = "",
 ) -> ParetoFront:
     """Return the front of a question that was searched; its status follows from designs and certificate.
@@ -67,11 +69,11 @@ def front_of(
         In order of rank.
     certificate : Certificate
     statistics : SearchStatistics
-    settings : mapping
+    settings : SettingsRecord
         As they were asked for.
     complete : bool
         Whether all non-dominated designs are listed.
-    explanation : mapping, optional
+    explanation : LeastInfeasible, optional
         Why there is no design.
     interrupted : str
         What stopped the search; nothing where it was finished.

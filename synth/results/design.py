@@ -10,6 +10,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import yaml_text
+from synth.results.ratings import DesignRating
 from synth.units import format_quantity, from_si, header
 
 
@@ -100,7 +101,7 @@ class Design:
     advice: tuple[str, ...] = ()
     violated: tuple[str, ...] = ()
     not_checked: tuple[str, ...] = ()
-    robust: Mapping[str, Any] = field(default_factory=dict)
+    robust: DesignRating = field(default_factory=DesignRating)
     steps: Mapping[str, float] = field(default_factory=DesignSteps)
 
     def to_spec(self) -> dict[str, Any]:

@@ -13,8 +13,10 @@ from synth.output_folder import FRONT, save_result
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
 from synth.results.front_record import FRONT_FORMAT, design_record, digest_of, finite, plain, record_text
+from synth.results.least_infeasible import LeastInfeasible
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
+from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
 if TYPE_CHECKING:
@@ -37,8 +39,8 @@ class ParetoFront:
     complete: bool
     statistics: SearchStatistics
     certificate: Certificate
-    explanation: Mapping[str, Any] | None
-    settings: Mapping[str, Any]
+    explanation: LeastInfeasible | None
+    settings: SettingsRecord
     interrupted: str = ""
     question: Any = field(default=None, repr=False, compare=False)
     record: Mapping[str, Any] | None = field(default=None, repr=False, compare=False)

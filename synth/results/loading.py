@@ -13,6 +13,9 @@ from synth.results.certificate import Certificate
 from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
 from synth.results.front_record import FRONT_FORMAT, changed
+from synth.results.least_infeasible import LeastInfeasible
+from synth.results.ratings import DesignRating
+from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 
 COMPARISON = "comparison.json"
@@ -111,8 +114,8 @@ def _front_from_json(content: dict[str, Any], folder: Path) -> ParetoFront:
         complete=content["complete"],
         statistics=SearchStatistics.from_json(content["statistics"]),
         certificate=_certificate_from_json(content["certificate"]),
-        explanation=content["explanation"],
-        settings=content["settings"],
+        explanation=LeastInfeasible.read(content["explanation"]),
+        settings=SettingsRecord.read(content["settings"]),
         interrupted=content["interrupted"],
         record=content,
         folder=folder,
@@ -149,7 +152,7 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         advice=tuple(d["advice"]),
         violated=tuple(d["violated"]),
         not_checked=tuple(d["not_checked"]),
-        robust=d.get("robust", {}),
+        robust=DesignRating.read(d.get("robust", {})),
         steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
     )
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
+from synth.results.ratings import RatingCounts
 from synth.results.told import UNTOLD, Told, Untold
 
 
@@ -43,7 +44,7 @@ class SearchStatistics(Told):
         Combinations drawn where neither bounds nor enumeration reach.
     seconds : mapping
         Stage -> time; ``total``.
-    robust : mapping
+    robust : RatingCounts
         What was rated and posed because something scatters.
     """
 
@@ -65,4 +66,12 @@ class SearchStatistics(Told):
     nlp_solves_to_find: int | Untold | None = UNTOLD
     outer_trials: int | Untold = UNTOLD
     seconds: Mapping[str, float] | Untold = UNTOLD
-    robust: Mapping[str, Any] | Untold = UNTOLD
+    robust: RatingCounts | Untold = UNTOLD
+
+    @classmethod
+    def from_json(cls, content: Mapping[str, Any]) -> Self:
+        """Return the record that a file tells, the counts of ratings too."""
+        found = dict(content)
+        if "robust" in found:
+            found["robust"] = RatingCounts.read(found["robust"])
+        return super().from_json(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import Field, dataclass, field, fields
 from enum import Enum
 from typing import Any, NoReturn, Self
 
@@ -21,22 +21,28 @@ UNTOLD = Untold.UNTOLD
 class Told(dict[str, Any]):
     """A record whose fields are keys as well, in the order of their declaration; it cannot be changed.
 
-    A field that is not told is no key. ``more`` are keys that no field is for, as other versions may have written them.
+    A field that is not told is no key. The key of a field is its name, or where that could not be one what its metadata
+    says under ``key``. ``more`` are keys that no field is for, as other versions may have written them.
     """
 
     more: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Fill in the keys."""
-        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "more"}
-        super().update({name: value for name, value in own.items() if value is not UNTOLD} | dict(self.more))
+        own = {_key(f): getattr(self, f.name) for f in fields(self) if f.name != "more"}
+        super().update({key: value for key, value in own.items() if value is not UNTOLD} | dict(self.more))
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> Self:
         """Return the record that a file tells."""
-        names = {f.name for f in fields(cls)} - {"more"}
-        own = {name: value for name, value in content.items() if name in names}
-        return cls(**own, more={name: value for name, value in content.items() if name not in names})
+        names = {_key(f): f.name for f in fields(cls) if f.name != "more"}
+        own = {names[key]: value for key, value in content.items() if key in names}
+        return cls(**own, more={key: value for key, value in content.items() if key not in names})
+
+    @classmethod
+    def read(cls, content: Any) -> Any:
+        """Return the record that a file tells; what is none stays what it is, for verification to name."""
+        return cls.from_json(content) if isinstance(content, Mapping) else content
 
     def to_json(self) -> dict[str, Any]:
         """Return the keys and values as a plain dictionary."""
@@ -51,3 +57,7 @@ class Told(dict[str, Any]):
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     update = setdefault = pop = popitem = clear = _refuse
+
+
+def _key(own: Field[Any]) -> str:
+    return str(own.metadata.get("key", own.name))

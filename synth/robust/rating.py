@@ -27,6 +27,7 @@ from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.question.uncertainty import Uncertainty
 from synth.results import Design
+from synth.results.ratings import DesignRating, LimitRating
 from synth.robust.uncertainty import Member, check_values, scattered
 from synth.tuning import TUNING, RobustLimits
 
@@ -78,7 +79,7 @@ class Rater:
         designs: Sequence[Design],
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         deadline: float = math.inf,
-    ) -> tuple[list[dict[str, Any]], str]:
+    ) -> tuple[list[DesignRating], str]:
         """Return the rating of each design, and what stopped the work before the last one.
 
         Parameters
@@ -94,7 +95,7 @@ class Rater:
         tuple
             The ratings (see ``Design.robust``) of the first designs, and "time limit", "interrupted" or nothing.
         """
-        done: list[dict[str, Any]] = []
+        done: list[DesignRating] = []
         reason = ""
         try:
             for k, design in enumerate(designs):
@@ -108,7 +109,7 @@ class Rater:
             reason = "interrupted"
         return done, reason
 
-    def one(self, design: Design) -> dict[str, Any]:
+    def one(self, design: Design) -> DesignRating:
         """Return the rating of one design: see ``Design.robust``."""
         corners, samples = self.residuals(design, self.corners), self.residuals(design, self.samples)
         with np.errstate(all="ignore"):
@@ -122,7 +123,7 @@ class Rater:
             worst.append((row, float(values[row])))
         rows = [row for row, _ in worst]
         sides = self.sides(design, every[rows])
-        told: dict[str, Any] = {}
+        told: dict[str, LimitRating] = {}
         for j, limit in enumerate(self.limits):
             row, r = worst[j]
             if r == -math.inf:
@@ -130,19 +131,19 @@ class Rater:
             value, bound = float(sides[j][0][j]), float(sides[j][1][j])
             fine = bool(holds(r, limit.guard))
             proof = proofs[j].kind if fine or proofs[j].kind != BOUNDED else SAMPLED
-            told[limit.name] = {
-                "holds": fine,
-                "proof": proof,
-                "residual": _finite(r),
-                "value": _finite(value),
-                "limit": _finite(bound),
-                "utilisation": _finite(float(utilisation(value, bound, limit.sense))),
-                "at": self.at(design, every[row], limit.name),
-                "position": [float(p) for p in every[row]],
-            }
+            told[limit.name] = LimitRating(
+                holds=fine,
+                proof=proof,
+                residual=_finite(r),
+                value=_finite(value),
+                limit=_finite(bound),
+                utilisation=_finite(float(utilisation(value, bound, limit.sense))),
+                at=self.at(design, every[row], limit.name),
+                position=[float(p) for p in every[row]],
+            )
         return self._summary(told, samples)
 
-    def _summary(self, told: dict[str, Any], samples: np.ndarray) -> dict[str, Any]:
+    def _summary(self, told: dict[str, LimitRating], samples: np.ndarray) -> DesignRating:
         fine = np.ones(samples.shape[1], dtype=bool)
         for x, own in zip(self.limits, samples, strict=True):
             fine &= holds(own, x.guard)
@@ -151,21 +152,21 @@ class Rater:
         proven = holding and all(x["proof"] != SAMPLED for x in told.values())
         low, high = (1.0, 1.0) if proven else _interval(hits, count, self.asked.confidence)
         name = max(told, key=lambda n: math.inf if told[n]["residual"] is None else told[n]["residual"], default="")
-        return {
-            "holds": holding,
-            "proof": PROVEN if proven or (not holding and told[name]["proof"] == PROVEN) else SAMPLED,
-            "yield": hits / count,
-            "yield_low": low,
-            "yield_high": high,
-            "confidence": self.asked.confidence,
-            "samples": count,
-            "worst_limit": name,
-            "worst_utilisation": told[name]["utilisation"] if told else None,
-            "worst_residual": told[name]["residual"] if told else None,
-            "worst_at": told[name]["at"] if told else {},
-            "units": dict(self.units),
-            "limits": told,
-        }
+        return DesignRating(
+            holds=holding,
+            proof=PROVEN if proven or (not holding and told[name]["proof"] == PROVEN) else SAMPLED,
+            share_good=hits / count,
+            yield_low=low,
+            yield_high=high,
+            confidence=self.asked.confidence,
+            samples=count,
+            worst_limit=name,
+            worst_utilisation=told[name]["utilisation"] if told else None,
+            worst_residual=told[name]["residual"] if told else None,
+            worst_at=told[name]["at"] if told else {},
+            units=dict(self.units),
+            limits=told,
+        )
 
     def sides(self, design: Design, positions: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return both sides of every limit at positions of the range."""

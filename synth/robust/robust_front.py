@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from synth.feasibility import Status
 from synth.question.instance import Instance
@@ -14,6 +14,7 @@ from synth.question.settings import Progress
 from synth.question.uncertainty import LIMITS, Uncertainty
 from synth.results import Design, ParetoFront
 from synth.results.assembly import ranked
+from synth.results.ratings import DesignRating, RatingCounts
 from synth.robust.rating import Rater
 from synth.robust.uncertainty import check_rows
 from synth.tuning import RobustLimits, Tuning
@@ -106,7 +107,7 @@ class _RatedFront:
 
     asked: Uncertainty
     front: ParetoFront
-    ratings: list[dict[str, Any]]
+    ratings: list[DesignRating]
     stopped: str
     posed: int  # limits beside those of the problem
     limits: RobustLimits
@@ -135,17 +136,17 @@ class _RatedFront:
     def told(self, searches: int) -> ParetoFront:
         """Return the front: its designs tell how they stand the range, its question repeats what scatters."""
         front, block = self.front, self.asked.block()
-        counts = {"searches": searches, "rated": len(self.ratings), "samples": self.asked.samples}
+        counts = RatingCounts(searches=searches, rated=len(self.ratings), samples=self.asked.samples)
         if self.asked.mode == LIMITS:
-            counts |= {"limits_posed": self.posed, "taken_off": len(self.failing)}
+            counts = replace(counts, limits_posed=self.posed, taken_off=len(self.failing))
         frame = replace(front.frame, restated={**front.frame.restated, "robust": block})
-        known = [*self.ratings, *({} for _ in range(len(front.designs) - len(self.ratings)))]
+        known = [*self.ratings, *(DesignRating() for _ in range(len(front.designs) - len(self.ratings)))]
         done = replace(
             front,
             frame=frame,
             designs=[replace(d, frame=frame, robust=told) for d, told in zip(front.designs, known, strict=True)],
             statistics=replace(front.statistics, robust=counts),
-            settings={**front.settings, "robust": block},
+            settings=replace(front.settings, robust=block),
             interrupted=self.stopped,
         )
         return _without(done, self.failing) if self.asked.mode == LIMITS and self.failing else done

@@ -12,6 +12,8 @@ from synth.analysis.designs import make_frame, offered
 from synth.feasibility import Status
 from synth.results import Certificate, Design, Frame, ParetoFront
 from synth.results.assembly import front_of, ranked
+from synth.results.least_infeasible import LeastInfeasible
+from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
 from synth.search.archive import Candidate, distinct
 from synth.search.found_designs import found_designs
@@ -101,8 +103,8 @@ def front_found(
     state: FrontState,
     frame: Frame,
     designs: Sequence[Design],
-    settings: Mapping[str, Any],
-    explanation: Mapping[str, Any] | None = None,
+    settings: SettingsRecord,
+    explanation: LeastInfeasible | None = None,
     interrupted: str = "",
 ) -> ParetoFront:
     """Return the front with what is proven of it.
@@ -113,9 +115,9 @@ def front_found(
     frame : Frame
     designs : list of Design
         In order of rank.
-    settings : mapping
+    settings : SettingsRecord
         As they were asked for.
-    explanation : mapping, optional
+    explanation : LeastInfeasible, optional
         Why there is no design.
     interrupted : str
         What stopped the search; nothing where it was finished.

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from synth import deadline
 from synth.analysis.designs import make_frame
@@ -12,6 +11,8 @@ from synth.compiled.compilation import meanwhile, switched_off
 from synth.deadline import Stopped
 from synth.question.settings import Progress
 from synth.results import Design, Frame, ParetoFront
+from synth.results.least_infeasible import LeastInfeasible
+from synth.results.search_record import SettingsRecord
 from synth.search.archive import Candidate
 from synth.search.front_claim import claim_no_less
 from synth.search.front_report import designs_as_found, front_found, settled_designs
@@ -34,14 +35,14 @@ class Report:
     ----------
     weights : list of float
         Of the objectives, for the ranking.
-    settings : mapping
+    settings : SettingsRecord
         As they were asked for; kept with the front.
     explained : bool
         Tell why, where nothing is feasible.
     """
 
     weights: Sequence[float]
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: SettingsRecord = field(default_factory=SettingsRecord)
     explained: bool = True
 
 
@@ -84,7 +85,7 @@ class FrontSearch:
         state, interrupted = self.state, ""
         frame = make_frame(state.task.instance, state.task.chosen)
         designs: list[Design] = []
-        explanation: Mapping[str, Any] | None = None
+        explanation: LeastInfeasible | None = None
         try:
             with deadline.until(state.clock.deadline), meanwhile(lambda ready: self.look_aside(ready, report)):
                 find_designs(state)
@@ -174,7 +175,7 @@ def choose_and_report(state: FrontState, frame: Frame, weights: Sequence[float])
         return settled_designs(state, frame, weights, state.front)
 
 
-def explain(state: FrontState) -> Mapping[str, Any]:
+def explain(state: FrontState) -> LeastInfeasible:
     """Return why nothing is feasible."""
     searched = set(state.form.counters.solved_combinations)
     with state.progress.stage("explanation"):

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
 from synth.model.constraint import Constraint
 from synth.nlp.batch import Tasks
+from synth.results.least_infeasible import LeastInfeasible, MissedLimit
 from synth.search.formulation import Formulation
 from synth.units import format_quantity
 
 
-def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[str, Any]:
+def explain_infeasible(form: Formulation, rng: np.random.Generator) -> LeastInfeasible:
     """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
@@ -33,7 +31,9 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> Mapping[s
         numbers = np.unique(np.concatenate([np.empty(0, dtype=np.int64), *near]))
         numbers = numbers if len(numbers) <= limits.tries else rng.choice(numbers, size=limits.tries, replace=False)
     if not found:
-        return {"message": "no design could be evaluated; check the requirements for values far from each other"}
+        return LeastInfeasible(
+            message="no design could be evaluated; check the requirements for values far from each other"
+        )
     _, combination, variables = found[0]
     return _told(form, combination, variables)
 
@@ -73,7 +73,7 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
     return worst
 
 
-def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping[str, Any]:
+def _told(form: Formulation, combination: int, variables: np.ndarray) -> LeastInfeasible:
     result = form.points.evaluate(variables[None, :], np.array([combination]))
     conflicts = []
     for limit in form.constraints:
@@ -86,24 +86,24 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> Mapping
     nearest |= {n: f"{v:g}" for n, v in counts.items()} | dict(choices)
     names = ", ".join(c["limit"] for c in conflicts)
     sentences = "; ".join(c["sentence"] for c in conflicts)
-    return {
-        "message": f"No combination is feasible. The nearest design found misses {names}: {sentences}.",
-        "conflicts": conflicts,
-        "nearest": nearest,
-        "parts": {slot: table.designations[row] for slot, (table, row) in parts.items()},
-    }
+    return LeastInfeasible(
+        message=f"No combination is feasible. The nearest design found misses {names}: {sentences}.",
+        conflicts=conflicts,
+        nearest=nearest,
+        parts={slot: table.designations[row] for slot, (table, row) in parts.items()},
+    )
 
 
-def _conflict(limit: Constraint, value: float, bound: float) -> dict[str, Any]:
+def _conflict(limit: Constraint, value: float, bound: float) -> MissedLimit:
     missed = abs(value - bound) / max(abs(bound), 1e-300)
     shown, allowed = (format_quantity(x, limit.unit, 5) for x in (value, bound))
     share = format_quantity(missed, "%", 3)
     words = {"at_most": "at most", "at_least": "at least", "equal": "exactly"}[limit.sense]
-    return {
-        "limit": limit.name,
-        "value": value,
-        "limit_value": bound,
-        "unit": limit.unit,
-        "missed_by": missed,
-        "sentence": f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {share})",
-    }
+    return MissedLimit(
+        limit=limit.name,
+        value=value,
+        limit_value=bound,
+        unit=limit.unit,
+        missed_by=missed,
+        sentence=f"{limit.name} is {shown} where {words} {allowed} is allowed (missed by {share})",
+    )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from synth.bounds.branching import BranchingStatistics
 from synth.model.problem import DesignProblem
@@ -14,6 +13,7 @@ from synth.question.objectives import chosen_objectives, weights_of
 from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings
 from synth.results import Design, ParetoFront
+from synth.results.search_record import SettingsRecord
 from synth.robust.counterpart import robust_counterpart
 from synth.search.front_search import FrontSearch, Report
 from synth.search.front_state import FrontTask
@@ -41,18 +41,19 @@ class Question:
         """Return the same with another time limit; None: without any."""
         return replace(self, settings=self.settings.within(seconds))
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> SettingsRecord:
         """Return what a front keeps of the question beside its frame, as files keep it."""
-        return {
-            "points": self.settings.points,
-            "gap": self.settings.gap,
-            "grid": self.request.grid,
-            "seed": self.settings.seed,
-            "weights": self.weights,
-            "parts": self.request.rules(),
-            "limits": stated(self.request.limits),
-            "fix": stated(self.request.fix),
-        }
+        request, settings = self.request, self.settings
+        return SettingsRecord(
+            points=settings.points,
+            gap=settings.gap,
+            grid=request.grid,
+            seed=settings.seed,
+            weights=self.weights,
+            parts=request.rules(),
+            limits=stated(request.limits),
+            fix=stated(request.fix),
+        )
 
     def answer(
         self,
@@ -136,5 +137,5 @@ def one_best(
     """
     chosen = chosen_objectives(instance.model, [objective])
     task = FrontTask(instance=instance, chosen=chosen, settings=settings, tuning=tuning, node_limit=node_limit)
-    record = {"points": settings.points, "gap": settings.gap}
+    record = SettingsRecord(points=settings.points, gap=settings.gap)
     return FrontSearch(task).run(Report(weights=[1.0], settings=record, explained=False))

@@ -21,6 +21,7 @@ from synth.files import csv_text
 from synth.margins import MARGINS
 from synth.plain_text import PlainStream, printable
 from synth.results import Design, ParetoFront
+from synth.results.least_infeasible import LeastInfeasible
 from synth.units import format_quantity, from_si, split_header
 
 if TYPE_CHECKING:
@@ -341,7 +342,7 @@ def _plain(si: float, unit: str) -> str:
 
 def explanation_text(front: ParetoFront) -> str:
     """Return in words and one table why nothing is feasible."""
-    explanation = front.explanation or {}
+    explanation = front.explanation or LeastInfeasible()
     buffer = io.StringIO()
     console = console_on(buffer, WIDTH)
     console.print(explanation.get("message", "No design is feasible."))

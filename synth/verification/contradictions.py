@@ -13,6 +13,7 @@ from types import UnionType
 from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
 
 from synth.errors import InputError
+from synth.results.told import Told
 from synth.units import parse_unit
 
 if TYPE_CHECKING:
@@ -154,6 +155,8 @@ def _fits(value: Any, hint: Any) -> bool:
     (True, False, True)
     """
     kind, inner = get_origin(hint), get_args(hint)
+    if isinstance(hint, type) and issubclass(hint, Told):
+        return _fits(value, Mapping[str, Any])
     if hint is Any or is_dataclass(hint):  # those are looked at by themselves
         return True
     if kind in (Union, UnionType):

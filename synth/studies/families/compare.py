@@ -452,8 +452,9 @@ class _Comparing:
             return replace(told, outcome="stopped", sentence=reason)
         if not member.designs:
             nothing = NOTHING_STANDS if member.incomplete else "No design is feasible."
-            explanation = (member.front.explanation or {}).get("message", nothing)
-            return replace(told, outcome="infeasible", sentence=str(explanation))
+            explanation = member.front.explanation
+            message = nothing if explanation is None else explanation.get("message", nothing)
+            return replace(told, outcome="infeasible", sentence=str(message))
         if any(m is member for m, _ in every):
             reason = "it has designs that nothing beats, but there is no room for them among so few points"
             return replace(told, outcome="beaten", sentence=reason)

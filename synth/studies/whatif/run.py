@@ -316,7 +316,7 @@ class _Run:
 def _reranked(front: ParetoFront, question: Question) -> ParetoFront:
     """Return a front with other weights: the designs are the same, their order is not."""
     _, designs = ranked(front.designs, question.chosen, list(question.weights.values()))
-    return replace(front, designs=designs, settings={**front.settings, **question.record()})
+    return replace(front, designs=designs, settings=replace(front.settings, **question.record()))
 
 
 def _fingerprint(question: Question, rater: Rater | None, weights: bool = True) -> str:

@@ -67,7 +67,7 @@ class StudyStep:
 
     def _conflicts(self) -> Sequence[Mapping[str, Any]]:
         explanation = None if self.front is None else self.front.explanation
-        return (explanation or {}).get("conflicts") or []
+        return [] if explanation is None else explanation.get("conflicts") or []
 
 
 @dataclass(frozen=True)

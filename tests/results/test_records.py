@@ -1,0 +1,115 @@
+"""What fronts tell beside numbers: typed records that read like the mappings of their files."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from dataclasses import replace
+
+import pytest
+
+import synth
+from synth.results import ParetoFront
+from synth.results.least_infeasible import LeastInfeasible, MissedLimit
+from synth.results.ratings import DesignRating, LimitRating, RatingCounts
+from synth.results.search_record import SettingsRecord
+from synth.results.told import UNTOLD, Told
+from tests.sample_problems.strut import NEEDED, RODS, Strut
+
+CATALOGS = {"rods": RODS}
+
+
+@pytest.fixture(scope="module")
+def infeasible() -> ParetoFront:
+    return synth.synthesize(Strut(), NEEDED, catalogs=CATALOGS, limits={"mass": "<= 1 g"}, points=2)
+
+
+@pytest.fixture(scope="module")
+def rated() -> ParetoFront:
+    block = {"load": "+-5 %", "mode": "rate", "samples": 64}
+    return synth.synthesize(Strut(), NEEDED, catalogs=CATALOGS, points=2, robust=block)
+
+
+def through_a_file(front: ParetoFront, folder: object) -> ParetoFront:
+    return synth.load_front(front.save(str(folder)))
+
+
+def test_why_nothing_is_feasible_has_names_and_keys(infeasible: ParetoFront, tmp_path: object) -> None:
+    for told in (infeasible.explanation, through_a_file(infeasible, tmp_path).explanation):
+        assert isinstance(told, LeastInfeasible)
+        assert list(told) == ["message", "conflicts", "nearest", "parts"]
+        assert told.message == told["message"]
+        assert told.conflicts is not UNTOLD
+        first = told.conflicts[0]
+        assert isinstance(first, MissedLimit)
+        assert list(first) == ["limit", "value", "limit_value", "unit", "missed_by", "sentence"]
+        assert first.limit == first["limit"]
+        assert str(first.limit) in str(told.message)
+    assert infeasible.explanation == told
+
+
+def test_ratings_have_names_and_keys(rated: ParetoFront, tmp_path: object) -> None:
+    again = through_a_file(rated, tmp_path)
+    for front in (rated, again):
+        told = front.designs[0].robust
+        assert isinstance(told, DesignRating)
+        assert list(told)[:4] == ["holds", "proof", "yield", "yield_low"]
+        assert told.share_good == told["yield"]
+        assert told.limits is not UNTOLD
+        assert {type(x) for x in told.limits.values()} == {LimitRating}
+        counts = front.statistics.robust
+        assert isinstance(counts, RatingCounts)
+        assert counts.rated == counts["rated"] == len(front.designs)
+        assert "taken_off" not in counts
+        assert isinstance(front.settings, SettingsRecord)
+        assert front.settings.robust == front.settings["robust"] == front.frame.restated["robust"]
+    assert again.settings == rated.settings
+    assert [d.robust for d in again.designs] == [d.robust for d in rated.designs]
+
+
+def test_settings_are_told_in_the_order_of_the_file(rated: ParetoFront) -> None:
+    keys = ["points", "gap", "grid", "seed", "weights", "parts", "limits", "fix", "robust"]
+    assert list(rated.settings) == keys
+    assert (rated.settings.points, rated.settings.gap) == (2, rated.settings["gap"])
+
+
+def test_a_design_that_was_not_rated_tells_nothing(infeasible: ParetoFront) -> None:
+    front = synth.synthesize(Strut(), NEEDED, catalogs=CATALOGS, points=2)
+    assert not front.designs[0].robust
+    assert front.designs[0].robust == {}
+    assert "robust" not in front.settings
+    assert front.explanation is None
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        DesignRating(holds=True, share_good=0.5, limits={"a": LimitRating(holds=True)}),
+        LeastInfeasible(message="none", conflicts=[MissedLimit(limit="a", value=1.0)]),
+        SettingsRecord.from_json({"points": 3, "of another version": 1}),
+    ],
+    ids=lambda x: type(x).__name__,
+)
+def test_records_go_through_files_and_processes(told: Told) -> None:
+    for again in (
+        pickle.loads(pickle.dumps(told)),
+        copy.deepcopy(told),
+        type(told).from_json(json.loads(json.dumps(told))),
+    ):
+        assert type(again) is type(told)
+        assert again == told
+        assert repr(again) == repr(dict(told))
+    assert replace(told) == told
+
+
+def test_a_key_may_be_no_name() -> None:
+    told = DesignRating.from_json({"yield": 0.25, "more": 1})
+    assert (told.share_good, told["yield"], told["more"]) == (0.25, 0.25, 1)
+    assert dict(replace(told, share_good=0.5)) == {"yield": 0.5, "more": 1}
+
+
+def test_what_is_no_record_stays_what_it_is() -> None:
+    assert [SettingsRecord.read(x) for x in (7, None, [1])] == [7, None, [1]]
+    assert DesignRating.read({"limits": [7]})["limits"] == [7]
+    assert LeastInfeasible.read({"conflicts": [7]})["conflicts"] == [7]
