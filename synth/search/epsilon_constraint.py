@@ -14,8 +14,8 @@ from synth.search.archive import Candidate
 from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
+from synth.search.one_exchange import OneExchange
 from synth.search.polishing import polish_variables
-from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover, NonImprovement
 
 CAPPED, SOUGHT = 0, 1
@@ -56,7 +56,7 @@ def cover_by_epsilon_constraint(
     # The other end first: good designs there are often not far from good in both.
     first, end = best(form, pool, CAPPED, cutoffs, rule.tolerance[CAPPED], clock, rng, node_limit=node_limit)
     looked, left, narrow = end.looked, [form.boxes.lean(form.boxes.nothing())], first is not None and end.closed
-    PrimalHeuristics(form, rule, rng, False).beside(clock)
+    OneExchange(form, rule, rng).improve(clock)
     if end.closed and first is not None:
         corner[CAPPED] = max(corner[CAPPED], first.phi[CAPPED] - rule.tolerance[CAPPED])
     while True:

@@ -1,4 +1,4 @@
-"""Looks for designs: in boxes that nothing known covers, and beside designs that are known."""
+"""Primal heuristics: look for designs in boxes that nothing known covers, by points, rounding and solves."""
 
 from __future__ import annotations
 
@@ -10,13 +10,10 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.margins import below
 from synth.nlp.batch import Solutions, Tasks
-from synth.pareto import spread_subset
-from synth.search.archive import Candidate, rows_of
-from synth.search.budget import Clock
+from synth.search.archive import rows_of
 from synth.search.formulation import Formulation
 from synth.search.polishing import polish_variables
 from synth.search.pruning import PruningRule
-from synth.search.refused_cells import not_refused
 
 
 class PrimalHeuristics:
@@ -116,7 +113,7 @@ class PrimalHeuristics:
         if not form.gridded.any():
             self.offer(found.variables, combinations)
 
-    def _learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
+    def learn(self, tasks: Tasks, combinations: np.ndarray, found: Solutions) -> None:
         """Learn from optima; in infeasibility mode the closer they come to being of use, the more boxes they cost."""
         importance = np.ones(len(found.t))
         if self.form.infeasibility:
@@ -247,116 +244,7 @@ class PrimalHeuristics:
         worse = phi[alone] + form.tuning.tolerances.edge_worth
         return new + self._taken(points[alone], combinations[alone], worse), rows
 
-    def again(self, combinations: np.ndarray, points: np.ndarray) -> None:
-        """Take designs as they are where they are feasible, and solve each again from the objectives that it has."""
-        form = self.form
-        near = form.makeable.nearest(points)
-        self.offer(near, combinations)
-        if form.n:
-            _, phi = form.points.feasible_rows(points, combinations)
-            self._reach(combinations, points, phi[:, self.rule.columns])
-
-    def beside(self, clock: Clock) -> None:
-        """Exchange one part at a time of the designs known, and try known parts elsewhere on the front.
-
-        The continuous problems of whole neighbourhoods are solved at once, round by round until nothing new comes.
-        It proves nothing: the better the designs known, the less is left for boxes to cover.
-        """
-        form, archive = self.form, self.form.archive
-        if not form.n or form.instance.combinations.count == 1 or not len(archive):
-            return
-        expanded: set[int] = set()
-        placed: set[tuple[int, bytes]] = set()
-        for _ in range(self.limits.rounds):
-            clock.check(clock.open)
-            # Every part of a design that nobody asked about yet, one at a time ...
-            fresh = [k for k, c in enumerate(archive.combination) if int(c) not in expanded]
-            some = spread_subset(archive.phi[fresh][:, self.rule.columns], self.limits.parents)
-            fresh = [fresh[int(k)] for k in some]
-            parents = [archive[k] for k in fresh]
-            expanded.update(c.combination for c in parents)
-            found = self._reach(*self._exchanged(parents)) if parents else 0
-            # ... and all parts known to be good at all places of the front.
-            if len(self.rule.columns) > 1:
-                found += self._reach(*self._elsewhere(placed)) + self._ends(placed)
-            if not found:
-                return
-
-    def _most_solved(self) -> int:
-        return self.limits.solved if self.form.continuous.batch_nlp().compiled else self.limits.solved_over_arrays
-
-    def _exchanged(self, parents: Sequence[Candidate]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return combinations that differ from a parent in one part, with its variables and phi."""
-        form = self.form
-        made = [form.instance.combinations.neighbours(c.combination) for c in parents]
-        combinations, rows = np.concatenate(made), np.repeat(np.arange(len(made)), [len(x) for x in made])
-        _, first = np.unique(combinations, return_index=True)
-        first = first[not_refused(form.instance, combinations[first])]
-        if len(first) > self._most_solved():
-            first = self.rng.choice(first, self._most_solved(), replace=False)
-        rows = rows[first]
-        variables, phi = np.array([c.variables for c in parents]), np.array([c.phi for c in parents])
-        base: np.ndarray = phi[rows][:, self.rule.columns]
-        return combinations[first], variables[rows], base
-
-    def _elsewhere(self, placed: set[tuple[int, bytes]]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return known combinations with places of the front to try them at."""
-        archive, columns = self.form.archive, self.rule.columns
-        phi = archive.phi[:, columns]
-        places = corners(phi, self.limits.targets)
-        chosen = spread_subset(phi, self.limits.families)
-        tried = [
-            (int(k), place)
-            for k in chosen
-            for place in places
-            if (int(archive.combination[k]), place.tobytes()) not in placed
-        ][: self._most_solved()]
-        placed.update((int(archive.combination[k]), place.tobytes()) for k, place in tried)
-        rows = np.array([k for k, _ in tried], dtype=np.int64)
-        bases = np.array([place for _, place in tried]).reshape(len(tried), len(columns))
-        return archive.combination[rows], archive.variables[rows], bases
-
-    def _ends(self, placed: set[tuple[int, bytes]]) -> int:
-        """Try what is one part away from the design that is best in an objective, for that objective alone."""
-        archive, found = self.form.archive, 0
-        for k in self.rule.columns:
-            parent = archive[int(np.argmin(archive.phi[:, k]))]
-            key = (parent.combination, bytes([k]))
-            if key not in placed:
-                placed.add(key)
-                combinations, start, _ = self._exchanged([parent])
-                own = np.append(combinations, parent.combination)
-                weights = np.zeros((len(own), len(self.form.goals)))
-                weights[:, self.rule.columns] = self.limits.tie_weight
-                weights[:, k] = 1.0
-                cutoffs = np.tile(self.rule.fixed_cutoffs, (len(own), 1))
-                tasks = Tasks(weights, np.zeros_like(weights), cutoffs, self.form.objectives.scales, 0.0)
-                found += self._solved(tasks, own, np.concatenate([start, parent.variables[None, :]]))
-        return found
-
-    def _reach(self, combinations: np.ndarray, start: np.ndarray, base: np.ndarray) -> int:
-        """Solve from each base straight up, or for the one objective; return how many designs are new."""
-        if not len(combinations):
-            return 0
-        return self._solved(self._upwards(base), combinations, start)
-
-    def _solved(self, tasks: Tasks, combinations: np.ndarray, start: np.ndarray) -> int:
-        """Solve many problems over the whole range of the variables; return how many designs are new."""
-        form, columns = self.form, self.rule.columns
-        found = form.continuous.solve_many(tasks, combinations, start)
-        self._learn(tasks, combinations, found)
-        if not form.gridded.any():
-            return self.offer(found.variables, combinations)
-        phi = found.phi[:, : form.bounded] if max(columns) < form.bounded else found.phi
-        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & np.all(np.isfinite(phi), axis=1))
-        cell = form.boxes.cell_of(combinations[good])
-        gain, along = self.rule.possible_gain(phi[good], cell), phi[good][:, columns[0]]
-        good = good[gain > 0][spread_choice(along[gain > 0], gain[gain > 0], self.limits.rounded_off)]
-        if not len(good):
-            return 0
-        return self.round_off(form.boxes.leaves(combinations[good]), found.variables[good], tasks.take(good))
-
-    def _upwards(self, base: np.ndarray) -> Tasks:
+    def upwards(self, base: np.ndarray) -> Tasks:
         """Return problems that go from lower ends of the objectives (not-a-number: unknown) straight up."""
         form, columns = self.form, self.rule.columns
         count, goals = len(base), len(form.goals)
@@ -382,13 +270,13 @@ class PrimalHeuristics:
             boxes = self._tightened(boxes)
             if not len(boxes):
                 return 0
-        tasks = self._upwards(form.objectives.phi_of(boxes.bounds)[:, columns])
+        tasks = self.upwards(form.objectives.phi_of(boxes.bounds)[:, columns])
         combinations = form.boxes.combination(boxes)
         low, high = form.boxes.ends(boxes)
         settled = form.gridded & (low == high)
         low, high = np.where(settled, low, form.lower), np.where(settled, high, form.upper)
         answer = form.continuous.solve_many(tasks, combinations, form.boxes.inside(boxes, 0.5), low, high)
-        self._learn(tasks, combinations, answer)
+        self.learn(tasks, combinations, answer)
         whole = np.all(settled == form.gridded, axis=1)
         found = self.offer(answer.variables[whole], combinations[whole])
         rest = np.flatnonzero(~whole)
@@ -437,21 +325,6 @@ def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.
             place = np.searchsorted(grid, below(variables[:, k], snap))[:, None] + steps[None, :, k]
             low[:, k] = high[:, k] = grid[np.clip(place, 0, len(grid) - 1)].ravel()
     return low, high, np.repeat(np.arange(len(variables)), count)
-
-
-def corners(phi: np.ndarray, count: int) -> np.ndarray:
-    """Return ends from which to look for designs between known ones, at most so many.
-
-    Two objectives: the lower corners of the widest steps between neighbours. More: known designs, well spread.
-    """
-    if phi.shape[1] != 2 or len(phi) < 2:
-        spread: np.ndarray = phi[spread_subset(phi, count)]
-        return spread
-    steps = phi[np.argsort(phi[:, 0], kind="stable")]
-    low = np.stack([steps[:-1, 0], steps[1:, 1]], axis=1)
-    width = np.max((steps[1:, 0] - steps[:-1, 0], steps[:-1, 1] - steps[1:, 1]), axis=0)
-    chosen: np.ndarray = low[np.sort(np.argsort(-width, kind="stable")[:count])]
-    return chosen
 
 
 def spread_choice(along: np.ndarray, gain: np.ndarray, count: int) -> np.ndarray:

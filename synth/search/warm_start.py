@@ -10,7 +10,7 @@ import numpy as np
 from synth.bounds.branching import BranchingStatistics
 from synth.results import Design
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.one_exchange import OneExchange
 from synth.search.pruning import PruningRule
 from synth.search.refused_cells import not_refused
 
@@ -45,5 +45,5 @@ def warm_start(form: Formulation, rule: PruningRule, designs: Sequence[Design], 
     keep &= np.all(np.isfinite(points), axis=1)
     combinations, points = combinations[keep], np.clip(points[keep], form.lower, form.upper)
     if len(combinations):
-        PrimalHeuristics(form, rule, rng, False).again(combinations, points)
+        OneExchange(form, rule, rng).again(combinations, points)
     return bool(len(form.archive))

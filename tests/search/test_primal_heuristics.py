@@ -13,7 +13,8 @@ from synth.nlp.batch import Tasks
 from synth.question.catalogs import catalogs_for
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.primal_heuristics import PrimalHeuristics, corners, spread_choice
+from synth.search.one_exchange import OneExchange, corners
+from synth.search.primal_heuristics import PrimalHeuristics, spread_choice
 from synth.search.pruning import EpsilonCover
 from tests.asking import instance_of
 from tests.sample_problems.strut import NEEDED, RODS, Strut
@@ -25,10 +26,17 @@ def strut_form(traded=2, grid=False):
     return Formulation(instance, {"mass": "min", "flexibility": "min", "width": "min"}, traded)
 
 
-def heuristics(form, tolerance=1e-3):
+def cover(form, tolerance=1e-3):
     m = len(form.archive.columns)
-    rule = EpsilonCover(range(m), np.full(m, tolerance), np.full(len(form.goals), np.inf), form.archive)
-    return PrimalHeuristics(form, rule, np.random.default_rng(0), False)
+    return EpsilonCover(range(m), np.full(m, tolerance), np.full(len(form.goals), np.inf), form.archive)
+
+
+def heuristics(form):
+    return PrimalHeuristics(form, cover(form), np.random.default_rng(0), False)
+
+
+def one_exchange(form):
+    return OneExchange(form, cover(form), np.random.default_rng(0))
 
 
 def first_design(form, combination, rng):
@@ -48,7 +56,7 @@ def test_exchanging_parts_finds_what_solving_everything_finds(grid):
     rows, phi = form.points.feasible_rows(form.makeable.nearest(points), own)
     first_design(form, int(own[rows[int(np.argmax(phi[rows, 0]))]]), rng)
     before = form.archive.phi[0, 0]
-    heuristics(form).beside(Clock())
+    one_exchange(form).improve(Clock())
     assert form.archive.phi[0, 0] < before - 0.1
     assert form.archive.phi[0, 0] <= phi[rows, 0].min() + 1e-9
 
@@ -59,7 +67,7 @@ def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
     own = rng.choice(form.instance.combinations.count, len(points))
     rows, phi = form.points.feasible_rows(points, own)
     first_design(form, int(own[rows[0]]), rng)
-    heuristics(form).beside(Clock())
+    one_exchange(form).improve(Clock())
     archive = form.archive
     assert len(archive) > 10
     assert len(form.points.feasible_rows(archive.variables, archive.combination)[0]) == len(archive)
@@ -68,7 +76,7 @@ def test_a_front_grows_to_both_ends_and_keeps_only_feasible_designs():
 
 def test_nothing_is_looked_for_where_nothing_is_known():
     form = strut_form()
-    heuristics(form).beside(Clock())
+    one_exchange(form).improve(Clock())
     assert form.counters.nlp_solves == 0
 
 

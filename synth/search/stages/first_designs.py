@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from synth.search.front_state import FrontState
-from synth.search.primal_heuristics import PrimalHeuristics
+from synth.search.one_exchange import OneExchange
 from synth.search.pruning import EpsilonCover
 from synth.search.stages.trees import cover_everything
 from synth.search.warm_start import warm_start
@@ -47,4 +47,4 @@ def _look_round(state: FrontState) -> bool:
 
 def seek_beside(state: FrontState, rule: EpsilonCover) -> None:
     """Look for designs beside those that are known."""
-    PrimalHeuristics(state.form, rule, state.rng, False).beside(state.clock)
+    OneExchange(state.form, rule, state.rng).improve(state.clock)
