@@ -49,7 +49,7 @@ class CompiledPropagation:
         self._propagation, self._branching, self._margins, self._limits = propagation, branching, margins, limits
         combinations = propagation.question.instance.combinations.count
         self._execution = execution
-        self.at_once = execution.compiled and combinations * execution.alike >= limits.combinations
+        self.at_once = execution.compiled and combinations * execution.similar_questions >= limits.combinations
         self._contracted: Counter[tuple[bool, bool]] = Counter()
         self._prepared: dict[bool, tuple[ScoreTables, Prepared]] = {}
         self._halved: Halves | None = None

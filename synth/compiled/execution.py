@@ -13,14 +13,14 @@ class Execution:
     ----------
     compiled : bool
         Whether code may be compiled for this question alone.
-    alike : int
+    similar_questions : int
         How many questions of its kind are asked: code that is compiled serves them all.
     workers : int
         Threads.
     """
 
     compiled: bool = True
-    alike: int = 1
+    similar_questions: int = 1
     workers: int = 1
 
 

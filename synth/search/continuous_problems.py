@@ -194,7 +194,7 @@ class ContinuousProblems:
         if not switched_on():
             return "arrays"
         compiling, execution = self.tuning.compiling, self.execution
-        large = self.instance.combinations.count * execution.alike >= compiling.combinations
+        large = self.instance.combinations.count * execution.similar_questions >= compiling.combinations
         worthwhile = large or self.counters.work > compiling.work
         return "own" if execution.compiled and worthwhile else "general"
 

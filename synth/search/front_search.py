@@ -138,7 +138,7 @@ class FrontSearch:
         task = self.state.task
         alone = replace(task.settings, workers=1, time_limit=None)
         warm = replace(task.warm, branching=None)
-        return replace(task, settings=alone, node_limit=self.state.node_limit, alike=1, warm=warm)
+        return replace(task, settings=alone, node_limit=self.state.node_limit, similar_questions=1, warm=warm)
 
     def _take_aside(self) -> None:
         """Take what was found and proven without compiled code."""

@@ -39,7 +39,7 @@ class FrontTask:
     node_limit : int, optional
         Boxes that each tree may look into. A question with a limit of its own is not worth compiling for, nor solving
         what stays open. None: as many as are worth it, and then all that can be done about the rest.
-    alike : int
+    similar_questions : int
         Questions of its kind that are asked; code that is compiled for one serves them all.
     warm : WarmStart
         What is known of similar questions.
@@ -50,7 +50,7 @@ class FrontTask:
     settings: SearchSettings
     tuning: Tuning = TUNING
     node_limit: int | None = None
-    alike: int = 1
+    similar_questions: int = 1
     warm: WarmStart = field(default_factory=WarmStart)
 
     @property
@@ -98,7 +98,7 @@ class FrontTask:
             Those of an earlier formulation, which go on.
         """
         goals = with_ties(self.instance.model, self.chosen)
-        execution = Execution(self.thorough, self.alike, self.settings.workers)
+        execution = Execution(self.thorough, self.similar_questions, self.settings.workers)
         return Formulation(self.instance, goals, self.m, infeasibility, execution, self.tuning, counters)
 
 

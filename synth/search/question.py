@@ -25,8 +25,8 @@ from synth.tuning import TUNING, Tuning
 class Question:
     """A request that has been checked against its model: everything that can be wrong with it has been said.
 
-    ``chosen`` are the objectives with their sense, ``weights`` those of all of them. ``alike``: how many questions of
-    its kind are asked; code that is compiled for one serves them all. ``tuning``: what its search goes by.
+    ``chosen`` are the objectives with their sense, ``weights`` those of all of them. ``similar_questions``: how many
+    questions of its kind are asked; code that is compiled for one serves them all. ``tuning``: what its search goes by.
     """
 
     request: Request
@@ -34,7 +34,7 @@ class Question:
     instance: Instance
     chosen: Mapping[str, str]
     weights: Mapping[str, float]
-    alike: int = 1
+    similar_questions: int = 1
     tuning: Tuning = TUNING
 
     def within(self, seconds: float | None) -> Question:
@@ -89,7 +89,7 @@ class Question:
             chosen=self.chosen,
             settings=self.settings,
             tuning=self.tuning,
-            alike=self.alike,
+            similar_questions=self.similar_questions,
             warm=warm or WarmStart(),
         )
         return FrontSearch(task, progress)

@@ -16,7 +16,7 @@ import pytest
 
 import synth
 from synth.parametric.joint_fronts import JointFrontSearch
-from synth.parametric.joint_question import alike
+from synth.parametric.joint_question import joint_key
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.search.stages import trees
 from synth.tables.catalogs import Catalogs
@@ -210,8 +210,8 @@ def together(structure: str, seed: int, points: int) -> synth.ParetoFront | None
         with suppress(synth.InputError):
             moved = {name: factor * value for name, value in case.requirements.items()}
             questions.append(pose(problem, moved, catalogs=catalogs, **more))
-    first = alike(questions[0])
-    return JointFrontSearch([q for q in questions if alike(q) == first], time_limit=PATIENT).answers()[0]
+    first = joint_key(questions[0])
+    return JointFrontSearch([q for q in questions if joint_key(q) == first], time_limit=PATIENT).answers()[0]
 
 
 JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(INSTANCES[structure])]

@@ -49,7 +49,7 @@ def test_what_is_known_stays_when_a_search_begins_again() -> None:
     state = FrontState(task(points=4))
     state.set_pool()
     form = state.form
-    points = form.points.makeable(np.tile(form.upper, (form.instance.combinations.count, 1)))
+    points = form.makeable.nearest(np.tile(form.upper, (form.instance.combinations.count, 1)))
     every = np.arange(len(points))
     rows, phi = form.points.feasible_rows(points, every)
     form.archive.add(every[rows], points[rows], phi[rows])

@@ -168,12 +168,12 @@ class Steps:
         question = self._pose(self._with_learned(asked), replace(self.settings, points=1, gap=gap))
         # The same code as for the whole question, however few combinations are left.
         whole = len(self) * self.combinations
-        return replace(question, alike=-(-whole // max(question.instance.combinations.count, 1)))
+        return replace(question, similar_questions=-(-whole // max(question.instance.combinations.count, 1)))
 
     def question(self, position: int, robust: Uncertainty) -> Question:
         """Return the question of a step with limits posed for another block of what scatters."""
         asked = replace(self._at(self.values[position]), robust=robust)
-        return replace(self._pose(asked, self.settings), alike=len(self))
+        return replace(self._pose(asked, self.settings), similar_questions=len(self))
 
     def learn(self, robust: Uncertainty) -> None:
         """Take note where designs of a step failed within a range: there limits are posed between the steps as well."""
@@ -222,7 +222,7 @@ class Steps:
                 rater, question = _rater_of(asked), self._pose(asked, self.settings)
                 if rater is not None:
                     check_rows(rater.things, question.instance.selection.slots)
-                questions.append(replace(question, alike=len(self)))
+                questions.append(replace(question, similar_questions=len(self)))
                 self.raters.append(rater)
             except InputError as error:
                 faults[k] = error
