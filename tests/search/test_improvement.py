@@ -24,10 +24,10 @@ def ask(tuning=TUNING, **more):
     return synthesize(tuning, Strut(), NEEDED, **settings)
 
 
-@pytest.fixture
-def unproven(monkeypatch, tmp_path_factory):
+@pytest.fixture(scope="module")
+def unproven(tmp_path_factory):
     """A front of which little is proven, since its search was given up early."""
-    with monkeypatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         trees = ("coarse_boxes", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
         given_up = {"few_combinations": 1, "further": SearchEffort(seconds=0.0), **dict.fromkeys(trees, 40)}

@@ -1,5 +1,6 @@
 """Optuna over parts: what it does where bounds do not close and enumeration does not reach."""
 
+import shutil
 import subprocess
 import sys
 
@@ -30,10 +31,18 @@ SMALL = {
 }
 
 
+@pytest.fixture(scope="module")
+def cache_home(tmp_path_factory):
+    """A folder for what is kept; code that one test compiled serves the others."""
+    return tmp_path_factory.mktemp("home")
+
+
 @pytest.fixture(autouse=True)
-def kept_here(monkeypatch, tmp_path):
-    """Keep studies in a folder of the test."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+def home(monkeypatch, cache_home):
+    """The folder, without studies of other tests."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_home))
+    yield cache_home
+    shutil.rmtree(cache_home / "clutchsynth" / "studies", ignore_errors=True)
 
 
 def ask(objectives=None, tuning=SMALL, **more):
@@ -41,8 +50,8 @@ def ask(objectives=None, tuning=SMALL, **more):
     return synthesize(tuned(**tuning), Strut(), NEEDED, objectives, **own)
 
 
-def journals(tmp_path):
-    return sorted((tmp_path / "clutchsynth" / "studies").glob("*.journal"))
+def journals(home):
+    return sorted((home / "clutchsynth" / "studies").glob("*.journal"))
 
 
 def limits_hold(front):
@@ -71,41 +80,41 @@ class Breaks:
         monkeypatch.setattr(Clock, "check", stopping)
 
 
-def test_optuna_takes_over_and_says_so(tmp_path):
+def test_optuna_takes_over_and_says_so(home):
     front = ask()
     assert front.certificate.kind == "heuristic"
     assert front.status == "feasible"
     assert front.statistics["outer_trials"] == TRIALS
     assert not front.complete
     assert limits_hold(front)
-    assert journals(tmp_path) == []
+    assert journals(home) == []
 
 
-def test_what_enumeration_reaches_is_not_left_to_optuna(tmp_path):
+def test_what_enumeration_reaches_is_not_left_to_optuna(home):
     front = ask(tuning={**SMALL, "tree": {**SMALL["tree"], "few_combinations": 240}})
     assert front.certificate.kind in ("global", "exhaustive")
     assert front.statistics["outer_trials"] == 0
     assert limits_hold(front)
-    assert journals(tmp_path) == []
+    assert journals(home) == []
 
 
-def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
+def test_a_search_that_was_stopped_goes_on_where_it_was(monkeypatch, home):
     with monkeypatch.context() as patch:
         Breaks(patch, 2)
         stopped = ask()
     assert stopped.interrupted == "time limit"
     assert stopped.certificate.kind == "heuristic"
     assert limits_hold(stopped)
-    assert len(journals(tmp_path)) == 1
+    assert len(journals(home)) == 1
     resumed = ask()
     assert not resumed.interrupted
     assert resumed.statistics["outer_trials"] == TRIALS - 2 * BATCH
     assert resumed.certificate.kind == "heuristic"
     assert limits_hold(resumed)
-    assert journals(tmp_path) == []
+    assert journals(home) == []
 
 
-def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, tmp_path):
+def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, home):
     inner, others = outer._inner, []
 
     def beside(*args):
@@ -119,7 +128,7 @@ def test_the_same_question_at_the_same_time_has_a_study_of_its_own(monkeypatch, 
     assert front.statistics["outer_trials"] == TRIALS
     assert others[1].statistics["outer_trials"] == TRIALS
     assert others[1].files()["designs.csv"] == front.files()["designs.csv"]
-    assert not list((tmp_path / "clutchsynth" / "studies").iterdir())
+    assert not list((home / "clutchsynth" / "studies").iterdir())
 
 
 PROCESS = """
@@ -155,12 +164,12 @@ def test_a_lock_keeps_other_processes_out_until_its_own_is_gone(tmp_path):
     assert not path.exists()
 
 
-def test_another_question_does_not_take_up_the_study(monkeypatch, tmp_path):
+def test_another_question_does_not_take_up_the_study(monkeypatch, home):
     with monkeypatch.context() as patch:
         Breaks(patch, 1)
         ask()
     assert ask(seed=1).statistics["outer_trials"] == TRIALS
-    assert len(journals(tmp_path)) == 1
+    assert len(journals(home)) == 1
 
 
 @pytest.mark.parametrize(("columns", "kept"), [([0], False), ([0, 1], True)])
@@ -184,7 +193,7 @@ def test_trials_find_feasible_designs_of_the_open_boxes_only(tmp_path, columns, 
     assert len(form.archive)
 
 
-def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
+def test_studies_are_told_apart_by_all_that_makes_a_question(home):
     def file(objectives=("mass",), seed=0, needed=NEEDED, **more):
         problem = Strut(**more)
         instance = instance_of(problem, needed, catalogs_for(problem, {"rods": RODS}))
@@ -200,11 +209,11 @@ def test_studies_are_told_apart_by_all_that_makes_a_question(tmp_path):
     ]
     assert len(set(files)) == len(files)
     assert file() == files[0]
-    assert files[0].parent == tmp_path / "clutchsynth" / "studies"
+    assert files[0].parent == home / "clutchsynth" / "studies"
 
 
 @pytest.mark.parametrize("what", ["code_digest", "problem_digest", "native_code", "processor"])
-def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeypatch, tmp_path, what):
+def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeypatch, home, what):
     def file():
         instance = instance_of(Strut(), NEEDED, catalogs_for(Strut(), {"rods": RODS}))
         return study_file(instance, {"mass": "min"}, 0)
@@ -222,13 +231,13 @@ def test_what_would_value_trials_differently_does_not_go_on_with_a_study(monkeyp
     assert not passed_over(None)
 
 
-def test_a_study_that_begins_anew_is_told(monkeypatch, tmp_path):
+def test_a_study_that_begins_anew_is_told(monkeypatch, home):
     told = []
     with monkeypatch.context() as patch:
         Breaks(patch, 2)
         ask(progress=lambda state: told.append(state["message"]))
     assert BEGUN_ANEW not in told
-    assert len(journals(tmp_path)) == 1
+    assert len(journals(home)) == 1
     monkeypatch.setattr(synth.question.instance, "processor", lambda: "another")
     assert ask(progress=lambda state: told.append(state["message"])).statistics["outer_trials"] == TRIALS
     assert BEGUN_ANEW in told

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -76,14 +77,19 @@ def question(name: str) -> dict[str, Any]:
     return {**BASE, **QUESTIONS[name]}
 
 
+@cache
+def explained(name: str) -> synth.Explanation:
+    """Return why a question has no answer; several tests read the same one."""
+    return synth.explain(Bracket(), **question(name))
+
+
 def is_feasible(spec: dict[str, Any]) -> bool:
     return bool(synth.synthesize(Bracket(), points=1, **spec).designs)
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_every_patch_makes_the_question_feasible(name: str) -> None:
-    spec = question(name)
-    why = synth.explain(Bracket(), **spec)
+    spec, why = question(name), explained(name)
     assert not why.feasible
     ways = [way for way in why.ways if way.kind != "part"]
     assert ways
@@ -100,7 +106,7 @@ def test_every_patch_makes_the_question_feasible(name: str) -> None:
 
 def test_less_than_an_amount_does_not_do() -> None:
     spec = question("limits and a requirement")
-    for way in synth.explain(Bracket(), **spec).single:
+    for way in explained("limits and a requirement").single:
         assert way.proven
         less = way.given + 0.98 * (way.needed - way.given)
         ((key, entries),) = (way.patch or {}).items()
@@ -109,7 +115,7 @@ def test_less_than_an_amount_does_not_do() -> None:
 
 
 def test_a_refusal_is_explained_with_amounts() -> None:
-    why = synth.explain(Bracket(), **question("refused"))
+    why = explained("refused")
     (guard,) = why.fired
     assert (guard.name, guard.requirement, guard.unit) == ("no_room", "room", "mm")
     assert guard.sense == "at_least"
@@ -118,7 +124,7 @@ def test_a_refusal_is_explained_with_amounts() -> None:
     assert guard.lifted_by == {"room": "30.0001 mm", "least": "9.99999 mm"}
     assert why.conflict == ()
     assert "room is 10 mm where more than 30 mm is needed (missed by 66.7 %)" in why.message
-    rows = synth.explain(Bracket(), **question("refused for every row"))
+    rows = explained("refused for every row")
     (weak,) = rows.fired
     assert (weak.name, weak.part) == ("too_weak", "S185")
     assert parse_quantity(weak.lifted_by["load"], "N", "load") < 400e3
@@ -127,7 +133,7 @@ def test_a_refusal_is_explained_with_amounts() -> None:
 
 def test_only_what_was_asked_gives_way_unless_physics_may() -> None:
     spec = question("limits and a requirement")
-    plain, all_of_it = (synth.explain(Bracket(), **spec, physics=x) for x in (False, True))
+    plain, all_of_it = explained("limits and a requirement"), synth.explain(Bracket(), **spec, physics=True)
     assert plain.physics is None
     assert all_of_it.physics is not None
     assert all_of_it.physics.patch is None
@@ -141,8 +147,7 @@ def test_only_what_was_asked_gives_way_unless_physics_may() -> None:
 
 
 def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) -> None:
-    spec = question("refused on its edge")
-    why = synth.explain(Bracket(), **spec)
+    spec, why = question("refused on its edge"), explained("refused on its edge")
     told = json.loads(why.save(tmp_path)[1].read_text(encoding="utf-8"))
     assert told["refused"][0]["missed_by"] == 0
     assert told["refused"][0]["lifted_by"] == {"room": "30.0001 mm", "least": "29.9999 mm"}
@@ -151,7 +156,7 @@ def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) ->
 
 
 def test_a_patch_is_written_in_the_words_of_the_spec() -> None:
-    why = synth.explain(Bracket(), **question("limits and a requirement"))
+    why = explained("limits and a requirement")
     keys = {key: set(entries) for way in why.ways if way.patch for key, entries in way.patch.items()}
     assert "load" not in keys.get("requirements", set())
     assert keys.get("limits", set()) <= {"m", "b"}
