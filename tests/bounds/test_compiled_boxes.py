@@ -193,6 +193,8 @@ def limits_at(rng, program, nodes, inputs):
     return cuts
 
 
+OF_ONE_SIGN = [(0.2, 2.5), (1.0, 3.0)]
+
 # -- every rule --------------------------------------------------------------------------------------
 
 SYMBOLIC = {
@@ -227,7 +229,7 @@ def use_of(op, a, b):
 
 
 @pytest.mark.parametrize("capped", [False, True])
-@pytest.mark.parametrize("range_", [(-2.0, 2.0), (0.2, 2.5), (1.0, 3.0)])
+@pytest.mark.parametrize("range_", [(-2.0, 2.0), *(pytest.param(r, marks=pytest.mark.slow) for r in OF_ONE_SIGN)])
 def test_every_rule_agrees(range_, capped):
     rng = np.random.default_rng(3)
     operations = sorted(FORWARD)
@@ -312,12 +314,14 @@ def random_case(seed, makers, boxes=60):
     return Case(program, n, cuts, [Goal(node[4], 1), Goal(node[5], -1)], range_, rng, boxes)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
 @settings(deadline=None, derandomize=True, max_examples=15)
 def test_arithmetic_agrees_to_the_last_bit(seed, passes, capped):
     random_case(seed, ARITHMETIC).agree(capped, passes, rtol=0.0)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
 @settings(deadline=None, derandomize=True, max_examples=15)
 def test_random_programs_agree(seed, passes, capped):
@@ -411,7 +415,10 @@ def compare(form, boxes, caps, passes, every, monkeypatch):
 
 
 @pytest.mark.parametrize("grid", [False, True])
-@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
+@pytest.mark.parametrize(
+    "options",
+    [pytest.param(given, marks=[pytest.mark.slow] if given else [], id=name) for name, given in OPTIONS.items()],
+)
 def test_the_family_agrees(options, grid, monkeypatch):
     form = formulation(options, grid, tuning=AT_ONCE)
     for boxes, caps in batches(form):

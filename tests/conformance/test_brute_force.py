@@ -13,6 +13,8 @@ import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 SETTINGS = {

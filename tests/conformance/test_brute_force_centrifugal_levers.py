@@ -12,6 +12,8 @@ from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 from tests.conformance.cases import ENGINE
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 FIXED = {"friction_surfaces": 2, "weights": 4, "lever_stop_angle": "0.34 rad", "lining_inner_radius": "60 mm"}
 QUESTIONS = {

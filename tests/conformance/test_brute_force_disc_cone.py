@@ -12,6 +12,8 @@ import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 LADDER = (1.0, 1.04, 1.15, 1.4, 1.9)
 DISC = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2", "safety_factor": 2.5}

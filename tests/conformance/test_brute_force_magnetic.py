@@ -13,6 +13,8 @@ import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 FAMILY = "magnetic_powder_clutch"
 ASKED = {"required_torque": "30 N*m", "outer_diameter_limit": "236 mm"}

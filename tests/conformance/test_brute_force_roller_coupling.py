@@ -12,6 +12,8 @@ import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 CASES = {
     "plain": (

@@ -15,6 +15,8 @@ from synth.units import format_quantity
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module", params=CASES)
 def found(request):

@@ -2,12 +2,15 @@
 
 import importlib
 import math
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 import pytest
 
 import synth
+from synth.files import LARGEST, read_bytes
+from synth.input_limits import INPUT_LIMITS
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
@@ -287,6 +290,19 @@ def test_checking_a_design_gives_its_values_again(example):
         assert {name.split()[0] for name in more} <= unknowns & set(case.settings.get("limits") or {})
         assert {n: again.utilisation[n] for n in design.utilisation} == design.utilisation
         assert again.advice == design.advice
+
+
+MORE = 20_000  # bytes per design, for what scatters (12 000 where six things do) and for what ties
+
+
+def test_the_largest_front_can_be_read_back(example, tmp_path):
+    front = example[2]
+    longest = max(front.designs, key=lambda d: len(replace(front, designs=[d]).files()["front.json"]))
+    text = replace(front, designs=[longest] * INPUT_LIMITS.points).files()["front.json"]
+    path = tmp_path / "front.json"
+    path.write_text(text)
+    assert len(read_bytes(path, "front")) == len(text.encode())
+    assert len(text.encode()) + MORE * INPUT_LIMITS.points < LARGEST
 
 
 def best(family, case, objective, **more):

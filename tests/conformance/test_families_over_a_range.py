@@ -12,6 +12,8 @@ from synth.units import format_quantity
 from tests.asking import instance_of, rater_of
 from tests.conformance.cases import CASES
 
+pytestmark = pytest.mark.slow
+
 POINTS = 4
 
 

@@ -12,6 +12,8 @@ from reports.figure import figure_svg
 from synth.units import parse_unit, split_header, to_si
 from tests.conformance.cases import CASES
 
+pytestmark = pytest.mark.slow
+
 
 def overrides(family, hook):
     return getattr(type(synth.load(family)), hook) is not getattr(synth.DesignProblem, hook)

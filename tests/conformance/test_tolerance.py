@@ -13,6 +13,8 @@ from synth.special import expanded
 from tests.conformance.cases import CASES, answer
 from tests.regimes import refereed
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = [(f, c) for f, data in CASES.items() for c in data.feasible]
 CLOSE = 1e-8
 SURE = 1e-7  # relative; a tenth of the tolerance

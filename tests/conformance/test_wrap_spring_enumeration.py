@@ -17,6 +17,8 @@ import synth
 from synth.results import ParetoFront
 from synth.tables.catalogs import Catalogs
 
+pytestmark = pytest.mark.slow
+
 GAP = 1e-3
 LADDER = Catalogs().table("hub_diameters").number("diameter")
 LADDER = LADDER[LADDER <= 0.2]  # the range of the variable

@@ -67,6 +67,7 @@ def test_without_a_teacher_a_question_stays_as_it_is() -> None:
     assert all(key == digest({"force": k}) and teacher is None for k, (key, teacher) in found.items())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("points", [1, 5])
 def test_rows_with_teachers_give_the_same_bytes_in_any_order_and_what_they_give_alone_to_the_gap(
     tmp_path: Path, points: int

@@ -212,6 +212,7 @@ def test_a_table_alone_cannot_answer_a_comparison_of_slots():
     assert condition.columns == {"thickness", "price"}
 
 
+@pytest.mark.slow
 def test_studies_explanations_and_near_equals_keep_to_it():
     rule = {"one": "steel == two.steel and thickness != two.thickness"}
     study = synth.whatif(Stack(), {}, {"least": "1, 20"}, objectives=["cost"], parts=rule, catalogs=CATALOGS)
@@ -227,6 +228,7 @@ def test_studies_explanations_and_near_equals_keep_to_it():
         assert one["thickness"] != two["thickness"]
 
 
+@pytest.mark.slow
 def test_a_batch_takes_comparisons_row_by_row_and_variants_keep_to_them(tmp_path):
     rows = tmp_path / "rows.csv"
     duty = "600,254,30"

@@ -113,7 +113,9 @@ class Small:
         return self.solver.solve(tasks, data, *points, self.bounds, gone)
 
 
-COMPILED = [pytest.param(code, marks=NEEDS_COMPILER) for code in ("general", "own")]
+# Code of its own is compiled for each problem, which takes a second.
+OWN = pytest.param("own", marks=[NEEDS_COMPILER, pytest.mark.slow])
+COMPILED = [pytest.param("general", marks=NEEDS_COMPILER), OWN]
 EVERY = pytest.mark.parametrize("code", ["arrays", *COMPILED])
 
 
@@ -397,7 +399,7 @@ FUNCTIONS = {
 
 
 @NEEDS_COMPILER
-@pytest.mark.parametrize("code", ["general", "own"])
+@pytest.mark.parametrize("code", ["general", OWN])
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_compiled_functions_have_the_values_of_numpy(name, code):
     def write(x, d):
@@ -528,7 +530,7 @@ def test_ipopt_finds_nothing_better(kind, count):
 
 @NEEDS_COMPILER
 @pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])
-@pytest.mark.parametrize("code", ["general", "own"])
+@pytest.mark.parametrize("code", ["general", OWN])
 def test_compiled_and_not_compiled_give_the_same(code, kind):
     clutch = Clutch(600, 4, kind)
     plain, compiled = clutch.solve("arrays"), clutch.solve(code)

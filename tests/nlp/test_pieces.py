@@ -203,10 +203,13 @@ KINDS = (
     equality,
     clipped,
 )
+QUICK = (either_limit, bent, step, clipped)  # for the referee
 SEEDS, STARTS = 6, 6
 
 
-@pytest.mark.parametrize("kind", KINDS, ids=lambda k: k.__name__)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=[] if k in QUICK else [pytest.mark.slow]) for k in KINDS], ids=lambda k: k.__name__
+)
 def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(kind):
     feasible, best, solved = 0, 0, []
     codes: tuple[Code, ...] = ("arrays", "general") if HAS_COMPILER else ("arrays",)
@@ -334,6 +337,7 @@ def _two_springs(monkeypatch: pytest.MonkeyPatch, gap: float, objectives: list[s
     return front, posed[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("native", ["1", "0"])
 def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every_start(monkeypatch, native):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", native)
@@ -360,6 +364,7 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
     np.testing.assert_allclose(phi[rows, 0][found.converged[rows]], least, atol=1e-7)
 
 
+@pytest.mark.slow
 def test_fronts_of_a_two_spring_clutch_do_not_become_worse_with_a_smaller_gap(monkeypatch):
     best = []
     for gap in (1e-3, 1e-4, 1e-5):

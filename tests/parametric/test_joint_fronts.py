@@ -101,6 +101,7 @@ def test_fronts_of_struts_stand_against_those_asked_alone(points: int, grid: boo
         assert front.statistics["searched_together"] == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("points", "objectives"),
     [(3, ("mass", "actuation_force")), (6, ("mass", "actuation_force")), (4, ("outer_diameter", "mass"))],
@@ -114,6 +115,7 @@ def test_fronts_of_clutches_stand_against_those_asked_alone(points: int, objecti
     assert answers[0].verify().holds
 
 
+@pytest.mark.slow
 def test_designs_spread_over_the_front() -> None:
     questions, answers = answered(6, ("mass", "actuation_force"))
     for question, front in zip(questions, answers, strict=True):
@@ -129,6 +131,7 @@ def _widest(designs: Sequence[Design]) -> float:
     return float(np.linalg.norm(np.diff(unit[np.argsort(unit[:, 0])], axis=0), axis=1).max())
 
 
+@pytest.mark.slow
 def test_the_ends_have_the_elasticities_that_they_have_alone() -> None:
     for question, front in zip(*answered(3, ("mass", "actuation_force")), strict=True):
         assert front is not None

@@ -148,6 +148,7 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed):
         assert is_kept(tree, point, signed[k], 9), k
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", CASES)
 def test_no_feasible_design_of_a_family_is_lost(family):
     case = CASES[family]

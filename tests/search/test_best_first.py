@@ -153,6 +153,7 @@ def test_the_tension_spring_is_proven():
     assert front.designs[0].objectives["volume"] == pytest.approx(OPTIMUM, rel=2e-6)
 
 
+@pytest.mark.slow
 def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
     front = synth.synthesize(
         "centrifugal_two_spring",
