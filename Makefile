@@ -12,12 +12,17 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.1
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
 
+# Tests start many processes; without compiled bytecode each of them would read all sources again.
+unexport PYTHONDONTWRITEBYTECODE
+# Files go to processes as a whole, in the order of tests/conftest.py.
+TESTS := $(BIN)/python -m pytest -n auto --dist loadscope --no-loadscope-reorder
+
 # All but the tests that are slow; `test` is everything, as the build runs it.
 check: lint
-	$(BIN)/python -m pytest -n auto --dist loadscope -m "not slow"
+	$(TESTS) -m "not slow"
 
 test: lint
-	$(BIN)/python -m pytest -n auto --dist loadscope
+	$(TESTS)
 
 lint: $(DEV)
 	$(BIN)/ruff check .
