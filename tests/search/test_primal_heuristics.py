@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -95,31 +93,6 @@ def test_a_spread_choice_takes_the_largest_gain_of_each_stretch():
     groups = np.arange(103) * 10 // 103
     assert sorted(chosen) == sorted(int(order[groups == g][np.argmax(space[order[groups == g]])]) for g in range(10))
     assert spread_choice(along[:5], space[:5], 10).tolist() == [0, 1, 2, 3, 4]
-
-
-def test_weights_are_learned_for_each_set_of_objectives():
-    bounding = strut_form().bounding
-    cuts, branching = len(bounding.question.cuts), bounding.branching
-    lessons = np.zeros((40, cuts + 3))
-    lessons[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
-    lessons[20:, [1, cuts + 1]] = 1.0, 1.0
-    branching.learn(lessons, np.ones(40))
-    weights = branching.weights
-    assert np.argmax(weights[1, :cuts]) == 0
-    assert np.argmax(weights[2, :cuts]) == 1
-    assert weights[1, cuts + 1] == weights[2, cuts] == 0.0  # an objective without a cap decides nothing
-    for one, other in itertools.pairwise((weights[0], weights[3])):
-        np.testing.assert_array_equal(one, other)  # none capped, or both: all lessons count
-    assert weights[0, 0] == pytest.approx(0.375, abs=0.01)
-
-
-def test_what_is_important_is_learned_most():
-    bounding = strut_form().bounding
-    cuts, branching = len(bounding.question.cuts), bounding.branching
-    lessons = np.zeros((10, cuts + 3))
-    lessons[:9, 0] = lessons[9:, 1] = 1.0
-    branching.learn(lessons, np.array([1.0] * 9 + [91.0]))
-    assert branching.weights[0, 1] == pytest.approx(0.91, abs=0.01)
 
 
 def test_limits_that_exclude_each_other_teach_what_to_split():

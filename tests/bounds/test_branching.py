@@ -1,0 +1,94 @@
+"""Where boxes are split: what solved problems teach, what designs show, and that bounds do not depend on it."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.sample_problems.strut import designs_of, strut_form
+
+
+def test_weights_are_learned_for_each_set_of_objectives():
+    bounding = strut_form().bounding
+    cuts, branching = len(bounding.question.cuts), bounding.branching
+    multipliers = np.zeros((40, cuts + 3))
+    multipliers[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
+    multipliers[20:, [1, cuts + 1]] = 1.0, 1.0
+    branching.learn(multipliers, np.ones(40))
+    weights = branching.weights
+    assert np.argmax(weights[1, :cuts]) == 0
+    assert np.argmax(weights[2, :cuts]) == 1
+    assert weights[1, cuts + 1] == weights[2, cuts] == 0.0  # an objective without a cutoff decides nothing
+    for one, other in itertools.pairwise((weights[0], weights[3])):
+        np.testing.assert_array_equal(one, other)  # no cutoff, or both: all problems count
+    assert weights[0, 0] == pytest.approx(0.375, abs=0.01)
+
+
+def test_what_is_important_is_learned_most():
+    bounding = strut_form().bounding
+    cuts, branching = len(bounding.question.cuts), bounding.branching
+    multipliers = np.zeros((10, cuts + 3))
+    multipliers[:9, 0] = multipliers[9:, 1] = 1.0
+    branching.learn(multipliers, np.array([1.0] * 9 + [91.0]))
+    assert branching.weights[0, 1] == pytest.approx(0.91, abs=0.01)
+
+
+def test_what_teaches_nothing_is_passed_over():
+    bounding = strut_form().bounding
+    cuts, branching = len(bounding.question.cuts), bounding.branching
+    before = branching.weights
+    multipliers = np.zeros((2, cuts + 3))
+    multipliers[1, 0] = np.nan
+    branching.learn(multipliers, np.ones(2))
+    assert branching.learned == 0
+    assert branching.weights is before
+
+
+def test_statistics_are_handed_over_between_questions_of_a_kind():
+    one, other = (strut_form().bounding.branching for _ in range(2))
+    multipliers = np.random.default_rng(2).random((30, one.weights.shape[1]))
+    one.learn(multipliers, np.ones(30))
+    assert other.adopt(one.statistics())
+    assert other.learned == one.learned == 30
+    np.testing.assert_array_equal(other.weights, one.weights)
+    other.learn(multipliers, np.ones(30))  # what was handed over is a copy
+    assert (one.learned, other.learned) == (30, 60)
+    shorter = one.statistics()
+    assert not other.adopt(replace(shorter, shares=shorter.shares[:, 1:]))
+    assert other.learned == 60
+
+
+def test_widths_are_measured_on_the_scale_of_the_influences():
+    bounding = strut_form().bounding
+    low, high = bounding.question.low[None], bounding.question.high[None]
+    np.testing.assert_allclose(bounding.branching.widths(low, high), np.log(high / low))
+    assert not bounding.branching.widths(low, low).any()
+    assert not bounding.branching.spans.any()
+
+
+def test_bounds_do_not_depend_on_where_boxes_are_split():
+    form, rng = strut_form(), np.random.default_rng(4)
+    points, combinations, phi = designs_of(form, rng, 5_000)
+    boxes = form.boxes.split(form.boxes.split(form.boxes.root())[0])[0]
+    before = form.boxes.contract(boxes, np.median(phi, axis=0))
+    branching = form.bounding.branching
+    branching.learn(rng.random((50, branching.weights.shape[1])), np.ones(50))
+    branching.focus(points[:5], combinations[:5])
+    after = form.boxes.contract(boxes, np.median(phi, axis=0))
+    assert len(after) > 1
+    for name in ("cell", "low", "high", "bounds", "tag"):
+        np.testing.assert_array_equal(getattr(after, name), getattr(before, name))
+    assert not np.array_equal(after.scores, before.scores)
+
+
+def test_influences_are_slopes_between_logarithms():
+    form = strut_form()
+    question, influences = form.bounding.question, form.bounding._influences
+    names = [v.name for v in form.model.variables]
+    mass, flexibility, width = influences.anywhere[len(question.cuts) :]
+    for objective, expected in ((mass, (1, 1)), (flexibility, (1, 1)), (width, (1, 0))):
+        found = [objective[names.index(name)] for name in ("width", "length")]
+        np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-12)
+    assert np.all(form.bounding.goal_sizes > 0)
+    np.testing.assert_array_equal(strut_form().bounding._influences.anywhere, influences.anywhere)
