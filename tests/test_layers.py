@@ -114,7 +114,7 @@ def test_imports_point_one_way() -> None:
 
 
 SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "boxes"}
-SOUND |= {"question_bounds", "propagation", "compiled_rules"}
+SOUND |= {"propagated_nodes", "root_propagation", "sweep_writer", "question_bounds", "propagation", "compiled_rules"}
 STEERING = {"influences", "branching"}
 BOTH = {"box_batches", "box_source", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
 # What kind of function a formula is: not of the search.

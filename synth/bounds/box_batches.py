@@ -12,7 +12,7 @@ import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
-from synth.bounds.contractor import Contractor, Root
+from synth.bounds.root_propagation import Root
 from synth.tuning import CodeSizes
 
 # Rows of scores are as long as a multiple of it, so that registers hold whole ones.
@@ -126,14 +126,15 @@ class Prepared:
 
     Parameters
     ----------
-    contractor : Contractor
+    limits : int
+        How many the compiled code knows.
     question : CompiledQuestion
     """
 
-    def __init__(self, contractor: Contractor, question: CompiledQuestion) -> None:
+    def __init__(self, limits: int, question: CompiledQuestion) -> None:
         steep, of_clusters = question.scoring.steep, question.scoring.spreads
         self.n, self.factors, self.sizes = len(question.lower), len(of_clusters), question.sizes
-        self.limits = len(contractor.cuts)
+        self.limits = limits
         width = -(-steep.shape[0] // SCORE_WIDTH) * SCORE_WIDTH
         self.kept: dict[str, Any] = {
             name: np.ascontiguousarray(getattr(question, name), dtype=float)

@@ -10,7 +10,8 @@ import numpy as np
 
 from synth.bounds import compiled_rules as rules
 from synth.bounds.box_batches import SCORE_WIDTH, structure_source
-from synth.bounds.contractor import CONSTANT, Code, Contractor
+from synth.bounds.contractor import Code
+from synth.bounds.propagated_nodes import CONSTANT, PropagatedNodes
 from synth.bounds.statements import Assign, Enclose, EndOfFirstSweep, Hold, Kill, Narrow, Statement
 from synth.compiled.c_text import EXPRESSIONS, template
 from synth.model.program import COMPARISONS, OP_SELECT, Program, UnsupportedOperation
@@ -19,7 +20,7 @@ from synth.special import SpecialFunction
 
 def source(code: Code) -> str | None:
     """Return the translation unit of generated code; None where something in it has no form in C."""
-    sweeps, owner = code.sweeps, code.contractor
+    sweeps, nodes = code.sweeps, code.nodes
     statements = [*sweeps.first, *sweeps.later]
     try:
         parts = [
@@ -27,8 +28,8 @@ def source(code: Code) -> str | None:
             template("bounds", "margins"),
             rules.common(),
             _sizes(code),
-            *_specials(statements, owner.program),
-            *_rules(statements, owner),
+            *_specials(statements, nodes.program),
+            *_rules(statements, nodes),
             _loading(code),
             _tighten(code),
             template("bounds", "boxes"),
@@ -40,13 +41,13 @@ def source(code: Code) -> str | None:
 
 
 def _sizes(code: Code) -> str:
-    owner = code.contractor
+    nodes = code.nodes
     sizes = {
-        "N": owner.layout.n_variables + len(owner.pivots),
-        "LIMITS": len(owner.cuts),
-        "GOALS": len(owner.goals),
-        "TABLES": len(owner.tables),
-        "NODES": len(owner.program.nodes),
+        "N": nodes.layout.n_variables + len(nodes.auxiliary),
+        "LIMITS": len(nodes.cuts),
+        "GOALS": len(nodes.goals),
+        "TABLES": len(nodes.tables),
+        "NODES": len(nodes.program.nodes),
         "SCORE_WIDTH": SCORE_WIDTH,
     }
     lines = [f"#define {name} {value}" for name, value in sizes.items()]
@@ -123,12 +124,12 @@ def _literal(value: float) -> str:
     return repr(float(value))
 
 
-def _rules(statements: Sequence[Statement], owner: Contractor) -> list[str]:
+def _rules(statements: Sequence[Statement], nodes: PropagatedNodes) -> list[str]:
     """Return the rules that are used, one function per operation and argument."""
     made = dict[str, str]()
     for s in statements:
         if isinstance(s, Enclose) and not s.function.startswith("range_of"):
-            name, body = _forward_rule(s, owner)
+            name, body = _forward_rule(s, nodes)
             letters = ", ".join(f"Interval {letter}" for letter in "abc"[: len(s.args)])
             made[name] = f"RULE {name}({letters}) {{ return {body}; }}"
         elif isinstance(s, Narrow):
@@ -139,22 +140,22 @@ def _rules(statements: Sequence[Statement], owner: Contractor) -> list[str]:
     return list(made.values())
 
 
-def _forward_rule(s: Enclose, owner: Contractor) -> tuple[str, str]:
+def _forward_rule(s: Enclose, nodes: PropagatedNodes) -> tuple[str, str]:
     if s.function == "whole":
         return f"whole_{len(s.args)}", f"whole_of({' + '.join(f'{x}.low' for x in 'abc'[: len(s.args)])})"
     op = int(s.function.removeprefix("forward_")) - 100
     if op in rules.POWERS:
-        same = owner.kind[s.args[1]] == CONSTANT
+        same = nodes.kind[s.args[1]] == CONSTANT
         return f"{s.function}_{'constant' if same else 'any'}", rules.POWER_FORWARD[same]
     return s.function, rules.FORWARD[op]
 
 
 def _loading(code: Code) -> str:
     """Return the function that reads the tables of one box."""
-    owner = code.contractor
+    nodes = code.nodes
     lines = ["INLINE void load_tables(const Batch *b, const int *cell, vd T[][2], int l) {"]
-    for f in sorted({owner.factor[k] for k in owner.tables}):
-        own = [i for i, k in enumerate(owner.tables) if owner.factor[k] == f]
+    for f in sorted({nodes.factor[k] for k in nodes.tables}):
+        own = [i for i, k in enumerate(nodes.tables) if nodes.factor[k] == f]
         lines.append(f"    const double *r{f} = b->rows[{f}] + {2 * len(own)} * (long long)cell[{f}];")
         for place, i in enumerate(own):
             lines.append(f"    T[{i}][0][l] = r{f}[{2 * place}]; T[{i}][1][l] = r{f}[{2 * place + 1}];")
@@ -163,7 +164,7 @@ def _loading(code: Code) -> str:
 
 def _tighten(code: Code) -> str:
     """Return the function that tightens a register of boxes."""
-    sweeps, owner = code.sweeps, code.contractor
+    sweeps, nodes = code.sweeps, code.nodes
     lines = [
         "static vi tighten(const Batch *b, const vd *RL, const vd *RH, const vd *B, const vd *C,",
         "                  vd V[][2], vd T[][2], vd *goals, vi *undecided) {",
@@ -171,12 +172,12 @@ def _tighten(code: Code) -> str:
     lines += [f"    const vd l{k} = all(b->constants[{i}]), h{k} = l{k};" for i, k in enumerate(sweeps.constants)]
     lines += [f"    vd l{k} = T[{i}][0], h{k} = T[{i}][1];" for i, k in enumerate(sweeps.tables)]
     lines += [f"    vd l{k} = V[{i}][0], h{k} = V[{i}][1];" for k, i in sweeps.variables]
-    lines += [f"    vd l{k}, h{k};" for k in owner.inner if k not in owner.pivots]
+    lines += [f"    vd l{k}, h{k};" for k in nodes.inner if k not in nodes.auxiliary]
     lines += [f"    vi o{j};" for j in range(sweeps.limits)]
     lines += ["    vd s, t, m;", "    vi p, q, dead = all_i(0);"]
-    lines += [f"    {line}" for statement in sweeps.first for line in _in_c(statement, owner)]
+    lines += [f"    {line}" for statement in sweeps.first for line in _in_c(statement, nodes)]
     lines.append("    for (long long sweep = 1; sweep < b->passes; sweep++) {")
-    lines += [f"        {line}" for statement in sweeps.later for line in _in_c(statement, owner)]
+    lines += [f"        {line}" for statement in sweeps.later for line in _in_c(statement, nodes)]
     lines.append("    }")
     lines += [f"    V[{i}][0] = l{k}; V[{i}][1] = h{k};" for k, i in sweeps.variables]
     lines += [f"    goals[{j}] = {end};" for j, end in enumerate(sweeps.goals)]
@@ -184,7 +185,7 @@ def _tighten(code: Code) -> str:
     return "\n".join([*lines, "    return dead;", "}"])
 
 
-def _in_c(statement: Statement, owner: Contractor) -> list[str]:
+def _in_c(statement: Statement, nodes: PropagatedNodes) -> list[str]:
     if isinstance(statement, Assign):
         return [f"{statement.target} = {statement.value};"]
     if isinstance(statement, Kill):
@@ -197,9 +198,9 @@ def _in_c(statement: Statement, owner: Contractor) -> list[str]:
         return ["if (!any(~dead)) return dead;"]
     ends = [f"both(l{k}, h{k})" for k in statement.args]
     if isinstance(statement, Enclose):
-        name = statement.function if statement.function.startswith("range_of") else _forward_rule(statement, owner)[0]
+        name = statement.function if statement.function.startswith("range_of") else _forward_rule(statement, nodes)[0]
         return [f"{{ const Interval f = {name}({', '.join(ends)}); s = f.low; t = f.high; }}"]
-    if statement.op in rules.POWERS and owner.kind[statement.args[1]] != CONSTANT:
+    if statement.op in rules.POWERS and nodes.kind[statement.args[1]] != CONSTANT:
         return []
     known = ", ".join([f"both(l{statement.node}, h{statement.node})", *ends])
     found = [f"f{i} = backward_{statement.op + 100}_{i}({known})" for i in statement.positions]

@@ -130,4 +130,4 @@ class Propagation:
 
     def _in_order(self) -> dict[bool, Tables]:
         ends = {node: (f, *pair) for f, own in enumerate(self._ends) for node, pair in own.items()}
-        return {every: [ends[node] for node in c.tables] for every, c in self.question.contractors.items()}
+        return {every: [ends[node] for node in c.nodes.tables] for every, c in self.question.contractors.items()}

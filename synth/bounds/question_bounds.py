@@ -16,7 +16,9 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.clusters import Factor
-from synth.bounds.contractor import INNER, Contractor, MovingInputs, Root
+from synth.bounds.contractor import Contractor
+from synth.bounds.propagated_nodes import INNER, MovingInputs, PropagatedNodes
+from synth.bounds.root_propagation import Leaves, Root, propagated_root
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import OP_SPECIAL
 from synth.question.search_space import SearchSpace
@@ -84,7 +86,7 @@ class QuestionBounds:
         self.row_values = [self._values_of_rows(f) for f in range(len(self.factors))]
         values = {node: v for own in self.row_values for node, v in own.items()}
         self._least_known = {node: _least_known(v) for node, v in values.items()}
-        self.root = self._root([values[node] for node in self.contractors[True].tables])
+        self.root = self._root([values[node] for node in self.contractors[True].nodes.tables])
         self.auxiliary = () if self.root.empty else self._auxiliary(settings)
         if self.auxiliary:
             self.contractors = self._contractors(owner, self.auxiliary)
@@ -144,8 +146,10 @@ class QuestionBounds:
         plain = tuple(replace(c, bound=0.0) for c in self.cuts)
 
         def contractor(wanted: Sequence[Goal]) -> Contractor:
-            key = ("contractor", layout, plain, tuple(wanted), auxiliary)
-            made: Contractor = model.function(key, lambda: Contractor(model.program, layout, plain, wanted, auxiliary))
+            made: Contractor = model.function(
+                ("contractor", layout, plain, tuple(wanted), auxiliary),
+                lambda: Contractor(PropagatedNodes(model.program, layout, plain, wanted, auxiliary)),
+            )
             return made
 
         return {False: contractor(self.goals[: self.bounded]), True: contractor(self.goals)}
@@ -179,8 +183,8 @@ class QuestionBounds:
         data = [np.nan if owner[k] >= 0 else v for k, v in enumerate(self.first_data())]
         every = self.contractors[True]
         values = [float(np.asarray(v).ravel()[0]) for v in every.constant_values([None] * self.n + data)]
-        known = dict(zip(every.constants, values, strict=True))
-        return {some: [known[node] for node in c.constants] for some, c in self.contractors.items()}
+        known = dict(zip(every.nodes.constants, values, strict=True))
+        return {some: [known[node] for node in c.nodes.constants] for some, c in self.contractors.items()}
 
     def _values_of_rows(self, f: int) -> dict[int, np.ndarray]:
         """Return every node that one factor alone decides, per row of it."""
@@ -192,15 +196,16 @@ class QuestionBounds:
             values = contractor.tabulate(inputs)
         return {
             node: np.broadcast_to(np.asarray(v, dtype=float), (self.instance.combinations.radix[f],))
-            for node, v in zip(contractor.tables, values, strict=True)
-            if contractor.factor[node] == f
+            for node, v in zip(contractor.nodes.tables, values, strict=True)
+            if contractor.nodes.factor[node] == f
         }
 
     def _root(self, values: Sequence[np.ndarray]) -> Root:
         """Return what holds everywhere; objectives that only settle ties cut nothing off, so that they may count."""
         hull = (np.array([np.min(v) for v in values]), np.array([np.max(v) for v in values]))
-        lower, upper = self.instance.ranges.lower, self.instance.ranges.upper
-        return self.contractors[True].root(lower, upper, hull, self.constants[True], self.right_sides)
+        ranges = self.instance.ranges
+        leaves = Leaves(ranges.lower, ranges.upper, hull, self.constants[True], self.right_sides)
+        return propagated_root(self.contractors[True].nodes, leaves)
 
     def _auxiliary(self, settings: BranchingSettings) -> tuple[int, ...]:
         """Return the nodes to carry as auxiliary variables.
@@ -210,16 +215,16 @@ class QuestionBounds:
         carrying it, unless nothing is feasible: then limits are all that there is. Which nodes are chosen is a matter
         of speed: bounds hold with any of them.
         """
-        program, contractor, root = self.model.program, self.contractors[False], self.root
-        order = set(contractor.order)
-        seen = contractor.order if self.infeasibility else program.needed([g.node for g in contractor.goals])
-        readers = [program.nodes[k] for k in contractor.order if program.nodes[k].op == OP_SPECIAL]
+        program, nodes, root = self.model.program, self.contractors[False].nodes, self.root
+        order = set(nodes.order)
+        seen = nodes.order if self.infeasibility else program.needed([g.node for g in nodes.goals])
+        readers = [program.nodes[k] for k in nodes.order if program.nodes[k].op == OP_SPECIAL]
         read = {a for k in seen if program.nodes[k].op == OP_SPECIAL for a in program.nodes[k].args}
         count = Counter(a for node in readers for a in set(node.args) if a in read)
         moving = [program.dependence([i]) for i in range(self.n)]
         result = []
         for k, _ in count.most_common():
-            inner = k in order and contractor.kind[k] == INNER and contractor.narrows[k]
+            inner = k in order and nodes.kind[k] == INNER and nodes.narrows[k]
             bounded = root.low[k] > 0 and bool(np.isfinite(root.high[k]))
             if inner and bounded and sum(bool(marked[k]) for marked in moving) >= settings.pivot_of:
                 result.append(k)
@@ -228,7 +233,7 @@ class QuestionBounds:
     def _range_of_variable(self, position: int) -> tuple[float, float]:
         low, high = float(self.instance.ranges.lower[position]), float(self.instance.ranges.upper[position])
         node, root = self.model.program.input_nodes[position], self.root
-        if node in self.contractors[True].order and not root.empty:
+        if node in self.contractors[True].nodes.order and not root.empty:
             low, high = max(low, float(root.low[node])), min(high, float(root.high[node]))
         return min(low, high), high
 

@@ -15,8 +15,10 @@ from synth.bounds import box_source, compiled_boxes
 from synth.bounds.box_batches import CompiledQuestion, Prepared
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
-from synth.bounds.contractor import Contractor, MovingInputs
+from synth.bounds.contractor import Contractor
 from synth.bounds.intervals import BACKWARD, FORWARD
+from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
+from synth.bounds.root_propagation import Leaves, propagated_root
 from synth.compiled import compiler
 from synth.compiled.c_text import template
 from synth.margins import above
@@ -73,7 +75,8 @@ class Case:
     def __init__(self, program, n, cuts, goals, range_, rng, boxes):
         self.rng, self.n, self.cuts, self.goals, self.boxes = rng, n, cuts, goals, boxes
         self.bounds = [c.bound for c in cuts]
-        self.contractor = c = Contractor(program, MovingInputs(n, (0, 0, 1, -1), (1,)), cuts, goals)
+        nodes = PropagatedNodes(program, MovingInputs(n, (0, 0, 1, -1), (1,)), cuts, goals)
+        self.contractor = c = Contractor(nodes)
         least, most = range_
         columns = rng.uniform(least, most, (3, ROWS))
         columns[1] = np.where(rng.random(ROWS) < 0.15, np.nan, columns[1])
@@ -86,17 +89,18 @@ class Case:
             ]
         self.constants = [float(np.asarray(v).ravel()[0]) for v in constants]
         rows = [
-            np.broadcast_to(np.asarray(per_slot[c.factor[k]][i], dtype=float), (ROWS,)) for i, k in enumerate(c.tables)
+            np.broadcast_to(np.asarray(per_slot[nodes.factor[k]][i], dtype=float), (ROWS,))
+            for i, k in enumerate(nodes.tables)
         ]
         hull = np.array([v.min() for v in rows]), np.array([v.max() for v in rows])
         self.low_end, self.high_end = np.full(n, least), np.full(n, most)
-        self.root = c.root(self.low_end, self.high_end, hull, self.constants, self.bounds)
+        self.root = propagated_root(nodes, Leaves(self.low_end, self.high_end, hull, self.constants, self.bounds))
         pairs = rng.integers(ROWS, size=(2, CLUSTERS))
         self.tables = []
-        for k, v in zip(c.tables, rows, strict=True):
+        for k, v in zip(nodes.tables, rows, strict=True):
             ends = np.minimum(v[pairs[0]], v[pairs[1]]), np.maximum(v[pairs[0]], v[pairs[1]])
             ends = np.fmax(ends[0], self.root.low[k]), np.fmin(ends[1], self.root.high[k])
-            self.tables.append((c.factor[k], *ends))
+            self.tables.append((nodes.factor[k], *ends))
         self.cell = rng.integers(CLUSTERS, size=(boxes, 2)).astype(np.int32)
         ends = rng.uniform(least, most, (2, boxes, n))
         ends[1] = np.where(rng.random((boxes, n)) < 0.1, ends[0], ends[1])
@@ -141,7 +145,7 @@ class Case:
             TUNING.tolerances.margins,
             sizes,
         )
-        prepared = Prepared(self.contractor, question)
+        prepared = Prepared(len(self.cuts), question)
         boxes = Boxes(
             self.cell,
             self.low,

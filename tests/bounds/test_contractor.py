@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 import synth
 from problems.mechanics.guide_friction import sum_geometric
 from synth.bounds.clusters import ClusterTree, Factor
-from synth.bounds.contractor import Contractor, MovingInputs
+from synth.bounds.contractor import Contractor
+from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
+from synth.bounds.root_propagation import Leaves, propagated_root
 from synth.compiled import compiler
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
@@ -75,17 +77,17 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
 
     ``data`` holds, per data input, a number or the column of the factor it belongs to.
     """
-    n, factor_of = contractor.layout.n_variables, contractor.layout.factor_of
-    right = [cut.bound for cut in contractor.cuts] if bounds is None else bounds
+    n, factor_of = contractor.nodes.layout.n_variables, contractor.nodes.layout.factor_of
+    right = [cut.bound for cut in contractor.nodes.cuts] if bounds is None else bounds
     alone = [np.nan if f >= 0 else x for x, f in zip(data, factor_of, strict=True)]
     with np.errstate(all="ignore"):
         constants = [float(np.ravel(v)[0]) for v in contractor.constant_values([None] * n + alone)]
         values = [np.broadcast_to(v, (ROWS,)) for v in contractor.tabulate([None] * n + list(data))]
     hull = np.array([v.min() for v in values]), np.array([v.max() for v in values])
-    root = contractor.root(low.min(axis=0), high.max(axis=0), hull, constants, right)
+    root = propagated_root(contractor.nodes, Leaves(low.min(axis=0), high.max(axis=0), hull, constants, right))
     tables = []
-    for k, v in zip(contractor.tables, values, strict=True):
-        f = contractor.factor[k]
+    for k, v in zip(contractor.nodes.tables, values, strict=True):
+        f = contractor.nodes.factor[k]
         least, most = trees[f].hull(v[:, None])
         tables.append((np.fmax(least[cell[:, f], 0], root.low[k]), np.fmin(most[cell[:, f], 0], root.high[k])))
     variables = [(low[:, i].copy(), high[:, i].copy()) for i in range(n)]
@@ -170,7 +172,7 @@ class Question:
         return cuts, goals, caps, kept
 
     def contracted(self, cuts, goals, caps, passes):
-        contractor = Contractor(self.program, self.layout, cuts, goals)
+        contractor = Contractor(PropagatedNodes(self.program, self.layout, cuts, goals))
         return contraction(contractor, self.data, self.trees, self.cell, self.low, self.high, caps, passes)
 
 
@@ -251,9 +253,10 @@ def contract(expressions, cuts, goals, low, high, caps=None, data=(), passes=2):
     program = Program([*symbols, *extra], expressions(*symbols, *extra))
     node = program.outputs
     made = [NodeConstraint(s, node[v], b if b is None else node[b], 1e-9, level) for s, v, b, level in cuts]
-    contractor = Contractor(
+    nodes = PropagatedNodes(
         program, MovingInputs(2, (-1,) * len(data)), made, [Goal(node[k], sign) for k, sign in goals]
     )
+    contractor = Contractor(nodes)
     ends = np.array([low], dtype=float), np.array([high], dtype=float)
     return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, caps, passes)
 
@@ -538,10 +541,10 @@ def test_boxes_around_feasible_designs_survive(family):
 
 def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(family):
     form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(6)
-    pivots = form.bounding.question.auxiliary
-    assert pivots  # friction work sees the torque, which many variables and parts make together
+    auxiliary = form.bounding.question.auxiliary
+    assert auxiliary  # friction work sees the torque, which many variables and parts make together
     data = form.instance.data(family.combinations)
-    values = family.model.program.compile(pivots)([*points.T, *data])
+    values = family.model.program.compile(auxiliary)([*points.T, *data])
     held = np.stack([np.broadcast_to(v, len(points)) for v in values], axis=1)
     boxes = around(form, rng, points, family.combinations, 0.0)
     for scale in (1.0, 0.1, 0.0):

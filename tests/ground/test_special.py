@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from problems.mechanics.startup import reactive_friction_work, reactive_peak_slip_power, reactive_slip_time
-from synth.bounds.contractor import Contractor, MovingInputs
+from synth.bounds.contractor import Contractor
+from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
 from synth.special import TABLE, recorded, special
@@ -64,7 +65,7 @@ def test_propagation_keeps_every_design_that_exists(formula, sense):
         level = values[k]
         holds = values[rows] <= level if sense == "at_most" else values[rows] >= level
         limit = NodeConstraint(sense, program.outputs[0], None, 1e-9, level)
-        contractor = Contractor(program, MovingInputs(3, ()), [limit, guard], goals)
+        contractor = Contractor(PropagatedNodes(program, MovingInputs(3, ()), [limit, guard], goals))
         nothing = np.zeros((50, 0), dtype=int)
         result = contraction(contractor, [], [], nothing, low[rows], high[rows], None, 3)
         assert result.alive[holds].all()
@@ -79,7 +80,7 @@ def test_a_special_function_is_bounded_at_its_corner_where_it_exists_in_the_whol
     with recorded() as calls:
         value = reactive_slip_time(torque, 600.0, 30.0, 26.6, ramp) + 1e-6 * torque
     program = Program(symbols, [value], calls)
-    contractor = Contractor(program, MovingInputs(2, ()), [], [Goal(program.outputs[0], 1)])
+    contractor = Contractor(PropagatedNodes(program, MovingInputs(2, ()), [], [Goal(program.outputs[0], 1)]))
     low, high = np.array([[900.0, 2.0], [500.0, 2.0]]), np.array([[1200.0, 2.0], [1200.0, 2.0]])
     least = float(reactive_slip_time(1200.0, 600.0, 30.0, 26.6, 2.0))
     bounds = contraction(contractor, [], [], np.zeros((2, 0), dtype=int), low, high, None, 1).bounds[:, 0]

@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import synth
-from synth.bounds import contractor
+from synth.bounds import question_bounds
 from synth.deadline import Stopped
 from synth.feasibility import Status
 from synth.model.problem import DesignProblem
@@ -615,8 +615,8 @@ def test_what_holds_for_many_questions_is_found_once(
 ) -> None:
     shared = SharedBounds(asked(problem, loads(2, 7, 60)), MOVING)
     roots = []
-    root = contractor.Contractor.root
-    monkeypatch.setattr(contractor.Contractor, "root", lambda *a: roots.append(1) or root(*a))
+    root = question_bounds.propagated_root
+    monkeypatch.setattr(question_bounds, "propagated_root", lambda *a: roots.append(1) or root(*a))
     for own in (loads(2, 60), loads(2.5, 6.9, 7, 33), loads(59)):
         questions = asked(problem, own)
         instance = JointInstance([q.instance for q in questions], MOVING)
