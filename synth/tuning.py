@@ -507,7 +507,7 @@ class BranchingSettings:
         A limit that is steeper counts as this steep, as a slope between logarithms.
     least : float
         Influence and weight of what seems to matter to nothing: it must be split some day as well.
-    least_in_conflict : float
+    least_if_infeasible : float
         The same where nothing feasible is known: limits that nearly agree are told apart in very small boxes.
     most_bits : int
         Objectives that are told apart when weights are learned.
@@ -522,25 +522,25 @@ class BranchingSettings:
         The same for questions that are answered together: each has a best value of its own.
     anywhere : float
         What influences anywhere count beside those at the designs known.
-    pivot_of : int
-        Variables that an inner node depends on to be worth carrying along with boxes.
-    most_pivots : int
-        Inner nodes that are carried.
+    auxiliary_of : int
+        Variables that a node depends on to be worth carrying along with boxes as an auxiliary variable.
+    most_auxiliary : int
+        Auxiliary variables that boxes carry.
     """
 
     samples: int = 256
     step: float = 1e-4
     largest_influence: float = 50.0
     least: float = 1e-3
-    least_in_conflict: float = 1e-6
+    least_if_infeasible: float = 1e-6
     most_bits: int = 3
     some: float = 1e-3
     enough: int = 8
     parts_first: float = 3.0
     questions_first: float = 6.0
     anywhere: float = 0.1
-    pivot_of: int = 2
-    most_pivots: int = 1
+    auxiliary_of: int = 2
+    most_auxiliary: int = 1
 
 
 @dataclass(frozen=True, kw_only=True)

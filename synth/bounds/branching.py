@@ -91,7 +91,7 @@ class BranchingWeights:
     ) -> None:
         self._question, self._trees, self._influences, self._settings = question, trees, influences, settings
         # What seems to matter to nothing must be split some day as well, or a box could be split for ever elsewhere.
-        self._floor = settings.least_in_conflict if question.infeasibility else settings.least
+        self._floor = settings.least_if_infeasible if question.infeasibility else settings.least
         self._range = np.maximum(question.high - question.low, 1e-300)
         self._bits = question.bounded if question.bounded <= settings.most_bits else 0
         self.tables = self._score_tables(influences.anywhere)

@@ -226,9 +226,9 @@ class QuestionBounds:
         for k, _ in count.most_common():
             inner = k in order and nodes.kind[k] == INNER and nodes.narrows[k]
             bounded = root.low[k] > 0 and bool(np.isfinite(root.high[k]))
-            if inner and bounded and sum(bool(marked[k]) for marked in moving) >= settings.pivot_of:
+            if inner and bounded and sum(bool(marked[k]) for marked in moving) >= settings.auxiliary_of:
                 result.append(k)
-        return tuple(sorted(result[: settings.most_pivots]))
+        return tuple(sorted(result[: settings.most_auxiliary]))
 
     def _range_of_variable(self, position: int) -> tuple[float, float]:
         low, high = float(self.instance.ranges.lower[position]), float(self.instance.ranges.upper[position])
