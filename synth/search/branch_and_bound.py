@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.bounds.boxes import Boxes, Subtrees
-from synth.search.archive import Candidate
+from synth.search.archive import Candidate, rows_of
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
@@ -147,25 +147,50 @@ def _grown(
 def best(
     form: Formulation,
     boxes: Boxes,
-    column: int,
-    fixed_cutoffs: np.ndarray,
-    tolerance: float,
+    rule: EpsilonCover,
     clock: Clock,
     rng: np.random.Generator,
     start: Candidate | None = None,
     node_limit: float = np.inf,
 ) -> tuple[Candidate | None, TreeOutcome]:
-    """Find the least phi of one objective under cutoffs of the others, and prove it within the tolerance.
+    """Find the least phi of one objective, and prove it within the tolerance of a rule.
 
-    Designs of the archive of the formulation, and ``start``, are known already.
+    Parameters
+    ----------
+    form, boxes, clock, rng, node_limit
+        As for :func:`branch_and_bound`. Designs of the archive of the formulation are known already.
+    rule : EpsilonCover
+        Of one objective, as :func:`cover_of_one` makes it.
+    start : Candidate, optional
+        Known as well.
+
+    Returns
+    -------
+    tuple
+        The best design, if any is known, and how the search ended.
     """
-    rule = EpsilonCover([column], np.array([tolerance]), fixed_cutoffs, form.new_archive([column]))
     if len(form.archive):
         rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
-        rule.take(np.array([start.combination]), start.variables[None, :], start.phi[None, :])
-    found = branch_and_bound(form, boxes, rule, clock, rng, node_limit)
-    return (rule.known[0] if len(rule.known) else None), found
+        rule.take(*rows_of([start]))
+    outcome = branch_and_bound(form, boxes, rule, clock, rng, node_limit)
+    return (rule.known[0] if len(rule.known) else None), outcome
+
+
+def cover_of_one(form: Formulation, column: int, tolerance: float, fixed_cutoffs: np.ndarray) -> EpsilonCover:
+    """Return the rule that seeks the best design in one objective, of which none is known yet.
+
+    Parameters
+    ----------
+    form : Formulation
+    column : int
+        The number of the objective.
+    tolerance : float
+        In phi.
+    fixed_cutoffs : array (objectives,)
+        phi that the design must keep.
+    """
+    return EpsilonCover([column], np.array([tolerance]), fixed_cutoffs, form.new_archive([column]))
 
 
 def _latest(fresh: list[Boxes], generation: int) -> Boxes:

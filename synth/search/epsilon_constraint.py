@@ -11,7 +11,7 @@ import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.search.archive import Candidate
-from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound
+from synth.search.branch_and_bound import TreeOutcome, best, branch_and_bound, cover_of_one
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.one_exchange import OneExchange
@@ -54,7 +54,8 @@ def cover_by_epsilon_constraint(
     corner = [form.objectives.phi_of(pool.bounds)[:, k].min(initial=np.inf) for k in (CAPPED, SOUGHT)]
     clock.beyond = [np.array(corner)]
     # The other end first: good designs there are often not far from good in both.
-    first, end = best(form, pool, CAPPED, cutoffs, rule.tolerance[CAPPED], clock, rng, node_limit=node_limit)
+    at_end = cover_of_one(form, CAPPED, rule.tolerance[CAPPED], cutoffs)
+    first, end = best(form, pool, at_end, clock, rng, node_limit=node_limit)
     looked, left, narrow = end.looked, [form.boxes.lean(form.boxes.nothing())], first is not None and end.closed
     OneExchange(form, rule, rng).improve(clock)
     if end.closed and first is not None:
@@ -62,7 +63,8 @@ def cover_by_epsilon_constraint(
     while True:
         # What is better in the capped objective than all steps so far is open, and as bad in the other as the last one.
         clock.beyond = [np.array(corner), *(form.objectives.phi_of(b.bounds)[:, : len(corner)] for b in left)]
-        found, outcome = best(form, pool, SOUGHT, cutoffs.copy(), proof, clock, rng, node_limit=node_limit)
+        sought = cover_of_one(form, SOUGHT, proof, cutoffs.copy())
+        found, outcome = best(form, pool, sought, clock, rng, node_limit=node_limit)
         looked += outcome.looked
         left.append(form.boxes.lean(outcome.open))
         if found is None:
@@ -109,7 +111,8 @@ def prove_by_epsilon_constraint(
 
     def least(k: int, cutoffs: np.ndarray, phi: float) -> float:
         nonlocal looked
-        found, outcome = best(form, pool, k, cutoffs, rule.tolerance[k], clock, rng, _to_beat(form, k, phi), node_limit)
+        sought = cover_of_one(form, k, rule.tolerance[k], cutoffs)
+        found, outcome = best(form, pool, sought, clock, rng, _to_beat(form, k, phi), node_limit)
         looked += outcome.looked
         left.append(form.boxes.lean(outcome.open))
         if found is None or found.combination < 0:

@@ -179,7 +179,7 @@ class FrontProof:
 
 @dataclass
 class OpenBoxBudget:
-    """The time for boxes that a first effort has left open.
+    """The time for boxes that a first search has left open.
 
     Parameters
     ----------

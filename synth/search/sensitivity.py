@@ -150,11 +150,16 @@ def optima(
 def held(form: Formulation, phi: np.ndarray, chosen: int, k: int, moved: np.ndarray | None = None) -> Tasks:
     """Return problems of one objective that hold the other chosen ones; ``moved`` is that of :class:`Tasks`."""
     count, goals = phi.shape
-    caps = np.full((count, goals), np.inf)
-    caps[:, :chosen] = phi[:, :chosen] + form.tuning.tolerances.tie
-    caps[:, k] = np.inf
+    cutoffs = np.full((count, goals), np.inf)
+    cutoffs[:, :chosen] = phi[:, :chosen] + form.tuning.tolerances.tie
+    cutoffs[:, k] = np.inf
     return Tasks(
-        np.tile(np.eye(goals)[k], (count, 1)), np.zeros((count, goals)), caps, form.objectives.scales, 0.0, moved=moved
+        np.tile(np.eye(goals)[k], (count, 1)),
+        np.zeros((count, goals)),
+        cutoffs,
+        form.objectives.scales,
+        0.0,
+        moved=moved,
     )
 
 

@@ -12,7 +12,7 @@ from synth.bounds.boxes import Boxes
 from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.best_first import OpenBoxes, Progress, best_first
-from synth.search.branch_and_bound import best, branch_and_bound
+from synth.search.branch_and_bound import best, branch_and_bound, cover_of_one
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.proven_gap import Bound, least_gap
@@ -116,8 +116,8 @@ def test_what_waits_holds_less_the_more_is_closed(form):
 
 
 def test_the_gap_of_open_boxes_is_what_they_allow(form):
-    plain = np.full(2, np.inf)
-    found, ended = best(form, form.boxes.root(), 0, plain, 1e-3, Clock(), np.random.default_rng(0))
+    rule = cover_of_one(form, 0, 1e-3, np.full(2, np.inf))
+    found, ended = best(form, form.boxes.root(), rule, Clock(), np.random.default_rng(0))
     assert ended.closed
     form.archive.__init__([0, 1], form.n, 2)
     left = branch_and_bound(form, form.boxes.root(), whole(form, 1e-3), Clock(), np.random.default_rng(0), 50).open

@@ -12,7 +12,7 @@ import synth
 from synth.deadline import Stopped
 from synth.question.catalogs import catalogs_for
 from synth.search.archive import Archive, Candidate, distinct
-from synth.search.branch_and_bound import best, branch_and_bound
+from synth.search.branch_and_bound import best, branch_and_bound, cover_of_one
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import spread_choice
@@ -218,7 +218,9 @@ def test_the_best_design_is_proven(form, column):
     others = sampled(form, np.random.default_rng(2))
     form.archive.__init__([0, 1], form.n, 2)
     fixed_cutoffs = np.full(2, np.inf)
-    found, outcome = best(form, form.boxes.root(), column, fixed_cutoffs, 1e-3, Clock(), np.random.default_rng(0))
+    found, outcome = best(
+        form, form.boxes.root(), cover_of_one(form, column, 1e-3, fixed_cutoffs), Clock(), np.random.default_rng(0)
+    )
     assert outcome.closed
     assert found.phi[column] <= min(c.phi[column] for c in others) + 1e-3
 

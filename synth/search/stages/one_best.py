@@ -8,7 +8,7 @@ import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.search.archive import Archive, Candidate, rows_of
-from synth.search.branch_and_bound import TreeOutcome, best
+from synth.search.branch_and_bound import TreeOutcome, best, cover_of_one
 from synth.search.front_state import FrontState
 from synth.search.pruning import EpsilonCover
 from synth.search.resolution import ranges
@@ -97,7 +97,8 @@ def _tree(
 ) -> tuple[Candidate | None, TreeOutcome]:
     """Search one tree; where there is but one objective, what it leaves open speaks of all designs."""
     state.begin_tree(np.array([tolerance]) if state.task.m == 1 else None)
-    found = best(state.form, state.pool, k, fixed_cutoffs, tolerance, state.clock, state.rng, start, node_limit)
+    rule = cover_of_one(state.form, k, tolerance, fixed_cutoffs)
+    found = best(state.form, state.pool, rule, state.clock, state.rng, start, node_limit)
     state.end_tree()
     return found
 
@@ -116,7 +117,7 @@ def _rule_for_best(
     state: FrontState, k: int, fixed_cutoffs: np.ndarray, tolerance: float, known: Candidate | None
 ) -> EpsilonCover:
     """Return the rule for the design that is best in one objective."""
-    rule = EpsilonCover([k], np.array([tolerance]), fixed_cutoffs, state.form.new_archive([k]))
+    rule = cover_of_one(state.form, k, tolerance, fixed_cutoffs)
     if known is not None:
         rule.take(*rows_of([known]))
     return rule

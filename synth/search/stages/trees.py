@@ -52,7 +52,7 @@ def _noted(state: FrontState, rule: EpsilonCover, outcome: TreeOutcome) -> TreeO
 
 
 def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
-    """Go on with boxes that a first effort has left open; return what stays open, and note what is proven then.
+    """Go on with boxes that a first search has left open; return what stays open, and note what is proven then.
 
     Combinations that are few are solved one by one first: boxes close around what is best. Where too many stay open
     to be solved, Optuna draws some of them.
@@ -88,8 +88,8 @@ def _go_on(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
     """Go on with boxes while they keep closing and there is time; return what stays open."""
     state.begin_tree(rule.tolerance if len(rule.columns) == state.task.m else None)
     begun, budget = time.monotonic(), state.budget
-    effort = replace(state.task.limits.further, seconds=budget.seconds)
-    outcome = best_first(state.form, left, rule, state.clock, state.rng, effort)
+    limits = replace(state.task.limits.further, seconds=budget.seconds)
+    outcome = best_first(state.form, left, rule, state.clock, state.rng, limits)
     budget.seconds -= time.monotonic() - begun
     budget.spent |= outcome.spent
     state.counters.nodes += outcome.looked
