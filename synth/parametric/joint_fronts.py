@@ -40,7 +40,6 @@ def joint_groups(questions: Sequence[Question]) -> list[list[int]]:
 
 def joint_answers(
     questions: Sequence[Question],
-    workers: int = 1,
     progress: Callable[[Mapping[str, Any]], None] | None = None,
     time_limit: float | None = None,
 ) -> list[ParetoFront | None]:
@@ -50,13 +49,12 @@ def joint_answers(
     ----------
     questions : list of Question
         A group of :func:`joint_groups`.
-    workers : int
     progress : callable, optional
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
     """
     search = JointSearch if len(questions[0].chosen) == 1 else JointFrontSearch
-    return search(questions, workers, progress, time_limit).answers()
+    return search(questions, progress, time_limit).answers()
 
 
 class JointFrontSearch:
@@ -66,7 +64,6 @@ class JointFrontSearch:
     ----------
     questions : list of Question
         Alike, each with two objectives.
-    workers : int
     progress : callable, optional
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
@@ -75,11 +72,10 @@ class JointFrontSearch:
     def __init__(
         self,
         questions: Sequence[Question],
-        workers: int = 1,
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
     ) -> None:
-        self.questions, self.workers, self.progress = list(questions), workers, progress
+        self.questions, self.progress = list(questions), progress
         self.tuning, self.limits = questions[0].tuning, questions[0].tuning.joint
         self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
         self.between = questions[0].settings.points - 2
@@ -111,7 +107,7 @@ class JointFrontSearch:
     def _search(self, positions: np.ndarray, shared: SharedBounds, **more: Any) -> JointSearch:
         left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
         questions = [self.questions[q] for q in positions]
-        return JointSearch(questions, self.workers, self.progress, left, shared=shared, **more)
+        return JointSearch(questions, self.progress, left, shared=shared, **more)
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""

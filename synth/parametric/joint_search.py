@@ -95,8 +95,7 @@ class JointSearch:
     Parameters
     ----------
     questions : list of Question
-        Alike, each with one objective.
-    workers : int
+        Alike, each with one objective; threads as the first asks.
     progress : callable, optional
     time_limit : float, optional
         Seconds; then ``Stopped`` is raised.
@@ -113,7 +112,6 @@ class JointSearch:
     def __init__(
         self,
         questions: Sequence[Question],
-        workers: int = 1,
         progress: Callable[[Mapping[str, Any]], None] | None = None,
         time_limit: float | None = None,
         starts: Sequence[Design] = (),
@@ -125,7 +123,7 @@ class JointSearch:
         self.questions, self.progress = list(questions), progress
         first = questions[0]
         self.tuning, self.limits = first.tuning, first.tuning.joint
-        self.shared, self.workers, self.sought = shared, workers, sought
+        self.shared, self.workers, self.sought = shared, first.settings.workers, sought
         moving = () if shared is None else shared.moving
         self.instance = JointInstance([q.instance for q in questions], moving, cutoffs)
         self.gap = first.settings.gap

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -224,7 +225,8 @@ def test_answers_are_those_of_the_kind_of_question() -> None:
 
 def test_the_same_questions_have_the_same_answers_with_any_number_of_threads() -> None:
     questions, answers = answered(3, ("mass", "actuation_force"))
-    assert _told(JointFrontSearch(questions, workers=2).answers()) == _told(answers)
+    threaded = [replace(q, settings=replace(q.settings, workers=2)) for q in questions]
+    assert _told(JointFrontSearch(threaded).answers()) == _told(answers)
 
 
 def _told(answers: Sequence[ParetoFront | None]) -> list[list[tuple[Mapping[str, float], str]]]:

@@ -52,7 +52,6 @@ def find_breaks(
     found: list[Break],
     kept: Kept,
     left: Left,
-    workers: int,
     shown: Shown,
     limits: BreakLimits = BREAKS,
 ) -> None:
@@ -70,7 +69,6 @@ def find_breaks(
     kept : Kept
     left : callable
         Returns the seconds left; raises Stopped.
-    workers : int
     shown : callable, optional
         Progress.
     limits : BreakLimits
@@ -86,7 +84,7 @@ def find_breaks(
         if all(entries is not None for entries in known):
             found += [_read(entry) for entries in known for entry in entries]
             continue
-        own = _Oracle(steps, along, left, workers, limits).breaks(some)
+        own = _Oracle(steps, along, left, limits).breaks(some)
         for (a, b), breaks in zip(some, own, strict=True):
             kept.keep(f"breaks {a.number} {b.number}", f"{a.fingerprint} {b.fingerprint}", [asdict(x) for x in breaks])
             found += breaks
@@ -139,9 +137,9 @@ class _Wanted:
 class _Oracle:
     """Answers what is wanted to know of best designs, for many intervals at a time."""
 
-    def __init__(self, steps: Steps, along: int, left: Left, workers: int, limits: BreakLimits) -> None:
+    def __init__(self, steps: Steps, along: int, left: Left, limits: BreakLimits) -> None:
         self.limits = limits
-        self.steps, self.along, self.left, self.workers = steps, along, left, workers
+        self.steps, self.along, self.left = steps, along, left
         self.senses: dict[str, str] = {}
         self.known: dict[_Wanted, _Best] = {}
         self.made: dict[str, Design] = {}  # a design of each composition asked about alone
@@ -187,7 +185,7 @@ class _Oracle:
             own = [w for w in new if (w.objective, w.values) in position]
             ideas = list(self.ideas.get(own[0].objective, {}).values())
             questions = [posed[places[k]] for k in group]
-            search = JointSearch(questions, self.workers, None, self.left(), ideas, self._shared_bounds(questions[0]))
+            search = JointSearch(questions, None, self.left(), ideas, self._shared_bounds(questions[0]))
             self._together(search, own, [position[w.objective, w.values] for w in own])
         for w in new:
             if w not in self.known:

@@ -142,7 +142,7 @@ class _Run:
         time_limit: float | None,
         folder: Path | None,
     ) -> None:
-        self.steps, self.workers, self.progress = steps, steps.settings.workers, progress
+        self.steps, self.progress = steps, progress
         self.started = time.monotonic()
         self.deadline = math.inf if time_limit is None else self.started + time_limit
         self.folder = folder
@@ -210,7 +210,7 @@ class _Run:
             missing = [k for k in group if self.stored[k] is None]
             if missing:
                 shown = self._shown(f"{len(group)} steps at once", 0.0, 0.0)
-                answers = joint_answers([self.questions[k] for k in group], self.workers, shown, self._left())
+                answers = joint_answers([self.questions[k] for k in group], shown, self._left())
                 found = dict(zip(group, answers, strict=True))
                 self.ahead |= {k: front for k in missing if (front := found[k]) is not None}
 
@@ -308,7 +308,6 @@ class _Run:
             found,
             self.store,
             self._left,
-            self.workers,
             self._shown("break points", self.share_of_steps, 1.0 - self.share_of_steps),
         )
 
