@@ -150,8 +150,8 @@ class BranchingWeights:
         variables : array (designs, variables)
         combinations : array (designs,)
         """
-        data = self._question.instance.data(combinations)
-        data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in data]
+        given = self._question.instance.data(combinations)
+        data = [np.broadcast_to(np.asarray(x, dtype=float), (len(variables),)) for x in given]
         near = self._influences.near([variables[:, i] for i in range(self._question.n)] + data)
         self.tables = self._score_tables(np.maximum(near, self._settings.anywhere * self._influences.anywhere))
 

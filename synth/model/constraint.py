@@ -15,6 +15,7 @@ import numpy as np
 
 from synth.declaration import Limit, Origin
 from synth.feasibility import SMALLEST
+from synth.model.program import InputValue
 
 SIGNS = {"at_most": "<=", "at_least": ">=", "equal": "=="}
 
@@ -65,7 +66,7 @@ class Constraint:
         """Return the sides that are nodes of the program."""
         return (self.value, self.bound) if isinstance(self.bound, int) else (self.value,)
 
-    def void(self, data: Sequence[Any], shape: tuple[int, ...]) -> np.ndarray:
+    def void(self, data: Sequence[InputValue], shape: tuple[int, ...]) -> np.ndarray:
         """Return for which designs it does not count: an optional column has no value.
 
         Parameters
@@ -88,7 +89,7 @@ class Constraint:
         )
 
 
-def void_limits(constraints: Sequence[Constraint], data: Sequence[Any], count: int) -> np.ndarray:
+def void_limits(constraints: Sequence[Constraint], data: Sequence[InputValue], count: int) -> np.ndarray:
     """Return which limits do not count for which designs (designs, limits): an optional column has no value.
 
     Parameters

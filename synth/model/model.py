@@ -16,7 +16,7 @@ from synth.feasibility import holds, residual
 from synth.interrupts import held_back
 from synth.model.constraint import SIGNS, Constraint
 from synth.model.numbers import numeric
-from synth.model.program import Program
+from synth.model.program import InputValue, Program
 from synth.special import SpecialCall, expanded
 from synth.units import format_quantity
 
@@ -156,7 +156,7 @@ class Model:
 
     # -- the trace -----------------------------------------------------------------------------
 
-    def steps(self, variables: np.ndarray, data: Sequence[Any]) -> list[dict[str, float]]:
+    def steps(self, variables: np.ndarray, data: Sequence[InputValue]) -> list[dict[str, float]]:
         """Return the unreported quantities of a batch of designs by name, in SI, for hooks to read.
 
         Parameters
@@ -325,7 +325,7 @@ class Model:
 
     # -- numbers -------------------------------------------------------------------------------
 
-    def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
+    def evaluate(self, variables: np.ndarray, data: Sequence[InputValue]) -> Evaluation:
         """Evaluate a batch of designs: quantities and the limits of the family (``Instance.evaluate`` has all).
 
         Parameters
@@ -374,11 +374,15 @@ class Model:
         values : mapping
             Symbol -> SI value.
         """
+        function, names = self.numeric(expression)
+        return float(function.call([values[name] for name in names])[0])
+
+    def numeric(self, expression: Any) -> tuple[Any, list[str]]:
+        """Return the function that evaluates an expression of the declaration, and the names of its arguments."""
         made: tuple[Any, list[str]] = self.function(
             ("number", id(expression)), lambda: numeric(expanded(expression, self.calls))
         )
-        function, names = made
-        return float(function.call([values[name] for name in names])[0])
+        return made
 
     def refused(self, refusal: Refusal) -> Any:
         """Return the function that evaluates a refusal for batches of inputs."""

@@ -17,6 +17,8 @@ import numpy as np
 
 from synth.special import SpecialCall
 
+InputValue = float | np.ndarray  # of a program: one number for all designs of a batch, or one for each
+
 ARITY_TWO = {
     ca.OP_ADD: "({0} + {1})",
     ca.OP_SUB: "({0} - {1})",

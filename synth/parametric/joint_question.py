@@ -16,6 +16,7 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.bounds.compiled_subtrees import CutoffTables
 from synth.model.model import DataInput
+from synth.model.program import InputValue
 from synth.question.combinations import JointCombinations
 from synth.question.inputs import inputs_of_combination
 from synth.question.instance import Instance
@@ -66,7 +67,7 @@ class JointInstance(SearchSpace):
         entry = self.model.data_inputs[position]
         return self.moving[entry.name] if self._moves(entry) else super().column(position)
 
-    def data(self, combinations: np.ndarray) -> list[Any]:
+    def data(self, combinations: np.ndarray) -> list[InputValue]:
         """Return the data inputs of the model for combinations given by number."""
         every, fixed = np.asarray(combinations, dtype=np.int64), self.first.values
         question = self.combinations.question(every)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from synth.declaration import Declaration
 from synth.model.model import DataInput, Model
+from synth.model.program import InputValue
 from synth.question.combinations import Combinations
 from synth.tables.catalogs import Catalogs
 from synth.tables.table import Table
 
 
-def part_value(table: Table, rows: Any, columns: Sequence[str]) -> np.ndarray:
+def part_value(table: Table, rows: np.ndarray | Sequence[int] | slice, columns: Sequence[str]) -> np.ndarray:
     """Return a column of some rows of a table, or the first of several columns that has a value, row by row.
 
     Parameters
@@ -57,8 +57,11 @@ def fixed_designation(slot: str) -> str:
 
 
 def inputs_of(
-    model: Model, requirements: Mapping[str, Any], rows: Mapping[str, Any], unknown: Callable[[DataInput], Any]
-) -> list[Any]:
+    model: Model,
+    requirements: Mapping[str, InputValue],
+    rows: Mapping[str, InputValue],
+    unknown: Callable[[DataInput], InputValue],
+) -> list[InputValue]:
     """Return the data inputs of a model, in its order.
 
     Parameters
@@ -77,7 +80,7 @@ def inputs_of(
         Numbers or arrays, as they were given.
     """
 
-    def value(entry: DataInput) -> Any:
+    def value(entry: DataInput) -> InputValue:
         if entry.kind == "requirement":
             return requirements[entry.name]
         return rows[str(entry.sx)] if entry.kind == "row" else unknown(entry)
@@ -87,11 +90,11 @@ def inputs_of(
 
 def inputs_of_combination(
     model: Model,
-    requirements: Mapping[str, Any],
-    rows: Mapping[str, Any],
+    requirements: Mapping[str, InputValue],
+    rows: Mapping[str, InputValue],
     combinations: Combinations,
     numbers: np.ndarray,
-) -> list[Any]:
+) -> list[InputValue]:
     """Return the data inputs of a model for some combinations.
 
     Parameters

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from synth.model.model import Model
+from synth.model.program import InputValue
 from synth.model.slot_comparison import SlotComparison, comparisons_of
 from synth.question.combinations import Combinations
 from synth.question.inputs import inputs_of_combination
@@ -77,7 +78,7 @@ class Instance(SearchSpace):
         )
         return compared, self.problem.model(given, self.catalogs, compared) if compared else plain
 
-    def data(self, combinations: np.ndarray, values: RequirementValues | None = None) -> list[Any]:
+    def data(self, combinations: np.ndarray, values: RequirementValues | None = None) -> list[InputValue]:
         """Return the data inputs of the model for combinations given by number.
 
         Parameters

@@ -12,6 +12,7 @@ import numpy as np
 from synth.declaration import Refusal
 from synth.errors import InputError, RefusedError
 from synth.model.model import Model
+from synth.model.program import InputValue
 from synth.model.slot_comparison import SlotComparison
 from synth.question.requirement_values import RequirementValues
 from synth.question.selection import Selection, SlotRows
@@ -189,7 +190,9 @@ def allowed_together(model: Model, refusal: Refusal, slots: Sequence[SlotRows]) 
     return allowed_rows(model, [refusal], data, math.prod(shape)).reshape(shape)
 
 
-def allowed_rows(model: Model, refusals: Sequence[Refusal], data: Sequence[Any], count: int) -> np.ndarray:
+def allowed_rows(
+    model: Model, refusals: Sequence[Refusal], data: Sequence[InputValue | None], count: int
+) -> np.ndarray:
     """Tell which of a batch of inputs some refusals allow (batch,).
 
     Parameters

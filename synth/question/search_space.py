@@ -5,12 +5,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
 from synth.model.constraint import Constraint
 from synth.model.model import Evaluation, Model
+from synth.model.program import InputValue
 from synth.question.combinations import Combinations
 from synth.question.requirement_values import RequirementValues
 from synth.question.selection import Selection
@@ -59,7 +59,7 @@ class SearchSpace(ABC):
         """Return all that designs are told and judged by: limits of the family, then those of the user."""
         return (*self.model.constraints, *self.limits.judging)
 
-    def evaluate(self, variables: np.ndarray, data: Sequence[Any]) -> Evaluation:
+    def evaluate(self, variables: np.ndarray, data: Sequence[InputValue]) -> Evaluation:
         """Evaluate a batch of designs: quantities, and all ``constraints``.
 
         Parameters
@@ -82,7 +82,7 @@ class SearchSpace(ABC):
         return self.combinations.column(entry.name, entry.column)
 
     @abstractmethod
-    def data(self, combinations: np.ndarray) -> list[Any]:
+    def data(self, combinations: np.ndarray) -> list[InputValue]:
         """Return the data inputs of the model for combinations given by number."""
 
     @abstractmethod

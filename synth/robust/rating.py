@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from synth.feasibility import holds, utilisation
-from synth.model.program import OP_SELECT
+from synth.model.program import OP_SELECT, InputValue
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
 from synth.proof.interval_arithmetic import ZERO, Pair
 from synth.proof.tape import Tape
@@ -216,10 +216,10 @@ class Rater:
     def _cells(self, design: Design, slot: str, column: str) -> np.ndarray:
         return np.array([self._cell(design, slot, column)])
 
-    def _inputs(self, design: Design, positions: np.ndarray) -> tuple[np.ndarray, list[Any]]:
+    def _inputs(self, design: Design, positions: np.ndarray) -> tuple[np.ndarray, list[InputValue]]:
         model = self.model
         variables = np.tile([float(design.values[v.name]) for v in model.variables], (len(positions), 1))
-        data = self._data(design)
+        data: list[InputValue] = [*self._data(design)]
         for j, member, k in self.moving:
             moved = self._moved(design, j, member, positions[:, j])
             if k < len(model.variables):
@@ -228,7 +228,7 @@ class Rater:
                 data[k - len(model.variables)] = np.broadcast_to(np.asarray(moved, dtype=float), (len(positions),))
         return variables, data
 
-    def _data(self, design: Design) -> list[Any]:
+    def _data(self, design: Design) -> list[float]:
         instance = self.instance
         return inputs_of_design(
             self.model,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -14,6 +13,7 @@ from synth.bounds.question_bounds import QuestionBounds
 from synth.compiled.compilation import NotCompiled, switched_on
 from synth.compiled.execution import Execution
 from synth.model.constraint import Constraint, NodeConstraint, void_limits
+from synth.model.program import InputValue
 from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions, sides
 from synth.nlp.rows import Rows
@@ -120,7 +120,7 @@ class ContinuousProblems:
         low: np.ndarray | None = None,
         high: np.ndarray | None = None,
         skipped: np.ndarray | None = None,
-        data: Sequence[Any] | None = None,
+        data: Sequence[InputValue] | None = None,
         rough: bool = False,
     ) -> Solutions:
         """Solve the continuous problems of many combinations at once, over the whole range unless ends are given.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -28,7 +27,7 @@ def _pairs(instance: SearchSpace, cells: Cells, refusal: Refusal, factors: Seque
     """Return which clusters of two factors hold a pair of rows that a refusal allows (clusters, clusters)."""
     model, owner = instance.model, instance.owners()
     shape = tuple(instance.combinations.radix[f] for f in factors)
-    data: list[Any] = instance.data(np.zeros(1, dtype=np.int64))
+    data = instance.data(np.zeros(1, dtype=np.int64))
     for k, own in enumerate(owner):
         if own in factors:
             column = instance.column(k)

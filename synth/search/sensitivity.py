@@ -12,6 +12,7 @@ import numpy as np
 from synth.feasibility import residual
 from synth.model.model import Evaluation, Model
 from synth.model.numbers import numeric
+from synth.model.program import InputValue
 from synth.nlp.batch import Tasks
 from synth.question.requirement_values import RequirementValues
 from synth.search.archive import Candidate
@@ -132,7 +133,7 @@ def optima(
     if len(solved):
         known = np.empty((len(solved), len(data)))
         for j, x in enumerate(data):
-            known[:, j] = x[solved] if np.ndim(x) else x
+            known[:, j] = x[solved] if isinstance(x, np.ndarray) and x.ndim else x
         points = answer.variables[solved]
         own, at_ends = slopes(
             form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
@@ -283,7 +284,7 @@ def _gradient(form: Formulation) -> Any:
     return evaluate
 
 
-def sides(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> tuple[np.ndarray, np.ndarray]:
+def sides(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]) -> tuple[np.ndarray, np.ndarray]:
     """Return the size of every limit as its row measures it, and the limit itself (designs, limits)."""
     return _sizes(form, form.instance.evaluate(variables, data)), _bounds(form, variables, data)
 
@@ -298,7 +299,7 @@ def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
     return sizes
 
 
-def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
     """Return the limits themselves (designs, limits)."""
     moving = [cut.limit for cut in form.cuts if cut.limit is not None]
     limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))

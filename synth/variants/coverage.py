@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from synth.feasibility import TOLERANCE
 from synth.margins import MARGINS, within
 from synth.model.model import DataInput, Evaluation, Model
-from synth.model.numbers import numeric
 from synth.model.problem import DesignProblem
+from synth.model.program import InputValue
 from synth.question.inputs import inputs_of, part_value
 from synth.question.instance import Instance
 from synth.question.request import Request
-from synth.special import expanded
 from synth.tables.catalogs import Catalogs
 
 FloatArray = NDArray[np.float64]
@@ -170,7 +169,7 @@ def _evaluate(
 
 def _inputs(
     model: Model, instances: Sequence[Instance], columns: _VariantColumns, used: frozenset[str]
-) -> tuple[FloatArray, list[Any]]:
+) -> tuple[FloatArray, list[InputValue]]:
     questions, count = len(instances), columns.count
     variables = np.tile(columns.values, (questions, 1))
     for k, variable in enumerate(model.variables):
@@ -220,16 +219,10 @@ def _refused(model: Model, instance: Instance, columns: _VariantColumns, used: f
     _, data = _inputs(model, [instance], columns, used)
     known = {str(e.sx): np.asarray(v, dtype=float) for e, v in zip(model.data_inputs, data, strict=True)}
     for refusal in instance.selection.joint_refusals:
-        made = _refusal(model, refusal.when)
-        function, names = made
+        function, names = model.numeric(refusal.when)
         found = np.asarray(function.call([known[name][None, :] for name in names])[0].full()).ravel()
         refused |= np.broadcast_to(found > 0.5, refused.shape)
     return refused
-
-
-def _refusal(model: Model, when: Any) -> tuple[Any, list[str]]:
-    made: tuple[Any, list[str]] = model.function(("number", id(when)), lambda: numeric(expanded(when, model.calls)))
-    return made
 
 
 def _nearest_miss(model: Model, instance: Instance, q: int, columns: _VariantColumns, evaluation: Evaluation) -> str:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.model.constraint import Constraint
+from synth.model.program import InputValue
 from synth.nlp.batch import Solutions
 from synth.question.instance import Instance
 from synth.question.objectives import with_ties
@@ -177,7 +177,7 @@ class Resolver:
         kept[kept] &= self._allowed(combinations[kept], moves[kept])
         return found, kept, broken
 
-    def _shifts(self, moves: np.ndarray, start: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+    def _shifts(self, moves: np.ndarray, start: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
         """Return by how much the rows of limits give way."""
         shifts = np.zeros((len(moves), len(self.form.cuts)))
         rows = np.flatnonzero((moves >= 0) & (self.limit_of[moves] >= 0))
@@ -192,7 +192,7 @@ class Resolver:
             shifts[rows, limits] = self.directions[limits] * np.nan_to_num(given)
         return shifts
 
-    def _broken(self, points: np.ndarray, moves: np.ndarray, data: Sequence[Any]) -> np.ndarray:
+    def _broken(self, points: np.ndarray, moves: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
         """Return a limit that no size moves and that a point breaks; -1 where there is none."""
         broken = np.full(len(moves), -1)
         if not self.fixed.any():
