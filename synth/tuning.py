@@ -228,8 +228,8 @@ class SeekerLimits:
         Rounds of a proof after which boxes are worth a solver again.
     scarce : int
         Designs of a front below which it is worth looking harder.
-    lessons : int
-        Optima that tell what is worth splitting, before points of boxes are evaluated alone.
+    learned : int
+        Solved problems that tell what is worth splitting, before points of boxes are evaluated alone.
     near : float
         Relative: limits that miss each other by less count as much as those that do by this.
     thin : float
@@ -254,7 +254,7 @@ class SeekerLimits:
     conflicts: int = 64
     long_proof: int = 10
     scarce: int = 16
-    lessons: int = 100
+    learned: int = 100
     near: float = 1e-4
     thin: float = 1e-5
 

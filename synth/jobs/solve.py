@@ -85,12 +85,12 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     """
     begin = time.monotonic()
     known: Sequence[Design] = ()
-    lessons: BranchingStatistics | None = None
+    branching: BranchingStatistics | None = None
     if LIKE in question:
-        known, lessons = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
+        known, branching = _experience(shared, json.dumps(question[LIKE], sort_keys=True), json.dumps(settings))
     try:
         posed = _posed(question, settings, shared)
-        front = posed.answer(known=known, lessons=lessons)
+        front = posed.answer(known=known, branching=branching)
     except InputError as refusal:
         # The rows were checked; what only the search can see is still said in its words.
         seconds = time.monotonic() - begin
@@ -116,12 +116,12 @@ def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
 def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[Design], BranchingStatistics | None]:
     """Return what the search for a similar question has found and learned; nothing where it fails."""
     try:
-        front, lessons = _posed(json.loads(question), json.loads(settings), shared).experience()
+        front, branching = _posed(json.loads(question), json.loads(settings), shared).experience()
     except Exception:  # its own row tells why
         return (), None
     if front.interrupted == "interrupted":
         raise KeyboardInterrupt
-    return front.designs, lessons
+    return front.designs, branching
 
 
 def record(front: ParetoFront, seconds: float) -> dict[str, Any]:

@@ -70,7 +70,7 @@ class PrimalHeuristics:
         close around a design that is not known.
         """
         form, rule = self.form, self.rule
-        found = len(form.archive) > 0 and form.bounding.branching.learned >= self.limits.lessons
+        found = len(form.archive) > 0 and form.bounding.branching.learned >= self.limits.learned
         pointed_at = self._known_before and self.rounds <= self.limits.long_proof
         return form.infeasibility or not found or (len(rule.columns) > 1 and not pointed_at)
 

@@ -60,22 +60,23 @@ class Question:
         progress: Progress | None = None,
         known: Sequence[Design] = (),
         explained: bool = True,
-        lessons: BranchingStatistics | None = None,
+        branching: BranchingStatistics | None = None,
         given: ParetoFront | None = None,
     ) -> ParetoFront:
         """Search the designs.
 
-        ``known`` are designs of a similar question, where to look first, ``lessons`` what its search has learned. They
-        prove nothing, and no design is taken from them that this question does not allow. ``explained``: tell why,
-        where nothing is feasible. ``given`` is the front of an earlier search of this very question, to go on from.
+        ``known`` are designs of a similar question, where to look first, ``branching`` what its search has learned of
+        where to split. They prove nothing, and no design is taken from them that this question does not allow.
+        ``explained``: tell why, where nothing is feasible. ``given`` is the front of an earlier search of this very
+        question, to go on from.
         """
-        search = self.search(progress, WarmStart(designs=known, branching=lessons))
+        search = self.search(progress, WarmStart(designs=known, branching=branching))
         if given is not None:
             search.begin_from(given)
         return search.run(self.report(explained))
 
     def experience(self) -> tuple[ParetoFront, BranchingStatistics | None]:
-        """Search the designs, and return what helps to answer similar questions: the front, and lessons if any."""
+        """Search the designs; return the front and what was learned, if anything, which helps with similar questions."""
         search = self.search()
         front, state = search.run(self.report(explained=False)), search.state
         # What was learned where nothing was feasible does not help where something is.
