@@ -74,8 +74,13 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     return tabulated(described(p, catalogs))
 
 
-def described(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None) -> list[dict[str, Any]]:
-    """Return the rows of ``describe``, each by the names of the columns."""
+def described(
+    p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None, steps: bool = False
+) -> list[dict[str, Any]]:
+    """Return the rows of ``describe``, each by the names of the columns.
+
+    ``steps``: the quantities on the way to others as well, which are no results but stand in front.json for hooks.
+    """
     problem = load(p)
     tables = as_catalogs(catalogs)
     everything = frozenset(problem.model(frozenset(), tables).declaration.requirements)
@@ -97,6 +102,7 @@ def described(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None
         )
         rows += _columns(part, tables)
     rows += [_row("derived", q, classification=kinds["derived", q.name]) for q in d.derived.values()]
+    rows += [_row("step", s) for s in d.steps.values()] if steps else []
     rows += [_row("limit", x, sense=x.sense, classification=kinds["limit", x.name]) for x in d.limits.values()]
     units = {name: unit for name, unit, _ in d.quantities()}
     rows += [

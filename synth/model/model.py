@@ -159,6 +159,8 @@ class Model:
     def steps(self, variables: np.ndarray, data: Sequence[InputValue]) -> list[dict[str, float]]:
         """Return the unreported quantities of a batch of designs by name, in SI, for hooks to read.
 
+        Like reported ones they are not-a-number where a guard fails without which they do not exist.
+
         Parameters
         ----------
         variables : array (batch, variables)
@@ -176,8 +178,27 @@ class Model:
         given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (*np.asarray(variables, dtype=float).T, *data)]
         with np.errstate(all="ignore"):
             found = self._function_cache["steps"](given)
-        columns = [np.broadcast_to(np.ravel(x), len(variables)).tolist() for x in found]
-        return [dict(zip(steps, row, strict=True)) for row in zip(*columns, strict=True)]
+        columns = [np.broadcast_to(np.ravel(x), len(variables)) for x in found]
+        behind = self.function("guards of steps", self._guards_of_steps)
+        held = self.evaluate(np.asarray(variables, dtype=float), data).holds if any(behind) else {}
+        for k, guards in enumerate(behind):
+            for guard in guards:
+                columns[k] = np.where(held[guard], columns[k], np.nan)
+        return [dict(zip(steps, row, strict=True)) for row in zip(*(x.tolist() for x in columns), strict=True)]
+
+    def _guards_of_steps(self) -> list[list[str]]:
+        """Return, per step, the guards without which it does not exist: those of what it is computed from."""
+        steps = [s.sx for s in self.declaration.steps.values()]
+        needs = [(q.sx, guard) for q in self.declaration.derived.values() for guard in q.needs]
+        program = Program(self.inputs, [*steps, *(sx for sx, _ in needs)], self.calls)
+        own, needing = program.outputs[: len(steps)], program.outputs[len(steps) :]
+        behind: list[list[str]] = [[] for _ in steps]
+        for guard in sorted({name for _, name in needs}):
+            marked = program.downstream(node for node, (_, name) in zip(needing, needs, strict=True) if name == guard)
+            for k, node in enumerate(own):
+                if marked[node]:
+                    behind[k].append(guard)
+        return behind
 
     def _data_inputs(self, d: Declaration) -> list[DataInput]:
         inputs = [DataInput("requirement", r.name, (), True, r.sx) for r in d.requirements.values() if r.sx is not None]

@@ -156,13 +156,14 @@ def describe(
         list[str] | None, typer.Option("--option", help="A structural choice, name=value.", metavar="NAME=VALUE")
     ] = None,
     as_csv: Annotated[bool, typer.Option("--csv", help="Write CSV.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Show quantities on the way to others as well.")] = False,
 ) -> None:
     """Show what a family asks for, searches, computes and limits."""
     from synth.analysis.describe import described, tabulated
     from synth.terminal.console import output, print_description
 
     problem = _load(family, dict(pair("--option", text) for text in option or []))
-    rows = described(problem)
+    rows = described(problem, steps=every)
     if as_csv:
         print(frame_csv(tabulated(rows)), end="")
         return

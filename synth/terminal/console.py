@@ -115,6 +115,7 @@ TITLES = {
     "slot": "Parts (found by the search)",
     "column": "Columns of the parts that are used",
     "derived": "Derived quantities",
+    "step": "Quantities on the way to others (in front.json, for curves)",
     "limit": "Limits",
     "objective": "Objectives",
     "setting": "Settings of the simulation (simulate --set)",
@@ -148,7 +149,7 @@ def _range(row: Mapping[Any, Any]) -> str:
     kind, default = row["kind"], row["default"]
     if kind in ("limit", "objective"):
         return f"{row['sense'].replace('_', ' ')}{' (default)' if default == 'yes' else ''}"
-    if kind in ("setting", "point", "option", "derived", "column", "slot", "choice"):
+    if kind in ("setting", "point", "option", "derived", "step", "column", "slot", "choice"):
         return "optional" if row["optional"] else (str(default) if default is not None else "")
     low, high = row["lower"], row["upper"]
     bounds = [f"{x:.6g}" for x in (low, high) if not math.isnan(x)]
@@ -171,7 +172,7 @@ def _meaning(row: Mapping[Any, Any]) -> str:
         text = f"{text}: {row['choices']}" if text else str(row["choices"])
     if row["kind"] == "requirement" and isinstance(row["default"], str):
         text = f"{text}; default {row['default']} (SI)"
-    if row["source"] and row["kind"] in ("derived", "limit"):
+    if row["source"] and row["kind"] in ("derived", "step", "limit"):
         text = f"{text} [{row['source']}]"
     if row["classification"] and row["kind"] in ("limit", "objective"):
         text = f"{text}\n" * bool(text) + f"class: {row['classification']}"

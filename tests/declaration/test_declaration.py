@@ -747,6 +747,25 @@ def test_a_step_is_read_by_hooks_and_is_no_result():
         synth.evaluate(kind, {"force": "1 kN"}, values={"diameter": "10 mm"}, limits={"area": "<= 1 mm2"})
 
 
+def test_steps_behind_a_guard_do_not_exist_where_it_fails():
+    def declare(d):
+        force = d.requirement("force", "N", symbol="F")
+        diameter = d.variable("diameter", "mm", 1, 50, symbol="d")
+        d.at_least("room", diameter, 5e-3, "mm", guard=True)
+        left = d.derive("left", "mm", diameter - 5e-3, needs=["room"])
+        d.step("pressure", "N/mm2", force / left**2)
+        d.step("section", "mm2", 0.785 * diameter**2)
+        d.at_most("stress", d.derive("stress", "N/mm2", force / diameter**2), 100e6, "N/mm2")
+        d.objective("diameter")
+
+    def steps(diameter):
+        return synth.evaluate(problem(declare), {"force": "1 kN"}, values={"diameter": diameter}).steps
+
+    assert steps("10 mm")["pressure"] == pytest.approx(1e3 / 5e-3**2)
+    assert np.isnan(steps("4 mm")["pressure"])
+    assert steps("4 mm")["section"] == pytest.approx(0.785 * 16e-6)
+
+
 def test_the_search_does_not_see_steps():
     def bare(d):
         force = d.requirement("force", "N", symbol="F")

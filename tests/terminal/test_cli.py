@@ -106,6 +106,16 @@ def test_describe_as_csv() -> None:
     assert rows["column", "friction_pair.mu_dynamic"]["unit"] == "-"
     assert rows["objective", "mass"]["sense"] == "min"
     assert rows["derived", "friction_area"]["classification"] == "log-concave"
+    assert not [name for kind, name in rows if kind == "step"]
+
+
+def test_describe_lists_quantities_on_the_way_where_they_are_asked_for() -> None:
+    shown = at_once("describe", "multi_plate_clutch", "--all").stdout
+    listed = shown.split("\nQuantities on the way to others")[1].split("\nLimits\n")[0]
+    assert quantity(listed, "heat_capacity").startswith("heat_capacity (")
+    assert "\nQuantities on the way" not in at_once("describe", "multi_plate_clutch").stdout
+    rows = csv.DictReader(io.StringIO(at_once("describe", "multi_plate_clutch", "--all", "--csv").stdout))
+    assert {row["name"]: row["unit"] for row in rows if row["kind"] == "step"}["cooled_area"] == "m2"
 
 
 # ---- check ----------------------------------------------------------------------------------------------------------
