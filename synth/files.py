@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from synth.errors import InputError
+from synth.input_limits import INPUT_LIMITS
 from synth.plain_text import UNSAFE, csv_cell, escaped, file_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST = 20_000_000  # bytes of a file that is read; nobody types more, and nothing of ours that is read again has more
 NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # a pipe that nobody writes into would be waited for
 
 KINDS = {
@@ -33,7 +33,7 @@ KINDS = {
 # ---- reading --------------------------------------------------------------------------------------------------------
 
 
-def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = LARGEST) -> bytes:
+def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> bytes:
     """Return what stands in a file that a user has named.
 
     Parameters
@@ -61,7 +61,7 @@ def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = 
     return raw
 
 
-def check_file(path: str | Path, field: str, right: str = "a file", most: int = LARGEST) -> None:
+def check_file(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> None:
     """Refuse what ``read_bytes`` would refuse, without reading it.
 
     Raises
@@ -91,7 +91,7 @@ def _opened(path: str | Path, field: str, right: str, most: int) -> int:
     raise InputError(field, shown, f"{right} that can be read; this is {what}")
 
 
-def read_json(path: str | Path, field: str, right: str, most: int = LARGEST) -> Any:
+def read_json(path: str | Path, field: str, right: str, most: int = INPUT_LIMITS.file) -> Any:
     """Return the content of a JSON file, read strictly: finite numbers only.
 
     Raises

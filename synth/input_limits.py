@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class InputLimits:
-    """Maxima of what users state, all counts; ``docs/specs.md`` lists them.
+    """Maxima of what users state, all counts (of files in bytes); ``docs/specs.md`` lists them.
 
     Parameters
     ----------
@@ -34,6 +34,18 @@ class InputLimits:
         Families that are compared.
     listed : int
         Near-equal designs, variants or candidates for them.
+    file : int
+        Of any file that is read: nobody types more, and nothing of ours that is read again has more.
+    spec_file : int
+        Of a spec, which is written by hand: anything larger is another kind of file.
+    workbook : int
+        Of an Excel file when it is unpacked: sheets are packed to a fifth or a tenth.
+    quantity : int
+        Characters of a number, and of a unit.
+    condition : int
+        Characters of a condition of parts.
+    nesting : int
+        Brackets and nots of a condition inside each other.
     """
 
     message: int = 120
@@ -47,6 +59,12 @@ class InputLimits:
     columns: int = 2000
     families: int = 100
     listed: int = 10_000
+    file: int = 20_000_000
+    spec_file: int = 1_000_000
+    workbook: int = 200_000_000
+    quantity: int = 100
+    condition: int = 10_000
+    nesting: int = 50
 
 
 INPUT_LIMITS = InputLimits()

@@ -33,7 +33,7 @@ MANIFEST = "manifest.json"
 STOPPED = "stopped"  # the folder beside an earlier result, for what a stopped run has
 MOVE_PATIENCE = 30.0  # seconds to wait for another process that exchanges files; it takes far less than one
 JOIN_PATIENCE = 1.0  # seconds for another process of the same job to say which job it is
-PAUSE = 0.02
+PAUSE = 0.02  # seconds between two tries at a lock
 
 
 # ---- kinds of results -----------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import moocore
 import numpy as np
 
-DIGITS = 9
+DIGITS = 9  # of phi, to which designs are the same: solvers differ beyond them
 
 
 def non_dominated(phi: np.ndarray) -> np.ndarray:

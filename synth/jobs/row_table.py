@@ -19,7 +19,6 @@ from synth.plain_text import as_meant
 
 EXCEL = (".xlsx", ".xlsm")
 ROWS = "a CSV or .xlsx file"
-MOST_UNPACKED = 200_000_000  # bytes; sheets are packed to a fifth or a tenth
 
 
 @dataclass(frozen=True)
@@ -186,11 +185,17 @@ def _excel(path: Path, name: str) -> Iterator[tuple[int, tuple[str, ...]]]:
     try:
         with zipfile.ZipFile(packed) as archive:
             unpacked = sum(entry.file_size for entry in archive.infolist())
-        book = openpyxl.load_workbook(packed, read_only=True, data_only=True) if unpacked <= MOST_UNPACKED else None
+        book = (
+            openpyxl.load_workbook(packed, read_only=True, data_only=True)
+            if unpacked <= INPUT_LIMITS.workbook
+            else None
+        )
     except Exception as error:  # whatever a broken archive may raise
         raise InputError("rows", name, f"an Excel file that can be read ({type(error).__name__})") from error
     if book is None:
-        raise InputError("rows", name, f"an Excel file of at most {MOST_UNPACKED // 1_000_000} MB when unpacked")
+        raise InputError(
+            "rows", name, f"an Excel file of at most {INPUT_LIMITS.workbook // 1_000_000} MB when unpacked"
+        )
     try:
         sheet = book.worksheets[0]
         for number, cells in enumerate(sheet.iter_rows(values_only=True), start=1):

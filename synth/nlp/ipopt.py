@@ -37,8 +37,8 @@ IPOPT: dict[str, Any] = {
     "show_eval_warnings": False,
     "calc_lam_p": False,
 }
-ACTIVE = 1e-6
-MAX_FLIPS = 6
+ACTIVE = 1e-6  # in the units of the solver: so close to its border a piece is exchanged for its neighbour
+MAX_FLIPS = 6  # pieces that are tried; the referee of the tests, which asks one problem at a time
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ from synth.proof_limits import PROOF, ProofLimits
 from synth.question.instance import Instance
 from synth.special import expanded
 
-NO_SCALE = 1e-9  # of limits that the user added
+NO_SCALE = 1e-9  # SI, of limits that the user added; the proof's own reading of what feasibility says
 
 
 @dataclass

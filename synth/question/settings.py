@@ -12,7 +12,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.question.spec_keys import GAP_EXPECTED, SEARCHED, is_finite, is_gap, read_keys
 
 Progress = Callable[[Mapping[str, Any]], None]  # told how far a search is: stage, done (0..1), message ...
-LEAST_SECONDS = 1e-3  # for a search when posing the question has taken all the time there is
+LEAST_SECONDS = 1e-3  # for a search when all that goes before it has taken the time there is
 
 
 @dataclass(frozen=True, kw_only=True)

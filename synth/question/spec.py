@@ -13,6 +13,7 @@ import yaml
 
 from synth.errors import InputError, at
 from synth.files import read_bytes
+from synth.input_limits import INPUT_LIMITS
 from synth.question.spec_keys import (
     ASKED,
     FIELDS,
@@ -27,8 +28,6 @@ from synth.question.spec_keys import (
 if TYPE_CHECKING:
     from synth.question.request import Request
     from synth.question.settings import SearchSettings
-
-LARGEST_FILE = 1_000_000  # bytes; a spec is written by hand, anything larger is another kind of file
 
 
 @dataclass(frozen=True)
@@ -223,7 +222,7 @@ def read_content(path: str | Path, what: str) -> Any:
 
 
 def _read_text(file: Path, shown: str, what: str) -> str:
-    raw = read_bytes(file, what, most=LARGEST_FILE)
+    raw = read_bytes(file, what, most=INPUT_LIMITS.spec_file)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from synth.feasibility import Status
 from synth.question.instance import Instance
-from synth.question.settings import Progress
+from synth.question.settings import LEAST_SECONDS, Progress
 from synth.question.uncertainty import LIMITS, Uncertainty
 from synth.results import Design, ParetoFront
 from synth.results.assembly import ranked
@@ -19,7 +19,7 @@ from synth.robust.rating import Rater
 from synth.robust.uncertainty import check_rows
 from synth.tuning import RobustLimits, Tuning
 
-SHORTEST, GRACE = 1e-3, 2.0  # seconds
+GRACE = 2.0  # s, in which designs that were found are rated although time is over
 NOTHING_STANDS = "no design was found that keeps its limits over the whole range"
 
 
@@ -81,7 +81,7 @@ def robust_front(
         question = pose(asked)
         check_rows(rater.things, question.instance.selection.slots)
         if front is None:
-            left = None if time_limit is None else max(deadline - time.monotonic(), SHORTEST)
+            left = None if time_limit is None else max(deadline - time.monotonic(), LEAST_SECONDS)
             front = question.within(left).answer(progress, known)
         # Designs that nobody rated are of little use: that takes a moment even where the time is over.
         ratings, stopped = rater.rate(front.designs, progress, max(deadline, time.monotonic() + GRACE))

@@ -29,13 +29,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
+from synth.input_limits import INPUT_LIMITS
 from synth.tables.table import Table
 from synth.units import parse_quantity, parse_unit
 
 BoolArray = NDArray[np.bool_]
 
-_DEEPEST = 50
-_LONGEST = 10_000
 _TOKENS = re.compile(
     r"""(?P<space>\s+)
     |(?P<number>[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![\w.]))
@@ -344,8 +343,8 @@ class _Parser:
 
     def negation(self) -> Node:
         self.depth += 1
-        if self.depth > _DEEPEST:
-            raise self.wrong(f"at most {_DEEPEST} brackets and nots inside each other")
+        if self.depth > INPUT_LIMITS.nesting:
+            raise self.wrong(f"at most {INPUT_LIMITS.nesting} brackets and nots inside each other")
         try:
             if self.take("not"):
                 return Negation(self.negation())
@@ -461,8 +460,8 @@ def parse_condition(text: str) -> Condition:
         raise InputError("condition", text, "a text such as mu_dynamic > 0.1")
     if not text.strip():
         raise InputError("condition", text, "a column, a comparison and a value, for example mu_dynamic > 0.1")
-    if len(text) > _LONGEST:
-        raise InputError("condition", text[:40], f"at most {_LONGEST} characters")
+    if len(text) > INPUT_LIMITS.condition:
+        raise InputError("condition", text[:40], f"at most {INPUT_LIMITS.condition} characters")
     parser = _Parser(text)
     root = parser.parse()
     return Condition(text, frozenset(parser.columns), root)

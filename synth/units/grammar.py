@@ -8,12 +8,12 @@ from fractions import Fraction
 from functools import lru_cache
 
 from synth.errors import InputError
+from synth.input_limits import INPUT_LIMITS
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494459")
 ABSOLUTE_ZERO = Fraction("273.15")
 _KP = Fraction("9.80665")
 _TINY = Fraction(1, 10**100)
-LONGEST = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,8 +266,8 @@ def _read(text: str) -> _UnitText:
     """Read a unit text; the kind is not settled yet."""
     if not text:
         raise RefusedUnit("a unit; - where there is none")
-    if len(text) > LONGEST:
-        raise RefusedUnit(f"a unit of at most {LONGEST} characters")
+    if len(text) > INPUT_LIMITS.quantity:
+        raise RefusedUnit(f"a unit of at most {INPUT_LIMITS.quantity} characters")
     if text == "-":
         return _UnitText(Fraction(1), _NONE, 0, {"-": 1})
     if text == "%":

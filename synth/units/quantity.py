@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.errors import InputError
-from synth.units.grammar import ABSOLUTE_ZERO, LONGEST, SPACES, RefusedUnit, Unit, is_unit, parse_unit, resolve
+from synth.input_limits import INPUT_LIMITS
+from synth.units.grammar import ABSOLUTE_ZERO, SPACES, RefusedUnit, Unit, is_unit, parse_unit, resolve
 
 FloatArray = NDArray[np.float64]
 
@@ -144,8 +145,8 @@ def _split_number(text: str, value: object, name: str, declared: str = "-") -> t
             name, value, f"a number, with a unit if it is not in {declared}, for example 30 or 30 {declared}"
         )
     number, rest = match[0], plain[match.end() :]
-    if len(number) > LONGEST:
-        raise InputError(name, value, f"a number of at most {LONGEST} characters")
+    if len(number) > INPUT_LIMITS.quantity:
+        raise InputError(name, value, f"a number of at most {INPUT_LIMITS.quantity} characters")
     if re.match(r",[0-9]{3}(?:[,.][0-9]|\Z|[^0-9])", rest):
         raise InputError(
             name,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import synth
-from synth.files import LARGEST, read_bytes
+from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
@@ -302,7 +302,7 @@ def test_the_largest_front_can_be_read_back(example, tmp_path):
     path = tmp_path / "front.json"
     path.write_text(text)
     assert len(read_bytes(path, "front")) == len(text.encode())
-    assert len(text.encode()) + MORE * INPUT_LIMITS.points < LARGEST
+    assert len(text.encode()) + MORE * INPUT_LIMITS.points < INPUT_LIMITS.file
 
 
 def best(family, case, objective, **more):

@@ -21,7 +21,7 @@ from synth.feasibility import Status
 from synth.margins import MARGINS
 from synth.pareto import spread_subset
 from synth.question.instance import Instance
-from synth.question.settings import Progress, SearchSettings, check_progress
+from synth.question.settings import LEAST_SECONDS, Progress, SearchSettings, check_progress
 from synth.question.uncertainty import RATE, Uncertainty
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import ranked
@@ -259,7 +259,7 @@ class _Comparing:
         """Search one family, in its share of the time that is left."""
         limit = None
         if math.isfinite(self.deadline):
-            limit = max((self.deadline - time.monotonic()) / (count - number), 1e-3)
+            limit = max((self.deadline - time.monotonic()) / (count - number), LEAST_SECONDS)
         shown, kept = self._shown(one.label, number, count), list[_Kept]()
 
         request, rater = one.request(self.sheet, self.tables, **self.ranked), None
