@@ -215,3 +215,30 @@ def test_a_wheel_contains_all_tables_schemas_templates_and_the_type_marker(tmp_p
     assert modules | tables | templates | {"synth/py.typed"} <= packed
     assert not [name for name in packed if name.startswith(("tests/", "docs/", "examples/"))]
     assert "clutchsynth = synth.terminal.cli:main" in metadata
+
+
+def numbers_of(tree: ast.Module) -> set[str]:
+    """Return the constants of a module that are numbers."""
+    found = set()
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            name, value = node.targets[0].id, node.value
+            parts = [x for x in ast.walk(value) if not isinstance(x, (ast.operator, ast.unaryop))]
+            if name.isupper() and all(isinstance(x, (ast.Constant, ast.BinOp, ast.UnaryOp)) for x in parts):
+                found |= {name} if any(isinstance(getattr(x, "value", None), (int, float)) for x in parts) else set()
+    return found
+
+
+def test_no_test_patches_a_number_of_the_engine() -> None:
+    assert numbers_of(ast.parse("A = 1\nB = -2 * 3.0\nC = 'x'\nD = f(1)\nE, F = 1, 2\nf = 1")) == {"A", "B"}
+    numbers = {
+        name for package in ENGINE for path in sources(package) for name in numbers_of(ast.parse(path.read_text()))
+    }
+    assert len(numbers) > 20
+    patched = set()
+    for path in (ROOT / "tests").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "setattr":
+                told = [x.value for x in node.args if isinstance(x, ast.Constant) and isinstance(x.value, str)]
+                patched |= {(path.name, word) for word in told if word.rsplit(".", 1)[-1] in numbers}
+    assert patched == set()
