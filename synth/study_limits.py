@@ -153,6 +153,37 @@ class WayOutLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DerivedLimits:
+    """How the variables of a given design are found for which derived quantities stand.
+
+    Parameters
+    ----------
+    starts : int
+        At random within what is searched, beside the middle.
+    again : int
+        Of the starts, that are tried again where solutions may lie outside of what is searched.
+    outside : int
+        Starts at random over three times the range.
+    wider : float
+        How many times further than it is searched a variable may lie.
+    solved : float
+        Relative: derived quantities that are met this closely are met.
+    newton : int
+        Steps at the end, as least squares stops at the square root of what is reachable.
+    smallest : float
+        SI. Of quantities: what is smaller is compared with it; and relative, of ranges.
+    """
+
+    starts: int = 24
+    again: int = 6
+    outside: int = 8
+    wider: float = 100.0
+    solved: float = 1e-12
+    newton: int = 8
+    smallest: float = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True)
 class GuardLimits:
     """How far and how closely is looked for what a requirement must become so that a refusal goes away.
 
@@ -207,6 +238,7 @@ class StudyTexts:
     missed: int = 2
 
 
+DERIVED = DerivedLimits()
 GUARDS = GuardLimits()
 COMPARING = ComparisonLimits()
 STUDY_TEXTS = StudyTexts()

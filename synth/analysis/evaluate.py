@@ -22,9 +22,8 @@ from synth.question.search_range import outside, refuse_not_computable, refuse_o
 from synth.results import Design
 from synth.results.design import DesignSteps
 from synth.special import expanded
+from synth.study_limits import DERIVED
 from synth.units import format_quantity, parse_quantity
-
-WIDER = 100.0  # how much further than it is searched a variable may lie that derived quantities stand for
 
 
 def evaluate(
@@ -219,7 +218,7 @@ def _solve_for(
     unknown = [model.variables[k] for k in missing]
     names = list(derived)
     target = np.array([derived[n] for n in names])
-    scale = np.maximum(np.abs(target), 1e-12)
+    scale = np.maximum(np.abs(target), DERIVED.smallest)
     function = model.function(
         ("solve", tuple(missing), tuple(names)),
         lambda: _derived_function(model, missing, names),
@@ -236,15 +235,16 @@ def _solve_for(
 
     rng = np.random.default_rng(0)
     starts = [np.where(upper > 0, np.sqrt(np.maximum(lower, 1e-9) * np.maximum(upper, 0.0)), 0.5 * (lower + upper))]
-    starts += list(lower + (upper - lower) * rng.random((24, len(unknown))))
+    starts += list(lower + (upper - lower) * rng.random((DERIVED.starts, len(unknown))))
     for x in _solutions(difference, slope, starts, lower, upper):
         return x
-    least, most = widened(unknown, WIDER)
+    least, most = widened(unknown, DERIVED.wider)
     # Searched lies nearest what was meant; from its corners and inside, and from further out.
-    reach = [np.clip(lower + (upper - lower) * (3 * share - 1), least, most) for share in rng.random((8, len(unknown)))]
-    found = list(_solutions(difference, slope, [lower, upper, *starts[:6], *reach], least, most))
+    shares = rng.random((DERIVED.outside, len(unknown)))
+    reach = [np.clip(lower + (upper - lower) * (3 * share - 1), least, most) for share in shares]
+    found = list(_solutions(difference, slope, [lower, upper, *starts[: DERIVED.again], *reach], least, most))
     if found:
-        size = np.maximum(upper - lower, 1e-12 * np.abs(upper))
+        size = np.maximum(upper - lower, DERIVED.smallest * np.abs(upper))
         return min(found, key=lambda x: float(np.max(np.maximum(lower - x, x - upper) / size)))
     wanted = ", ".join(f"{n} = {format_quantity(derived[n], model.units[n])}" for n in names)
     ranges = ", ".join(f"{v.name} ({shown_range(v)})" for v in unknown)
@@ -274,7 +274,7 @@ def _solutions(
             except (ValueError, np.linalg.LinAlgError):
                 continue  # this start left the domain of a formula
             x = _polish(answer.x, difference, slope, lower, upper)
-            solved = bool(np.max(np.abs(difference(x))) <= 1e-12)
+            solved = bool(np.max(np.abs(difference(x))) <= DERIVED.solved)
         if solved:
             yield x
 
@@ -292,7 +292,7 @@ def _derived_function(model: Model, missing: list[int], names: list[str]) -> Any
 
 def _polish(x: np.ndarray, difference: Any, slope: Any, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """Finish with Newton steps: least squares stops at the square root of what is reachable."""
-    for _ in range(8):
+    for _ in range(DERIVED.newton):
         try:
             step = np.linalg.solve(slope(x), difference(x))
         except np.linalg.LinAlgError:
