@@ -190,7 +190,7 @@ class TreeLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SeekerLimits:
+class PrimalHeuristicLimits:
     """How long designs are looked for in open boxes and beside designs that are known.
 
     Parameters
@@ -222,7 +222,7 @@ class SeekerLimits:
         Continuous problems of a round: some tens of milliseconds, with compiled code and without.
     rounded_off : int
         Continuous optima of a round around which makeable points are tried.
-    conflicts : int
+    elastic : int
         Boxes of a round for which is solved by how much all limits would have to give way.
     long_proof : int
         Rounds of a proof after which boxes are worth a solver again.
@@ -251,7 +251,7 @@ class SeekerLimits:
     solved: int = 4096
     solved_over_arrays: int = 512
     rounded_off: int = 48
-    conflicts: int = 64
+    elastic: int = 64
     long_proof: int = 10
     scarce: int = 16
     learned: int = 100
@@ -260,25 +260,26 @@ class SeekerLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiveLimits:
+class NeighbourhoodLimits:
     """How long a few promising combinations are searched to the bottom, where hardly any designs are known.
 
     Parameters
     ----------
-    dives : int
+    turns : int
+        Objectives in turn.
     patience : int
-        Dives without success, per objective, after which it ends.
+        Turns without success, per objective, after which it ends.
     solved : int
-        Continuous problems of a dive, two parts away from designs that are known.
+        Continuous problems of a turn, two parts away from designs that are known.
     promising : int
-        Combinations of a dive.
+        Combinations of a turn.
     boxes : int
-        Boxes of a dive.
+        Boxes of the tree of a turn.
     tie_weight : float
-        As for :class:`SeekerLimits`.
+        As for :class:`PrimalHeuristicLimits`.
     """
 
-    dives: int = 40
+    turns: int = 40
     patience: int = 2
     solved: int = 4096
     promising: int = 12
@@ -287,8 +288,8 @@ class DiveLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettleLimits:
-    """How long ties are settled and combinations solved one by one.
+class PolishingLimits:
+    """How long ties are broken and combinations solved one by one.
 
     Parameters
     ----------
@@ -336,7 +337,7 @@ class PartSampling:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ConflictLimits:
+class LeastInfeasibleLimits:
     """How long the design is looked for that misses the limits by least, where none is feasible.
 
     Parameters
@@ -404,25 +405,25 @@ class HeuristicLimits:
 
     Parameters
     ----------
-    seeker : SeekerLimits
+    primal : PrimalHeuristicLimits
         In boxes, and beside designs that are known.
-    dives : DiveLimits
+    neighbourhood : NeighbourhoodLimits
         In a few combinations to the bottom.
-    settle : SettleLimits
+    polishing : PolishingLimits
         Among designs that tie.
     parts : PartSampling
         By drawing parts.
-    conflicts : ConflictLimits
+    least_infeasible : LeastInfeasibleLimits
         Where nothing is feasible.
     joint : JointHeuristicLimits
-        Of questions that are asked together.
+        Of joint searches.
     """
 
-    seeker: SeekerLimits = field(default_factory=SeekerLimits)
-    dives: DiveLimits = field(default_factory=DiveLimits)
-    settle: SettleLimits = field(default_factory=SettleLimits)
+    primal: PrimalHeuristicLimits = field(default_factory=PrimalHeuristicLimits)
+    neighbourhood: NeighbourhoodLimits = field(default_factory=NeighbourhoodLimits)
+    polishing: PolishingLimits = field(default_factory=PolishingLimits)
     parts: PartSampling = field(default_factory=PartSampling)
-    conflicts: ConflictLimits = field(default_factory=ConflictLimits)
+    least_infeasible: LeastInfeasibleLimits = field(default_factory=LeastInfeasibleLimits)
     joint: JointHeuristicLimits = field(default_factory=JointHeuristicLimits)
 
 

@@ -36,8 +36,8 @@ def large_neighbourhood_search(
     clock : Clock
     rng : Generator
     """
-    limits, failures = form.tuning.heuristics.dives, 0
-    for turn in range(limits.dives):
+    limits, failures = form.tuning.heuristics.neighbourhood, 0
+    for turn in range(limits.turns):
         place = turn % len(columns)
         k = columns[place]
         best = form.archive.phi[:, k].min()
@@ -59,7 +59,7 @@ def _promising(
 
     The better they could be the more of them are taken, but not the best alone: these may have nothing makeable.
     """
-    limits = form.tuning.heuristics.dives
+    limits = form.tuning.heuristics.neighbourhood
     combinations, start = _two_parts_away(form, rng, limits.solved)
     weights = np.zeros((len(combinations), len(form.goals)))
     weights[:, list(columns)] = limits.tie_weight

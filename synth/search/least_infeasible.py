@@ -16,7 +16,7 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator) -> LeastInfe
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
     """
-    instance, limits = form.instance, form.tuning.heuristics.conflicts
+    instance, limits = form.instance, form.tuning.heuristics.least_infeasible
     total = instance.combinations.count
     numbers = rng.choice(total, size=limits.tries, replace=False) if total > limits.tries else np.arange(total)
     tried = np.empty(0, dtype=np.int64)
@@ -46,7 +46,7 @@ def _least_missed(
     Limits that cannot all hold have many places where none of them gives way a little without another: combinations
     that are few are tried from several starts.
     """
-    limits = form.tuning.heuristics.conflicts
+    limits = form.tuning.heuristics.least_infeasible
     number = np.repeat(np.arange(len(combinations)), np.clip(limits.tries // len(combinations), 1, limits.starts))
     every, goals = combinations[number], len(form.goals)
     nothing = np.zeros((len(every), goals))
@@ -65,7 +65,7 @@ def _least_missed(
 def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) -> np.ndarray:
     """Return the largest violation of each design; one of a guard, or of a limit that does not exist, counts more."""
     result = form.points.evaluate(variables, combinations)
-    rows, never = [], form.tuning.heuristics.conflicts.never
+    rows, never = [], form.tuning.heuristics.least_infeasible.never
     for limit in form.constraints:
         missed = np.nan_to_num(result.residuals[limit.name], nan=never) + (never if limit.guard else 0.0)
         rows.append(np.where(result.holds[limit.name], 0.0, missed))

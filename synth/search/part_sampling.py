@@ -177,6 +177,6 @@ def _makeable(form: Formulation, combinations: np.ndarray, variables: np.ndarray
     low, high, owner = roundings(form, variables)
     around = form.boxes.leaves(combinations[owner], low, high)
     boxes = form.boxes.contract(replace(around, tag=owner), None)
-    shares = (form.tuning.heuristics.seeker.inside, 0.5)
+    shares = (form.tuning.heuristics.primal.inside, 0.5)
     points = np.concatenate([form.makeable.nearest(form.boxes.inside(boxes, share)) for share in shares])
     return points, np.tile(boxes.tag, 2)

@@ -19,7 +19,7 @@ from synth.search.pruning import PruningRule
 
 def polish_extremes(form: Formulation, traded: int, tolerance: float) -> None:
     """Make the design that is best in each objective exact: solve in all combinations that come near to it."""
-    archive, ties = form.archive, form.tuning.heuristics.settle.ties
+    archive, ties = form.archive, form.tuning.heuristics.polishing.ties
     for k in range(traded if form.n else 0):
         near = np.flatnonzero(archive.phi[:, k] <= archive.phi[:, k].min() + 2 * tolerance)
         _, first = np.unique(archive.combination[near], return_index=True)
@@ -47,7 +47,7 @@ def polish_discrete(
     steps: list[int | None] = [int(k) for k in np.flatnonzero(form.gridded & (form.lower < form.upper))]
     steps += [None] if parts else []
     moved, idle = np.zeros(len(candidates), dtype=bool), np.zeros(len(candidates), dtype=int)
-    for step in steps * form.tuning.heuristics.settle.moves:
+    for step in steps * form.tuning.heuristics.polishing.moves:
         # Where as many steps in a row as there are kinds of them led nowhere, no further one does.
         own = np.flatnonzero(idle < len(steps))
         if not len(own):
@@ -81,7 +81,7 @@ class _Found:
 def _feasible(form: Formulation, whose: np.ndarray, combinations: np.ndarray, variables: np.ndarray) -> _Found:
     """Return the feasible ones of some points."""
     rows, phi = [np.empty(0, dtype=np.int64)], [np.empty((0, len(form.goals)))]
-    at_once = form.tuning.heuristics.settle.evaluated_at_once
+    at_once = form.tuning.heuristics.polishing.evaluated_at_once
     for first in range(0, len(whose), at_once):
         deadline.check()
         part = slice(first, first + at_once)
@@ -130,7 +130,7 @@ def _other_parts(
 
 def _slices(form: Formulation, count: int, each: int) -> list[slice]:
     """Return which of so many designs are tried at once, with so many points each."""
-    at_once = max(form.tuning.heuristics.settle.tried_at_once // max(each, 1), 1)
+    at_once = max(form.tuning.heuristics.polishing.tried_at_once // max(each, 1), 1)
     return [slice(first, first + at_once) for first in range(0, count, at_once)]
 
 
@@ -226,7 +226,7 @@ def same_designs(form: Formulation, pool: Boxes, candidates: Sequence[Candidate]
     found: list[list[Candidate]] = [[] for _ in candidates]
     if not len(pool) or not candidates:
         return found
-    tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.settle.ties
+    tie, most = form.tuning.tolerances.tie, form.tuning.heuristics.polishing.ties
     phi = np.array([c.phi for c in candidates])
     points = np.array([c.variables for c in candidates]).reshape(len(candidates), form.n)
     cutoffs = np.full(phi.shape, np.inf)
@@ -268,7 +268,7 @@ def solve_everywhere(
     form: Formulation, combinations: np.ndarray, rule: PruningRule, clock: Clock, rng: np.random.Generator
 ) -> None:
     """Solve the continuous problem of every combination from several starts and in several directions."""
-    columns, goals, limits = rule.columns, len(form.goals), form.tuning.heuristics.settle
+    columns, goals, limits = rule.columns, len(form.goals), form.tuning.heuristics.polishing
     directions = np.concatenate([np.eye(len(columns)), np.full((1, len(columns)), 1.0), rng.random((2, len(columns)))])
     for number in range(0, len(combinations), limits.batch):
         own = combinations[number : number + limits.batch]

@@ -32,7 +32,7 @@ class PrimalHeuristics:
 
     def __init__(self, form: Formulation, rule: PruningRule, rng: np.random.Generator, every_goal: bool) -> None:
         self.form, self.rule, self.rng, self.every_goal = form, rule, rng, every_goal
-        self.limits = form.tuning.heuristics.seeker
+        self.limits = form.tuning.heuristics.primal
         self.nlps = self.limits.most_problems // 4
         self.rounds = self.failures = 0
 
@@ -102,7 +102,7 @@ class PrimalHeuristics:
     def _solve_elastic(self, batch: Boxes) -> None:
         """Solve for the least by which all limits would have to give way: what they hinge on is split first."""
         form = self.form
-        boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.conflicts, len(batch))))
+        boxes = batch.take(self.rng.integers(len(batch), size=min(self.limits.elastic, len(batch))))
         combinations = form.boxes.combination(replace(boxes, cell=form.boxes.cells.random_leaves(boxes.cell, self.rng)))
         nothing = np.zeros((len(boxes), len(form.goals)))
         cutoffs = np.tile(self.rule.fixed_cutoffs, (len(boxes), 1))
@@ -313,7 +313,7 @@ class PrimalHeuristics:
 
 def roundings(form: Formulation, variables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return boxes (low, high, which design) with gridded variables fixed at values around those of each design."""
-    limits, snap = form.tuning.heuristics.seeker, form.tuning.tolerances.snap
+    limits, snap = form.tuning.heuristics.primal, form.tuning.tolerances.snap
     reach = limits.reach if (2 * limits.reach) ** int(form.gridded.sum()) <= limits.most_roundings else 1
     steps = np.array(np.meshgrid(*[np.arange(-reach, reach) if g else [0] for g in form.gridded], indexing="ij"))
     steps = steps.reshape(form.n, -1).T

@@ -1,4 +1,4 @@
-"""Designs of a similar question as ideas: solved again for this one, they are where a search begins."""
+"""Warm start from designs of a similar question: solved again for this one, they are where a search begins."""
 
 from __future__ import annotations
 

@@ -372,7 +372,7 @@ class _Enumeration:
             some = np.array(rows[start : start + self.limits.problems], dtype=np.int64)
             self._solve(numbers[some], form.boxes.inside(boxes.take(some), 0.5))
         # Boxes of combinations tried before have become smaller since.
-        for share in (form.tuning.heuristics.seeker.inside, 0.5):
+        for share in (form.tuning.heuristics.primal.inside, 0.5):
             points = form.makeable.nearest(form.boxes.inside(boxes, share))
             self._offer(points, numbers)
 
@@ -406,7 +406,7 @@ class _Enumeration:
         whole = form.boxes.leaves(np.full(len(low), combination), low, high)
         around = replace(whole, cell=np.repeat(cell, len(low), axis=0))
         around = form.boxes.contract(form.boxes.lean(around), near.fixed_cutoffs[: form.bounded] + near.tie)
-        for share in (form.tuning.heuristics.seeker.inside, 0.5):
+        for share in (form.tuning.heuristics.primal.inside, 0.5):
             points = form.makeable.nearest(form.boxes.inside(around, share))
             self._offer(points, form.boxes.combination(around))
 

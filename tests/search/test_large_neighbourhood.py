@@ -44,7 +44,7 @@ def every_design():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_dives_come_near_the_best_and_keep_only_feasible_designs(seed):
+def test_turns_come_near_the_best_and_keep_only_feasible_designs(seed):
     problem, rng = Fits(), np.random.default_rng(seed)
     instance = instance_of(problem, {}, catalogs_for(problem, {"rows": ROWS}))
     form = Formulation(instance, {"mass": "min", "length": "min"}, 2)

@@ -8,7 +8,7 @@ from synth import DesignProblem
 from synth.parametric.joint_search import JointSearch
 from synth.search.archive import Candidate
 from synth.search.polishing import polish_discrete
-from synth.tuning import TUNING, SettleLimits
+from synth.tuning import TUNING, PolishingLimits
 from tests.asking import pose
 from tests.sample_problems.strut import RODS, Strut, feasible_candidates
 from tests.tuned import tuned
@@ -77,7 +77,7 @@ def forms(tuning=TUNING):
 
 FORMS = forms()
 AT_ONCE = 7  # points that are evaluated at a time where designs are polished piece by piece
-IN_PIECES = forms(tuned(heuristics={"settle": SettleLimits(tried_at_once=300, evaluated_at_once=AT_ONCE)}))
+IN_PIECES = forms(tuned(heuristics={"polishing": PolishingLimits(tried_at_once=300, evaluated_at_once=AT_ONCE)}))
 
 
 def some_designs(form, count):
@@ -102,7 +102,7 @@ def step(form, own, trials, combinations, traded, order):
 
 def polished_alone(form, own, traded, order, parts):
     """Return what a design becomes that takes its steps alone, all points of each looked at."""
-    for _ in range(TUNING.heuristics.settle.moves):
+    for _ in range(TUNING.heuristics.polishing.moves):
         before = own
         for k in np.flatnonzero(form.gridded & (form.lower < form.upper)):
             grid = form.makeable.grids[k]

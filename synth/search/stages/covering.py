@@ -41,7 +41,7 @@ def _second_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
 
 def _search_neighbourhoods(state: FrontState) -> bool:
     """Look for more where few designs are known; tell whether they are still few, but not none."""
-    scarce = state.task.tuning.heuristics.seeker.scarce
+    scarce = state.task.tuning.heuristics.primal.scarce
     if not len(state.form.archive):
         at_gap = state.cover_within(state.rule.tolerance)
         cover_everything(state, at_gap, min(state.node_limit, state.task.limits.whole_front), enough=0)
