@@ -102,7 +102,8 @@ class JointFrontSearch:
                 found[question].append(Candidate(codec.joined(question, codec.own(c.combination)), c.variables, c.phi))
         solves = self._work_counted()
         fronts = [distinct(first.form.points.as_they_are(own), 2, self.tuning) for own in found.values()]
-        return first.fronts([c for front in fronts if len(front) == 2 + self.between for c in front], 2, solves)
+        chosen = [c for front in fronts if len(front) == 2 + self.between for c in front]
+        return first.report.fronts(first.pool, chosen, 2, solves)
 
     def _search(self, positions: np.ndarray, shared: SharedBounds, **more: Any) -> JointSearch:
         left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)

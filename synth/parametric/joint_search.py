@@ -5,29 +5,23 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from synth.analysis.designs import make_frame, offered
 from synth.bounds.boxes import Boxes
 from synth.compiled.execution import Execution
-from synth.feasibility import Status
 from synth.parametric.joint_heuristics import JointHeuristics
 from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
+from synth.parametric.joint_report import JointReport
 from synth.question.objectives import with_ties
-from synth.results import Certificate, Design, ParetoFront
-from synth.results.assembly import front_of, ranked
+from synth.results import Design, ParetoFront
 from synth.search.archive import Candidate, rows_of
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
-from synth.search.found_designs import found_designs
-from synth.search.polishing import break_ties
 from synth.search.question import Question
-from synth.search.resolution import gap_tolerance, rounded_up
-from synth.search.sensitivity import elasticities
+from synth.search.resolution import gap_tolerance
 
 
 class SharedBounds:
@@ -132,6 +126,7 @@ class JointSearch:
         self.fixed_cutoffs = np.full((len(self.questions), len(self.form.goals)), np.inf)
         for k, values in (cutoffs or {}).items():
             self.fixed_cutoffs[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
+        self.report = JointReport(self.questions, self.instance, self.form, self.goals, self.started)
         self.known = self._none_known()
         self.form.archive = self.known
         self.clock = Clock(math.inf if time_limit is None else self.started + time_limit, self._working)
@@ -146,7 +141,7 @@ class JointSearch:
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has no design: better asked alone."""
         chosen = self.optima(self.told_apart())
-        return self.fronts(chosen, 1, self.form.counters.nlp_solves)
+        return self.report.fronts(self.pool, chosen, 1, self.form.counters.nlp_solves)
 
     def optima(self, asked: np.ndarray) -> list[Candidate]:
         """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
@@ -177,7 +172,7 @@ class JointSearch:
         """
         asked = self.told_apart() & np.isin(np.arange(len(self.questions)), wanted)
         proven = self._search(asked, True)
-        designs = self._designs([(c, ()) for c in self.known], 0)
+        designs = self.report.designs([(c, ()) for c in self.known], 0)
         return [(designs.get(q, [None])[0], bool(proven[q])) for q in wanted]
 
     def _search(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
@@ -243,7 +238,7 @@ class JointSearch:
             form, form.boxes.leaves(combinations), rule, self.clock, self.rng, self.limits.given_parts * len(rows)
         )
         left = rule.open_questions(outcome.open)
-        designs = self._designs([(c, ()) for c in known], 0)
+        designs = self.report.designs([(c, ()) for c in known], 0)
         for q, _, _ in rows:
             result[q] = designs.get(q, [None])[0], bool(asked[q] and not left[q])
         form.archive = self.known
@@ -308,101 +303,6 @@ class JointSearch:
         points = np.array([[d.values[n] for n in names] for d in designs]).reshape(len(designs), self.form.n)
         inside: np.ndarray = np.clip(points, self.form.lower, self.form.upper)
         return inside
-
-    # -- the report ----------------------------------------------------------------------------
-
-    def fronts(self, chosen: Sequence[Candidate], traded: int, solves: int) -> list[ParetoFront | None]:
-        """Return the front of each question that has designs, ties settled.
-
-        Parameters
-        ----------
-        chosen : list of Candidate
-            Proven designs, those of a question side by side.
-        traded : int
-            How many objectives, from the first, are traded off.
-        solves : int
-            Continuous problems that were solved to find them.
-        """
-        form, instance = self.form, self.instance
-        fronts: list[ParetoFront | None] = [None] * len(instance.each)
-        found = break_ties(form, self.pool, chosen, traded) if chosen else []
-        every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
-        solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
-        for number, designs in self._designs(found, traded).items():
-            question = self.questions[number]
-            total, own = question.instance.combinations.count, int(solved[number])
-            statistics = replace(
-                offered(question.instance),
-                excluded_by_bound=total - own,
-                solved=own,
-                searched_together=len(self.questions),
-                boxes=form.counters.contracted,
-                nlp_solves=form.counters.nlp_solves,
-                nlp_solves_to_find=solves,
-                seconds={"total": time.monotonic() - self.started},
-            )
-            certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
-            fronts[number] = front_of(
-                question.instance,
-                designs[0].frame,
-                designs,
-                certificate,
-                statistics,
-                question.record(),
-                complete=traded == 1,
-            )
-        return fronts
-
-    def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
-        """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""
-        form, units = self.form, designs[0].frame.units
-        amounts = {}
-        for k, name in enumerate(list(designs[0].frame.objectives)[:traded]):
-            if not form.objectives.log[k]:
-                size = abs(designs[0].values[name]) / form.objectives.scales[k]
-                amounts[name] = rounded_up(
-                    max(self.gap * size, form.objectives.finest[k]) * form.objectives.scales[k], units[name]
-                )
-        return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
-
-    def _designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
-        """Return the designs of each question in order of rank, from candidates with what ties with each.
-
-        ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
-        """
-        form, instance = self.form, self.instance
-        if not found:
-            return {}
-        candidates = [c for c, _ in found]
-        costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
-        combinations, points, _ = rows_of(candidates)
-        result = form.points.evaluate(points.reshape(len(candidates), form.n), combinations)
-        numbers = instance.combinations.question(combinations).tolist()
-        made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
-        more = [
-            {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
-            for (_, also), cost in zip(found, costs, strict=True)
-        ]
-        designs: dict[int, list[Design]] = {}
-        frames = [made[number] for number in numbers]
-        for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
-            designs.setdefault(number, []).append(design)
-        asked = {number: self.questions[number] for number in designs}
-        return {q: ranked(own, asked[q].chosen, list(asked[q].weights.values()))[1] for q, own in designs.items()}
-
-    def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
-        """Return the elasticities of each design, as its question alone would tell them."""
-        if self.form.objectives.log[:traded].all():
-            return elasticities(self.form, designs, traded)
-        # The objective may be positive in some questions although it is not in all.
-        result = []
-        for c in designs:
-            codec = self.instance.combinations
-            question, own = codec.question(c.combination), codec.own(c.combination)
-            form = Formulation(self.instance.each[question], self.goals, 1, tuning=self.tuning)
-            _, phi = form.points.feasible_rows(c.variables[None, :], np.array([own]))
-            result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
-        return result
 
     def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
         """Return designs that are as good in the objective and better in the next one, over all parts."""

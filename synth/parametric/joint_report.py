@@ -1,0 +1,148 @@
+"""What a joint search reports: the designs and the front of each of its questions."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.analysis.designs import make_frame, offered
+from synth.bounds.boxes import Boxes
+from synth.feasibility import Status
+from synth.parametric.joint_question import JointInstance
+from synth.results import Certificate, Design, ParetoFront
+from synth.results.assembly import front_of, ranked
+from synth.search.archive import Candidate, rows_of
+from synth.search.formulation import Formulation
+from synth.search.found_designs import found_designs
+from synth.search.polishing import break_ties
+from synth.search.question import Question
+from synth.search.resolution import rounded_up
+from synth.search.sensitivity import elasticities
+
+
+class JointReport:
+    """Makes records of what a joint search has found.
+
+    Parameters
+    ----------
+    questions : list of Question
+    instance : JointInstance
+        These questions.
+    form : Formulation
+        Of the instance.
+    goals : mapping
+        The objectives of the formulation with their sense.
+    started : float
+        When the search began, by the monotonic clock.
+    """
+
+    def __init__(
+        self,
+        questions: Sequence[Question],
+        instance: JointInstance,
+        form: Formulation,
+        goals: Mapping[str, str],
+        started: float,
+    ) -> None:
+        self.questions, self.instance, self.form = questions, instance, form
+        self.goals, self.started = goals, started
+        self.gap, self.tuning = questions[0].settings.gap, questions[0].tuning
+
+    def fronts(self, pool: Boxes, chosen: Sequence[Candidate], traded: int, solves: int) -> list[ParetoFront | None]:
+        """Return the front of each question that has designs, ties settled.
+
+        Parameters
+        ----------
+        pool : Boxes
+            All that may hold a feasible design.
+        chosen : list of Candidate
+            Proven designs, those of a question side by side.
+        traded : int
+            How many objectives, from the first, are traded off.
+        solves : int
+            Continuous problems that were solved to find them.
+        """
+        form, instance = self.form, self.instance
+        fronts: list[ParetoFront | None] = [None] * len(instance.each)
+        found = break_ties(form, pool, chosen, traded) if chosen else []
+        every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
+        solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
+        for number, designs in self.designs(found, traded).items():
+            question = self.questions[number]
+            total, own = question.instance.combinations.count, int(solved[number])
+            statistics = replace(
+                offered(question.instance),
+                excluded_by_bound=total - own,
+                solved=own,
+                searched_together=len(self.questions),
+                boxes=form.counters.contracted,
+                nlp_solves=form.counters.nlp_solves,
+                nlp_solves_to_find=solves,
+                seconds={"total": time.monotonic() - self.started},
+            )
+            certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
+            fronts[number] = front_of(
+                question.instance,
+                designs[0].frame,
+                designs,
+                certificate,
+                statistics,
+                question.record(),
+                complete=traded == 1,
+            )
+        return fronts
+
+    def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
+        """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""
+        form, units = self.form, designs[0].frame.units
+        amounts = {}
+        for k, name in enumerate(list(designs[0].frame.objectives)[:traded]):
+            if not form.objectives.log[k]:
+                size = abs(designs[0].values[name]) / form.objectives.scales[k]
+                amounts[name] = rounded_up(
+                    max(self.gap * size, form.objectives.finest[k]) * form.objectives.scales[k], units[name]
+                )
+        return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
+
+    def designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
+        """Return the designs of each question in order of rank, from candidates with what ties with each.
+
+        ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.
+        """
+        form, instance = self.form, self.instance
+        if not found:
+            return {}
+        candidates = [c for c, _ in found]
+        costs = self._prices(candidates, traded) if traded else [{}] * len(candidates)
+        combinations, points, _ = rows_of(candidates)
+        result = form.points.evaluate(points.reshape(len(candidates), form.n), combinations)
+        numbers = instance.combinations.question(combinations).tolist()
+        made = {q: make_frame(self.questions[q].instance, self.questions[q].chosen) for q in dict.fromkeys(numbers)}
+        more = [
+            {"status": Status.OPTIMAL, "gap": self.gap, "alternatives": also, "elasticity": cost}
+            for (_, also), cost in zip(found, costs, strict=True)
+        ]
+        designs: dict[int, list[Design]] = {}
+        frames = [made[number] for number in numbers]
+        for number, design in zip(numbers, found_designs(form, frames, candidates, result, more), strict=True):
+            designs.setdefault(number, []).append(design)
+        asked = {number: self.questions[number] for number in designs}
+        return {q: ranked(own, asked[q].chosen, list(asked[q].weights.values()))[1] for q, own in designs.items()}
+
+    def _prices(self, designs: Sequence[Candidate], traded: int) -> list[dict[str, dict[str, float]]]:
+        """Return the elasticities of each design, as its question alone would tell them."""
+        if self.form.objectives.log[:traded].all():
+            return elasticities(self.form, designs, traded)
+        # The objective may be positive in some questions although it is not in all.
+        result = []
+        for c in designs:
+            codec = self.instance.combinations
+            question, own = codec.question(c.combination), codec.own(c.combination)
+            form = Formulation(self.instance.each[question], self.goals, 1, tuning=self.tuning)
+            _, phi = form.points.feasible_rows(c.variables[None, :], np.array([own]))
+            result += elasticities(form, [Candidate(own, c.variables, phi[0])], traded)
+        return result
