@@ -13,7 +13,7 @@ from synth.bounds.statements import special_range
 from synth.model.constraint import NodeConstraint
 from synth.model.program import OP_SPECIAL, Node, Program
 
-SWEEPS = 4
+SWEEPS = 4  # forward over the whole question, with what limits cut carried back between them
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ class Question:
         return search.run(self.report(explained))
 
     def experience(self) -> tuple[ParetoFront, BranchingStatistics | None]:
-        """Search the designs; return the front and what was learned, if anything, which helps with similar questions."""
+        """Search the designs; return the front and what was learned, if anything, to help with similar questions."""
         search = self.search()
         front, state = search.run(self.report(explained=False)), search.state
         # What was learned where nothing was feasible does not help where something is.
