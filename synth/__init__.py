@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from synth.search.synthesize import synthesize
     from synth.studies.families.compare import compare
     from synth.studies.families.comparison import Comparison, FamilyOutcome
-    from synth.studies.infeasibility.explain import Explanation, Relaxation, explain
+    from synth.studies.infeasibility.explain import explain
+    from synth.studies.infeasibility.explanation import Explanation, Relaxation
     from synth.studies.near_optimal import NearEquals, near_equals
     from synth.studies.prices.price_list import Price, Prices
     from synth.studies.prices.run import prices
@@ -79,14 +80,14 @@ _HOME = {
     "Comparison": "synth.studies.families.comparison",
     "Design": "synth.results",
     "DesignProblem": "synth.model.problem",
-    "Explanation": "synth.studies.infeasibility.explain",
+    "Explanation": "synth.studies.infeasibility.explanation",
     "FamilyOutcome": "synth.studies.families.comparison",
     "NearEquals": "synth.studies.near_optimal",
     "ParetoFront": "synth.results",
     "Price": "synth.studies.prices.price_list",
     "Prices": "synth.studies.prices.price_list",
     "Ratings": "synth.robust.rate",
-    "Relaxation": "synth.studies.infeasibility.explain",
+    "Relaxation": "synth.studies.infeasibility.explanation",
     "SizeRange": "synth.variants.size_range",
     "Study": "synth.studies.whatif.study",
     "batch": "synth.jobs.batch",

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.results.verification import Verification
-    from synth.studies.infeasibility.explain import Explanation
+    from synth.studies.infeasibility.explanation import Explanation
 
 WIDTH = 100  # where the output goes to a file or a pipe
 SOON, LATER = 1.0, 10.0  # seconds between lines of progress where there is no terminal: other stage, same stage

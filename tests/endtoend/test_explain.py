@@ -6,7 +6,7 @@ import pytest
 
 import synth
 from synth.search.synthesize import synthesize
-from synth.studies.infeasibility.explain import _rounded
+from synth.studies.infeasibility.explanation import rounded
 from synth.units import parse_quantity
 from tests.conformance.cases import CASES
 from tests.terminal.entry import at_once
@@ -40,7 +40,7 @@ def test_applying_a_relaxation_is_feasible_and_one_per_cent_less_is_not(explaine
         assert feasible(problem, {**case.requirements, way.name: way.requirement()}, settings), way.sentence
         less = way.given + 0.99 * (way.needed - way.given)
         unit = way.unit
-        shown = _rounded(less, unit, way.sense)
+        shown = rounded(less, unit, way.sense)
         assert parse_quantity(shown, unit, way.name) != pytest.approx(way.needed, rel=1e-6)
         assert not feasible(problem, {**case.requirements, way.name: shown}, settings), way.sentence
 

@@ -1,0 +1,53 @@
+"""Which limits exclude each other: an irreducible infeasible subset of them."""
+
+from __future__ import annotations
+
+from synth.results import Design
+from synth.studies.infeasibility.least_amount import Giving, RelaxedSearch
+from synth.studies.infeasibility.patches import Patches
+
+
+def irreducible_subset(search: RelaxedSearch, patches: Patches, nearest: Design | None) -> tuple[tuple[str, ...], bool]:
+    """Return a minimal set of limits that cannot hold together, and whether it is proven to be minimal.
+
+    Limits are added until no design keeps them, those first that the nearest design is stopped by; then each is
+    left out in turn, and stays out where the others still exclude each other (deletion filter).
+
+    Parameters
+    ----------
+    search : RelaxedSearch
+    patches : Patches
+    nearest : Design, optional
+        That keeps all limits if they are widened by least.
+    """
+    limits, first = search.question.limits, search.ways.first
+    near = [] if nearest is None else _tightest(patches.as_asked(nearest))
+    kept = [x for x in near if x in limits][:first]
+    while True:
+        found = search.least(Giving(give={}, kept=kept))
+        if found.design is None:
+            break
+        broken = [x for x in _broken(patches.as_asked(found.design))[:first] if x not in kept]
+        if not broken:
+            return tuple(kept), False
+        kept += broken
+    proven = found.closed
+    for k, name in enumerate(list(kept)):
+        search.say("conflict", 0.1 + 0.1 * k / len(kept), f"without {name}")
+        found = search.least(Giving(give={}, kept=[x for x in kept if x != name]))
+        if found.design is None and found.closed:
+            kept.remove(name)
+        proven &= found.design is not None or found.closed
+    return tuple(x for x in limits if x in kept), proven
+
+
+def _tightest(design: Design) -> list[str]:
+    """Return the limits of a design, those that it uses most first."""
+    used = {name: x for name, x in design.utilisation.items() if x is not None}
+    return sorted(used, key=lambda name: -used[name])
+
+
+def _broken(design: Design) -> list[str]:
+    """Return the limits that a design breaks, the worst first."""
+    missed = {name: r for name, r in design.residuals.items() if name in design.violated}
+    return sorted(missed, key=lambda name: -missed[name])

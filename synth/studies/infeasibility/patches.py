@@ -1,0 +1,147 @@
+"""Changes of a question as entries of a spec, and the designs of the question that is changed so."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from synth.analysis.designs import make_design, make_frame, part_row
+from synth.analysis.evaluate import evaluate
+from synth.declaration import Origin
+from synth.errors import InputError
+from synth.model.constraint import SIGNS
+from synth.question.instance import Instance
+from synth.question.request import Request
+from synth.question.spec_patch import patched
+from synth.results import Design
+from synth.robust.counterpart import nominal, robust_counterpart
+from synth.studies.infeasibility.explained_question import ExplainedQuestion, Pin
+from synth.studies.infeasibility.relaxation import AMOUNT
+from synth.units import format_quantity, outward
+
+
+def chosen_in(design: Design, name: str) -> str:
+    """Return the part or word that a design has for a slot or choice."""
+    return str(design.parts[name]) if name in design.parts else str(design.choices[name])
+
+
+class Patches:
+    """States changes of a question in the words of its user, and tells what they do.
+
+    Parameters
+    ----------
+    question : ExplainedQuestion
+    slack : float
+        Relative: how far outside its bounds a variable of a design may lie, by rounding.
+    """
+
+    def __init__(self, question: ExplainedQuestion, slack: float) -> None:
+        self.question, self.request, self.slack = question, question.request, slack
+
+    # -- changes -------------------------------------------------------------------------------
+
+    def requirement(self, name: str, text: str) -> dict[str, Any]:
+        """Return the entry with another value of a requirement."""
+        return {"requirements": {self._word("requirements", name): text}}
+
+    def limits(self, texts: Mapping[str, str]) -> dict[str, Any]:
+        """Return the entries of ``limits`` with other bounds for some limits of the user's own."""
+        own = self.question.own
+        entries: dict[str, Any] = {}
+        for quantity in sorted({x.quantity for x in own if x.name in texts}):
+            whole = [x for x in own if x.quantity == quantity and x.origin is Origin.USER]
+            stated = [f"{SIGNS[x.sense]} {texts.get(x.name) or format_quantity(x.bound, x.unit, None)}" for x in whole]
+            entries[self._word("limits", quantity)] = stated[0] if len(stated) == 1 else stated
+        return {"limits": entries} if entries else {}
+
+    def pin(self, pin: Pin, text: str) -> dict[str, Any]:
+        """Return the entry with another value of what is pinned."""
+        if pin.key == "fix":
+            return {"fix": {self._word("fix", pin.name): text}}
+        ends = min(pin.low, float(text)), max(pin.high, float(text))
+        return {"limits": {self._word("limits", pin.name): f"{ends[0]:g} .. {ends[1]:g}"}}
+
+    def choices(self, design: Design, names: Sequence[str]) -> dict[str, Any]:
+        """Return the entries with the parts and words of a design."""
+        question = self.question
+        patch: dict[str, Any] = {}
+        for name in names:
+            key = "fix" if name in question.fix else "parts"
+            chosen = chosen_in(design, name)
+            patch = patched(patch, {key: {self._word(key, name): chosen if key == "fix" else [chosen]}})
+            if key == "fix" and name in question.parts:
+                patch = patched(patch, {"parts": {self._word("parts", name): [chosen]}})
+        return patch
+
+    def _word(self, key: str, name: str) -> str:
+        """Return what the user calls something under a key of the spec; its name where it does not stand there."""
+        stated, names = getattr(self.request, key), self.question.names
+        return next((str(word) for word in stated if names.get(str(word)) == name), name)
+
+    # -- what they do --------------------------------------------------------------------------
+
+    def works(self, patch: Mapping[str, Any], found: Design) -> bool:
+        """Tell whether a design is one of the question with a patch."""
+        asked = self._with(patch)
+        try:
+            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
+            instance = Instance(replace(asked, problem=problem))
+            design = self.as_asked(found, patch)
+            instance.combinations.number(design)
+        except InputError:
+            return False
+        values = [design.values[v.name] for v in instance.model.variables]
+        inside = all(
+            low - self.slack * abs(low) <= x <= high + self.slack * abs(high)
+            for x, low, high in zip(values, instance.ranges.lower, instance.ranges.upper, strict=True)
+        )
+        return inside and not design.violated
+
+    def first_that_works(
+        self, patch: Callable[[str], Mapping[str, Any]], needed: float, unit: str, up: bool, design: Design
+    ) -> tuple[Mapping[str, Any] | None, str]:
+        """Return the patch with the value nearest to what is needed that surely does, and that value.
+
+        Parameters
+        ----------
+        patch : callable
+            Takes the value as text with its unit.
+        needed : float
+            In SI.
+        unit : str
+        up : bool
+            Whether larger values do as well; otherwise smaller ones.
+        design : Design
+            That the question with the patch must allow.
+        """
+        texts = list(outward(needed, unit, up))
+        for text in texts:
+            if self.works(patch(text), design):
+                return patch(text), text
+        return None, texts[0]
+
+    def as_asked(self, found: Design, patch: Mapping[str, Any] | None = None) -> Design:
+        """Return a design of the relaxed question as one of the question itself, or of that with a patch."""
+        kinds = {name: kind for name, kind in found.frame.kinds.items() if name != AMOUNT}
+        own = replace(found, frame=replace(found.frame, kinds=kinds))
+        asked, problem = self._with(patch or {}), self.question.instance.problem
+        if patch is not None:
+            problem = robust_counterpart(nominal(asked.problem), asked.robust, asked.limits)
+        return evaluate(problem, asked.requirements, own, catalogs=asked.catalogs, limits=asked.limits)
+
+    def missing(self, found: Design) -> Design:
+        """Return a design of the relaxed question as it stands in the question, also where it is refused there."""
+        instance = self.question.instance
+        number = instance.combinations.number(found)
+        variables = np.array([[found.values[v.name] for v in instance.model.variables]])
+        result = instance.evaluate(variables, instance.data(np.array([number])))
+        rows = {slot: part_row(table, row) for slot, (table, row) in instance.combinations.describe(number)[0].items()}
+        return make_design(instance, make_frame(instance, {}), variables[0], result, 0, rows, found.choices)
+
+    def _with(self, patch: Mapping[str, Any]) -> Request:
+        """Return the request with a patch."""
+        stated = {key: getattr(self.request, key) for key in ("requirements", "limits", "fix", "parts")}
+        return replace(self.request, **patched(stated, patch))
