@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from synth.question.uncertainty import RATE
 from synth.robust.rate import taken_off, told_of
-from synth.studies.whatif.study import Break, Composition, StudyStep, best_design
+from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.terminal.console import plain_table
 from synth.terminal.robust_console import percent
 from synth.units import format_quantity

@@ -14,7 +14,8 @@ import pytest
 
 import synth
 from synth.pareto import rank
-from synth.studies.whatif.study import Break, Study
+from synth.studies.whatif.study import Study
+from synth.studies.whatif.study_answers import Break
 from synth.tables.catalogs import Catalogs
 from tests.sample_problems.ropes import Ropes, best_ropes, ropes
 

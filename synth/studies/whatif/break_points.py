@@ -13,17 +13,14 @@ from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from typing import Any, Protocol
 
-import numpy as np
-
 from synth.deadline import Stopped
 from synth.errors import InputError
 from synth.parametric.joint_question import different, groups_of, joint_key
 from synth.parametric.joint_search import JointSearch, SharedBounds
-from synth.pareto import rank
 from synth.results import Design, ParetoFront
 from synth.search.question import Question
 from synth.studies.whatif.steps import Steps
-from synth.studies.whatif.study import Break, Composition, StudyStep, best_design
+from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design
 from synth.studies.whatif.vary import Value
 from synth.study_limits import BREAKS, BreakLimits
 
@@ -73,7 +70,7 @@ def find_breaks(
         Progress.
     limits : BreakLimits
     """
-    pairs = [(a, b) for a, b in _pairs(along, answered) if a.front is not None and b.front is not None]
+    pairs = [(a, b) for a, b in neighbours(along, answered) if a.front is not None and b.front is not None]
     for first in range(0, len(pairs), limits.at_once):
         some = pairs[first : first + limits.at_once]
         left()
@@ -90,11 +87,11 @@ def find_breaks(
             found += breaks
 
 
-def _pairs(along: int, answered: Sequence[StudyStep]) -> list[tuple[StudyStep, StudyStep]]:
+def neighbours(along: int, answered: Sequence[StudyStep]) -> list[tuple[StudyStep, StudyStep]]:
     """Return the steps that are neighbours along a number, the other value being the same."""
     groups: dict[tuple[Value, ...], list[StudyStep]] = {}
     for step in answered:
-        groups.setdefault(_others(step, along), []).append(step)
+        groups.setdefault(other_values(step, along), []).append(step)
     result = []
     for group in groups.values():
         group.sort(key=lambda s: float(s.values[along]))  # type: ignore[arg-type]
@@ -102,7 +99,8 @@ def _pairs(along: int, answered: Sequence[StudyStep]) -> list[tuple[StudyStep, S
     return result
 
 
-def _others(step: StudyStep, along: int) -> tuple[Value, ...]:
+def other_values(step: StudyStep, along: int) -> tuple[Value, ...]:
+    """Return the values of a step but for that of the number that is varied."""
     return tuple(v for k, v in enumerate(step.values) if k != along)
 
 
@@ -282,7 +280,7 @@ class _Between:
             if not (self._stands(before, low) and self._stands(after, high)):
                 proven, remark = False, NOT_ROBUST
             old, new = (None if d is None else Composition.of(d, self.objective) for d in (before, after))
-            others = _others(self.one, self.oracle.along)
+            others = other_values(self.one, self.oracle.along)
             found.append(Break(self.objective, others, low, high, old, new, proven, remark))
             place, holder, count = high, after, count + 1
 
@@ -370,52 +368,3 @@ class _Between:
 def _words(design: Design) -> str:
     """Return in words what a design is made of."""
     return repr(Composition.of(design, next(iter(design.values))).named)
-
-
-# ---- weights --------------------------------------------------------------------------------------------------------
-
-
-def weight_breaks(steps: Steps, along: int, answered: Sequence[StudyStep], limits: BreakLimits = BREAKS) -> list[Break]:
-    """Return the weights at which another design comes first; the designs of a front do not depend on weights."""
-    result: list[Break] = []
-    for one, two in _pairs(along, answered):
-        front = one.front
-        if front is None or two.front is None or not front.designs:
-            continue
-        low, high = (float(s.values[along]) for s in (one, two))  # type: ignore[arg-type]
-        name, weights = steps.varied[along].name, front.settings["weights"]
-        _leaders(front, {**weights}, name, low, high, one, along, result, limits)
-    return result
-
-
-def _leaders(
-    front: ParetoFront,
-    weights: dict[str, float],
-    name: str,
-    low: float,
-    high: float,
-    step: StudyStep,
-    along: int,
-    result: list[Break],
-    limits: BreakLimits,
-) -> None:
-    """Halve until the leading designs at both ends are the same or the ends meet."""
-    names = list(front.frame.objectives)
-    values = np.array([[d.values[n] for n in names] for d in front.designs])
-
-    def leader(weight: float) -> Design | None:
-        own = [weight if n == name else weights[n] for n in names]
-        return front.designs[rank(front.frame.objectives, values, own).order[0]] if any(own) else None
-
-    first, last = leader(low), leader(high)
-    if first is last or first is None or last is None:
-        return
-    if high - low <= max(limits.width * max(abs(low), abs(high)), limits.finest):
-        proven = front.certificate.kind == "global"
-        before, after = (Composition.of(d, names[0]) for d in (first, last))
-        others = _others(step, along)
-        result.append(Break("score", others, low, high, before, after, proven, "the leading design of the front"))
-        return
-    middle = 0.5 * (low + high)
-    _leaders(front, weights, name, low, middle, step, along, result, limits)
-    _leaders(front, weights, name, middle, high, step, along, result, limits)

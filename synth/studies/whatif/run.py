@@ -27,9 +27,11 @@ from synth.robust.rating import Rater
 from synth.robust.robust_front import robust_front
 from synth.search.question import Question
 from synth.studies.study_store import RECORD, STUDY_FORMAT, StudyStore
-from synth.studies.whatif.break_points import find_breaks, weight_breaks
+from synth.studies.whatif.break_points import find_breaks
 from synth.studies.whatif.steps import Steps
-from synth.studies.whatif.study import Break, Study, StudyStep
+from synth.studies.whatif.study import Study
+from synth.studies.whatif.study_answers import Break, StudyStep
+from synth.studies.whatif.weight_breaks import weight_breaks
 from synth.tuning import TUNING, Tuning
 
 INTERRUPTED = "interrupted"

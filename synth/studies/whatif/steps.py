@@ -126,7 +126,7 @@ class Steps:
         keys = [str(k) for k in vary] if isinstance(vary, Mapping) else []
         given = {d.names().get(str(w)) for w in [*request.requirements, *keys]} & set(d.requirements)
         model = request.problem.model(frozenset(n for n in given if n is not None), request.catalogs)
-        self.varied = read_vary(vary, request.problem, model, list(chosen_objectives(model, request.objectives)))
+        self.varied = read_vary(vary, model, list(chosen_objectives(model, request.objectives)))
         self.values = list(product(*(x.values for x in self.varied)))
         self._problems: dict[Value, DesignProblem] = {}
         self._with_limits: dict[tuple[DesignProblem, str], DesignProblem] = {}

@@ -12,7 +12,6 @@ from synth.errors import InputError, at, shortened
 from synth.input_limits import INPUT_LIMITS
 from synth.margins import MARGINS
 from synth.model.model import Model
-from synth.model.problem import DesignProblem
 from synth.question.uncertainty import KEYS, name_in_block
 from synth.robust.uncertainty import AROUND
 from synth.units import parse_quantity
@@ -89,14 +88,13 @@ def split_text(text: str) -> tuple[str, str]:
     return (name if sign == "=" else f"{name} {sign}"), values
 
 
-def read_vary(vary: Any, problem: DesignProblem, model: Model, chosen: Sequence[str]) -> list[Varied]:
+def read_vary(vary: Any, model: Model, chosen: Sequence[str]) -> list[Varied]:
     """Read what a study varies.
 
     Parameters
     ----------
     vary : mapping
         Name (or symbol) -> values, as ``synth.whatif`` describes.
-    problem : DesignProblem
     model : Model
         With all that is asked, for names and units.
     chosen : list of str
@@ -114,7 +112,7 @@ def read_vary(vary: Any, problem: DesignProblem, model: Model, chosen: Sequence[
     found = []
     for key, values in vary.items():
         with at("vary", str(key)):
-            found.append(_read_one(str(key), values, problem, model, chosen))
+            found.append(_read_one(str(key), values, model, chosen))
     if len({(x.kind, x.name, x.sign) for x in found}) < len(found):
         raise InputError("vary", found[0].label, "each thing once (name and symbol mean the same)", ("vary",))
     with at("vary"):
@@ -128,7 +126,8 @@ def _check_number(field: str, steps: float) -> None:
         raise InputError(field, f"{steps} steps", f"at most {INPUT_LIMITS.steps} steps")
 
 
-def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chosen: Sequence[str]) -> Varied:
+def _read_one(key: str, values: Any, model: Model, chosen: Sequence[str]) -> Varied:
+    """Return one thing that is varied, with its values."""
     match = KEY.match(key)
     if match is None:
         raise InputError(
@@ -141,11 +140,21 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
         raise InputError("vary", key, f"{word}.NAME")
     if place is not None and sign:
         raise InputError("vary", key, f"{place}.{word} without {sign}")
-    d = model.declaration
     if place == "weights":
         name = model.name_of(word, "vary", list(chosen), "a chosen objective", ())
         _, numbers, remark = _numbers(key, values, "-")
         return Varied("weight", name, "", "-", numbers, remark)
+    if place is not None:
+        return _in_place(place, word, key, values, model)
+    if sign:
+        name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity", ())
+        return Varied("limit", name, SIGN.get(sign, sign), *_numbers(key, values, model.units[name]))
+    return _requirement(word, key, values, model)
+
+
+def _in_place(place: str, word: str, key: str, values: Any, model: Model) -> Varied:
+    """Return what is varied of parts, options or what scatters, with its values."""
+    d = model.declaration
     if place == "parts":
         name = model.name_of(word, "vary", list(d.slots), "a slot", ())
         return Varied("part", name, "", "", _words(key, values, several=True))
@@ -156,14 +165,14 @@ def _read_one(key: str, values: Any, problem: DesignProblem, model: Model, chose
             if label not in d.options[name].choices:
                 raise InputError(f"vary {key}", label, "one of " + ", ".join(d.options[name].choices))
         return Varied("option", name, "", "", words)
-    if place == "robust":
-        if word in KEYS[2:]:
-            raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
-        return Varied("scatter", name_in_block(word, d.names()), "", "", _ranges(key, values))
-    if sign:
-        name = model.name_of(word, "vary", list(model.quantity_sx), "a quantity", ())
-        unit = model.units[name]
-        return Varied("limit", name, SIGN.get(sign, sign), *_numbers(key, values, unit))
+    if word in KEYS[2:]:
+        raise InputError("vary", key, "what scatters: friction, wear, a requirement, a variable or slot.column")
+    return Varied("scatter", name_in_block(word, d.names()), "", "", _ranges(key, values))
+
+
+def _requirement(word: str, key: str, values: Any, model: Model) -> Varied:
+    """Return a requirement that is varied, with its values."""
+    d = model.declaration
     spelled = d.names().get(word)
     if spelled in model.quantity_sx:
         kind = model.kind_of(str(spelled))
