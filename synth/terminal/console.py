@@ -199,54 +199,71 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console.print(f"{frame.title} ({frame.family})")
     if frame.options:
         console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
+    states = _limit_states(design)
+    tables = {
+        "Requirements": _requirements(design, known),
+        "Parts": _parts(design),
+        "Quantities": _quantities(design, known),
+        "Limits": _limits(design, states),
+    }
+    for heading, table in tables.items():
+        console.print(f"\n{heading}")
+        console.print(table)
+    for remark in _remarks(design):
+        console.print(remark)
+    if design.violated:
+        console.print(f"\nviolated: {', '.join(design.violated)}")
+    else:
+        console.print(f"\nall {sum(s == 'ok' for s in states.values())} limits that apply hold")
 
-    console.print("\nRequirements")
+
+def _requirements(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table:
     table = plain_table("name", "symbol", "value", "", "meaning", right=(2,), wide=4)
-    for name, si in frame.requirement_values.items():
+    for name, si in design.frame.requirement_values.items():
         row = known[name]
-        stated = "" if name in frame.requirements else "default"
+        stated = "" if name in design.frame.requirements else "default"
         table.add_row(name, row["symbol"], format_quantity(si, row["unit"]), stated, row["text"])
-    console.print(table)
+    return table
 
-    console.print("\nParts")
+
+def _parts(design: Design) -> Table:
     table = plain_table("slot", "designation", "table", "source", wide=3)
     for slot, part in design.parts.items():
         table.add_row(slot, str(part), str(part["table"]), str(part.get("source") or ""))
-    console.print(table)
+    return table
 
-    console.print("\nQuantities")
+
+def _quantities(design: Design, known: Mapping[str, Mapping[Any, Any]]) -> Table:
     table = plain_table("name", "symbol", "value", "meaning", right=(2,), wide=3)
     for name, label in design.choices.items():
         table.add_row(name, known[name]["symbol"], label, known[name]["text"])
     for name, si in design.values.items():
-        shown = format_quantity(si, frame.units[name]) if math.isfinite(si) else "does not exist"
+        shown = format_quantity(si, design.frame.units[name]) if math.isfinite(si) else "does not exist"
         table.add_row(name, known[name]["symbol"], shown, known[name]["text"])
-    console.print(table)
+    return table
 
-    console.print("\nLimits")
+
+def _limits(design: Design, states: Mapping[str, str]) -> Table:
     table = plain_table("name", "value", "", "limit", "utilisation", "", right=(1, 3, 4), wide=0)
-    for name, state in _limit_states(design).items():
+    for name, state in states.items():
         value, limit = (_limit_side(design, name, side) for side in (0, 1))
         used = design.utilisation.get(name)
         shown_use = "" if used is None else f"{used:.4g}"
         style = "bold red" if state == "VIOLATED" else ""
-        table.add_row(name, value, SIGNS[frame.limit_senses[name]], limit, shown_use, Text(state, style))
-    console.print(table)
+        table.add_row(name, value, SIGNS[design.frame.limit_senses[name]], limit, shown_use, Text(state, style))
+    return table
 
-    for remark in design.not_checked:
-        console.print(remark)
-    if frame.not_asked:
-        console.print(f"not asked, so their limits are not built: {', '.join(frame.not_asked)}")
-    for name, remark in design.off_grid.items():
-        console.print(f"off the grid: {name}, {remark}")
-    for name, remark in design.outside.items():
-        console.print(f"outside the range that is searched: {name} {remark}")
-    for remark in design.advice:
-        console.print(f"advice: {remark}")
-    if design.violated:
-        console.print(f"\nviolated: {', '.join(design.violated)}")
-    else:
-        console.print(f"\nall {sum(s == 'ok' for s in _limit_states(design).values())} limits that apply hold")
+
+def _remarks(design: Design) -> list[str]:
+    """Return what else is to be said of a design."""
+    not_asked = design.frame.not_asked
+    return [
+        *design.not_checked,
+        *([f"not asked, so their limits are not built: {', '.join(not_asked)}"] if not_asked else []),
+        *(f"off the grid: {name}, {remark}" for name, remark in design.off_grid.items()),
+        *(f"outside the range that is searched: {name} {remark}" for name, remark in design.outside.items()),
+        *(f"advice: {remark}" for remark in design.advice),
+    ]
 
 
 def print_state(found: pd.DataFrame, point: str, console: Console) -> None:

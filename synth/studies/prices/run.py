@@ -245,33 +245,11 @@ class _Case:
     def _elsewhere(self, own: tuple[Solutions, np.ndarray, np.ndarray]) -> list[tuple[float, int] | None]:
         """Return, per move, how good the best of the other parts become there, if they overtake; and which."""
         best: list[tuple[float, int] | None] = [None] * self.again.count
-        total = self.again.instance.combinations.count
-        if total == 1:
+        if self.again.instance.combinations.count == 1:
             self.compared = "no other parts are offered"
         if not len(self.others):
             return best
-        values, start, near = self._without_a_step(self.others)
-        whole, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]
-        if not whole:
-            further = self.again.beside(self.others[parents[near[parents]]], np.append(self.others, self.own))
-            more = self._without_a_step(further)
-            values, start, near = (np.concatenate(pair) for pair in zip((values, start, near), more, strict=True))
-            self.others = np.concatenate([self.others, further])
-        self.compared = (
-            f"over all {total} combinations tried"
-            if whole
-            else f"over the {len(self.others) + 1} combinations tried, of {total}"
-        )
-        # Where a step leaves nothing of these parts, others may be far worse and still the best.
-        refused = np.array([bool(m.refused) for m in self.again.moves])
-        tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
-        rows, moves = np.nonzero(tried)
-        found, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
-        reached = np.full(tried.shape, np.inf)
-        reached[rows[kept], moves[kept]] = found.phi[kept, self.k]
-        ahead = (values - self.base) * self.unit < -self.again.limits.even
-        self.already = {int(self.others[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
-        reached[ahead] = np.inf
+        reached = self._reached(own, *self._still())
         for number in range(self.again.count):
             c = int(np.argmin(reached[:, number]))
             if reached[c, number] == np.inf:
@@ -284,6 +262,42 @@ class _Case:
             if room > 0:
                 best[number] = float(reached[c, number]), int(self.others[c])
         return best
+
+    def _still(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return what :meth:`_without_a_step` tells of other parts, and of more that are like the best of them."""
+        total = self.again.instance.combinations.count
+        values, start, near = self._without_a_step(self.others)
+        whole, parents = total <= self.again.limits.all, np.argsort(values, kind="stable")[: self.again.limits.parents]
+        if not whole:
+            further = self.again.beside(self.others[parents[near[parents]]], np.append(self.others, self.own))
+            more = self._without_a_step(further)
+            values, start, near = (np.concatenate(pair) for pair in zip((values, start, near), more, strict=True))
+            self.others = np.concatenate([self.others, further])
+        self.compared = (
+            f"over all {total} combinations tried"
+            if whole
+            else f"over the {len(self.others) + 1} combinations tried, of {total}"
+        )
+        return values, start, near
+
+    def _reached(
+        self, own: tuple[Solutions, np.ndarray, np.ndarray], values: np.ndarray, start: np.ndarray, near: np.ndarray
+    ) -> np.ndarray:
+        """Return how good other parts become per move (parts, moves); infinite where they are not worth a look.
+
+        What is ahead of the design without any move is noted, and no price.
+        """
+        # Where a step leaves nothing of these parts, others may be far worse and still the best.
+        refused = np.array([bool(m.refused) for m in self.again.moves])
+        tried = near[:, None] | (~own[1] & ~refused)[None, : self.again.count]
+        rows, moves = np.nonzero(tried)
+        found, kept, _ = self.again.solved(self.others[rows], start[rows], moves, self.phi, self.k)
+        reached = np.full(tried.shape, np.inf)
+        reached[rows[kept], moves[kept]] = found.phi[kept, self.k]
+        ahead = (values - self.base) * self.unit < -self.again.limits.even
+        self.already = {int(self.others[c]): float((self.base - values[c]) * self.unit) for c in np.flatnonzero(ahead)}
+        reached[ahead] = np.inf
+        return reached
 
     def _without_a_step(self, others: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return how good other combinations are, where, and which of them a step may bring within reach."""
