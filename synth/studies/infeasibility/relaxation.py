@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from synth.analysis.fired_guards import wanted
-from synth.declaration import Limit, Objective, VariableRecord
+from synth.declaration import Limit, Objective, Refusal, VariableRecord
 from synth.feasibility import SMALLEST
 from synth.model.constraint import Constraint
 from synth.model.model import Model
@@ -28,6 +28,23 @@ from synth.tables.catalogs import Catalogs
 
 AMOUNT = "relaxation"
 REQUIREMENT, LIMIT, COLUMN = "requirement", "limit", "column"
+
+
+class _Substitution:
+    """Puts what has moved in place of symbols.
+
+    Parameters
+    ----------
+    before, after : list
+        Symbols, and what stands in their place.
+    """
+
+    def __init__(self, before: list[Any], after: list[Any]) -> None:
+        self.before, self.after = before, after
+
+    def __call__(self, expression: Any) -> Any:
+        """Return an expression in which they are replaced."""
+        return ca.substitute([ca.SX(expression)], self.before, self.after)[0] if self.before else expression
 
 
 class Relaxed(DesignProblem):
@@ -73,54 +90,60 @@ class Relaxed(DesignProblem):
         return self._model
 
     def _traced(self) -> Model:
+        """Return the model of the question with everything in it moved that gives way."""
         original = self._instance.model
         source = original.declaration
         amount = VariableRecord(
             AMOUNT, "-", AMOUNT, "How far limits give way", "-", 0.0, self._farthest, np.empty(0), ca.SX.sym(AMOUNT)
         )
-        before, after = self._moved_inputs(amount.sx)
-        negative = {x.name for x in self._own if x.bound < 0}
-
-        def moved(expression: Any) -> Any:
-            return ca.substitute([ca.SX(expression)], before, after)[0] if before else expression
-
-        def loosened(limit: Limit) -> Limit:
-            sign = self._give.get((LIMIT, limit.name))
-            if sign is None:
-                return limit
-            # A negative bound that is to be less strict moves to the other side of a factor.
-            sign = -sign if limit.name in negative else sign
-            return replace(limit, limit=limit.limit * np.exp(sign * amount.sx))
-
+        moved = _Substitution(*self._moved_inputs(amount.sx))
         target = copy.copy(source)
         target.problem = self.name
         target.derived = {name: replace(q, sx=moved(q.sx)) for name, q in source.derived.items()}
         quantities = {**original.quantity_sx, **{name: q.sx for name, q in target.derived.items()}}
         limits = [replace(x, value=moved(x.value), limit=moved(x.limit)) for x in source.limits.values()]
         limits += [x.declared(quantities[x.quantity]) for x in self._own]
-        target.limits = {x.name: loosened(x) for x in limits if x.guard or x.name in self._kept}
-        # What is refused for a requirement that moves is refused where it has moved to: that is a limit.
-        target.refusals = []
-        own = len(source.refusals) - len(self._instance.compared)
-        for refusal in source.refusals[:own]:
-            when = moved(expanded(refusal.when, original.calls))
-            if not any(str(s) == AMOUNT for s in ca.symvar(when)):
-                target.refusals.append(refusal)
-                continue
-            sides = [(w.smaller, w.larger) for w in wanted(refusal.when) or ()] or [(refusal.when, 0.5)]
-            for k, pair in enumerate(sides):
-                name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
-                value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
-                target.limits[name] = Limit(name, "at_most", "-", refusal.message, "", value, bound, False, SMALLEST)
-        # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
-        rules = zip(self._instance.compared, source.refusals[own:], strict=True)
-        target.refusals += [refusal for rule, refusal in rules if rule.slot not in self._free]
+        target.limits = {x.name: self._loosened(x, amount.sx) for x in limits if x.guard or x.name in self._kept}
+        target.refusals, refused = self._refusals(moved)
+        target.limits |= {x.name: x for x in refused}
         target.variables = {**source.variables, AMOUNT: amount}
         target.objectives = {AMOUNT: Objective(AMOUNT, "min", True), **source.objectives}
         target.advices = []
         target._symbols = {**source.names(), AMOUNT: AMOUNT}
         calls = [replace(c, arguments=tuple(moved(a) for a in c.arguments)) for c in original.calls]
         return Model(self.name, target, calls)
+
+    def _loosened(self, limit: Limit, amount: Any) -> Limit:
+        """Return a limit that gives way, if it is one that does."""
+        sign = self._give.get((LIMIT, limit.name))
+        if sign is None:
+            return limit
+        # A negative bound that is to be less strict moves to the other side of a factor.
+        sign = -sign if any(x.bound < 0 for x in self._own if x.name == limit.name) else sign
+        return replace(limit, limit=limit.limit * np.exp(sign * amount))
+
+    def _refusals(self, moved: _Substitution) -> tuple[list[Refusal], list[Limit]]:
+        """Return what is refused outright, and limits in place of what is refused for something that moves.
+
+        That is refused where it has moved to.
+        """
+        original = self._instance.model
+        source = original.declaration.refusals
+        own = len(source) - len(self._instance.compared)
+        stay, limits = list[Refusal](), list[Limit]()
+        for refusal in source[:own]:
+            when = moved(expanded(refusal.when, original.calls))
+            if not any(str(s) == AMOUNT for s in ca.symvar(when)):
+                stay.append(refusal)
+                continue
+            sides = [(w.smaller, w.larger) for w in wanted(refusal.when) or ()] or [(refusal.when, 0.5)]
+            for k, pair in enumerate(sides):
+                name = f"refused: {refusal.code}" + (f" ({k + 1})" if k else "")
+                value, bound = (moved(expanded(ca.SX(x), original.calls)) for x in pair)
+                limits.append(Limit(name, "at_most", "-", refusal.message, "", value, bound, False, SMALLEST))
+        # Rows are compared as they are, whatever gives way, unless the rule that compares them does not count.
+        rules = zip(self._instance.compared, source[own:], strict=True)
+        return [*stay, *(refusal for rule, refusal in rules if rule.slot not in self._free)], limits
 
     def _moved_inputs(self, amount: Any) -> tuple[list[Any], list[Any]]:
         """Return the symbols of requirements and columns that move, and what stands in their place.
