@@ -9,6 +9,7 @@ import pytest
 import synth
 import synth.robust.robust_front
 import synth.studies.families.compare
+import synth.studies.families.competitor
 from synth import DesignProblem
 from synth.feasibility import Status
 from synth.question.settings import SearchSettings
@@ -475,18 +476,18 @@ def test_nothing_is_proven_of_all_where_designs_were_taken_off():
 
 def test_what_beats_others_must_stand_the_range_as_well(monkeypatch):
     # Of a front of few points it is told only afterwards what lies between; what is found then is rated as well.
-    rated, own = [], synth.studies.families.compare._Member.standing
+    rated, own = [], synth.studies.families.competitor.Competitor.standing
 
     def standing(self, designs, deadline):
         rated.extend(own(self, designs, deadline))
         return rated[len(rated) - len(designs) :]
 
-    monkeypatch.setattr(synth.studies.families.compare._Member, "standing", standing)
+    monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", standing)
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "global"
     assert [d.robust["holds"] for d in rated] == [True]
     # Where it fails nothing says that what is left cannot be beaten.
-    monkeypatch.setattr(synth.studies.families.compare._Member, "standing", lambda self, designs, deadline: [])
+    monkeypatch.setattr(synth.studies.families.competitor.Competitor, "standing", lambda self, designs, deadline: [])
     found = compare([Solid, Tube], {"load": LOAD}, catalogs=OWN, points=4, robust=SCATTER)
     assert found.certificate.kind == "heuristic"
 

@@ -1,0 +1,91 @@
+"""The one front of several families: the designs of all of them that no other one beats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from synth.margins import MARGINS
+from synth.pareto import spread_subset
+from synth.results import Design
+from synth.studies.families.competitor import Competitor
+
+
+class CommonFront:
+    """Designs of several families on one front.
+
+    Parameters
+    ----------
+    objectives : mapping
+        Names and senses.
+    points : int
+        Designs that are listed, at most.
+
+    Attributes
+    ----------
+    members : list of Competitor
+        Families whose designs stand on it; they come as they are searched.
+    """
+
+    def __init__(self, objectives: Mapping[str, str], points: int) -> None:
+        self.objectives, self.points = dict(objectives), points
+        self.senses = np.array([1.0 if sense == "min" else -1.0 for sense in self.objectives.values()])
+        self.members: list[Competitor] = []
+
+    def signed(self, designs: Sequence[Design]) -> np.ndarray:
+        """Return the objectives of designs in SI, those to be made large with a minus sign."""
+        rows = [[d.values[n] for n in self.objectives] for d in designs]
+        signed: np.ndarray = np.array(rows, dtype=float).reshape(len(designs), len(self.objectives)) * self.senses
+        return signed
+
+    def useful(self, designs: Sequence[Design]) -> list[Design]:
+        """Return those that no design known beats or equals."""
+        known = self.signed([d for m in self.members for d in m.designs])
+        return [d for d, own in zip(designs, self.signed(designs), strict=True) if not beaten(known, own).any()]
+
+    def listed(self) -> tuple[list[tuple[Competitor, Design]], list[tuple[Competitor, Design]]]:
+        """Return the designs of the common front, and all that nothing beats."""
+        every = [(m, d) for m in self.members for d in m.designs]
+        signed = self.signed([d for _, d in every])
+        stay: list[int] = []
+        for k, own in enumerate(signed):
+            better = beaten(signed, own) & (strictly_better(signed, own) | (np.arange(len(signed)) < k))
+            if not better.any():
+                stay.append(k)
+        front = [every[k] for k in stay]
+        return [front[k] for k in self._spread([m for m, _ in front], signed[stay])], front
+
+    def _spread(self, owners: Sequence[Competitor], signed: np.ndarray) -> list[int]:
+        """Return designs that spread best, at most so many as asked for; no family is left out that has one."""
+        most = self.points
+        taken = [int(k) for k in spread_subset(signed, most)]
+        kept = [owners[k].one.label for k in taken]
+        for label in dict.fromkeys(m.one.label for m in owners):
+            if label not in kept:
+                spare = [k for k, own in enumerate(kept) if kept.count(own) > 1]
+                if not spare:
+                    break
+                low, high = signed.min(axis=0), signed.max(axis=0)
+                unit = (signed - low) / np.where(high > low, high - low, 1.0)
+                own = [k for k, m in enumerate(owners) if m.one.label == label]
+                best = min(own, key=lambda k: float(np.linalg.norm(unit[k])))
+                # It takes the place of the design nearest to it of a family that has more.
+                gone = min(spare, key=lambda k: float(np.linalg.norm(unit[taken[k]] - unit[best])))
+                taken[gone], kept[gone] = best, label
+        return sorted(taken)
+
+
+def beaten(signed: np.ndarray, own: np.ndarray, of_others: bool = False) -> np.ndarray:
+    """Tell which rows are as good as a design in every objective; ``of_others``: which ones it is as good as."""
+    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
+    better = own <= signed + room if of_others else signed <= own + room
+    result: np.ndarray = np.all(better, axis=1)
+    return result
+
+
+def strictly_better(signed: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Tell which rows are better than a design in some objective."""
+    room = MARGINS.same * np.maximum(np.abs(own), np.abs(signed))
+    result: np.ndarray = np.any(signed < own - room, axis=1)
+    return result
