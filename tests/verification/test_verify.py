@@ -491,7 +491,9 @@ def test_what_contradicts_itself_is_said_in_one_sentence(saved, tmp_path):
     assert told.verdict is Verdict.REFUTED
 
 
-@pytest.mark.parametrize("place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.prove", "VerificationRun._ranking"])
+@pytest.mark.parametrize(
+    "place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.prove", "VerificationRun._ranking"]
+)
 @pytest.mark.parametrize("fault", [KeyError, TypeError, ValueError, AttributeError, IndexError])
 def test_a_fault_of_the_check_is_not_taken_for_one_of_the_front(place, fault, saved, monkeypatch):
     def broken(*arguments):
