@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from synth.bounds.boxes import Boxes
-from synth.nlp.batch import Tasks
+from synth.nlp.batch import Solutions, Tasks
 from synth.parametric.joint_question import BestPerScenario, JointInstance
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
@@ -130,27 +130,15 @@ class JointHeuristics:
 
         ``as_made``: makeable values stay what they are to begin with.
         """
-        form, k, known = rule.form, rule.columns[0], rule.known
+        form, k = rule.form, rule.columns[0]
         heuristics = PrimalHeuristics(form, rule, self.rng, False)
         keep = not_refused(form.instance, combinations)
         combinations, start = combinations[keep], start[keep]
         self.clock.check()
-        held = form.gridded & as_made
-        low, high = np.where(held, start, form.lower), np.where(held, start, form.upper)
         if not form.n or not len(combinations):
             return heuristics.offer(start, combinations)
-        weights = np.zeros((len(combinations), len(form.goals)))
-        weights[:, k] = 1.0
-        questions = self.codec.question(combinations)
-        cutoffs = known.fixed_cutoffs[questions]
-        tasks = Tasks(weights, np.zeros_like(weights), cutoffs, form.objectives.scales, 0.0)
-        found = form.continuous.solve_many(tasks, combinations, start, low, high)
-        form.continuous.learn(tasks, found, np.ones(len(combinations)))
-        better = found.phi[:, k] < rule.needed()[questions]
-        good = np.flatnonzero((found.violation <= form.tuning.nlp.missed) & better)
-        order = good[np.lexsort((found.phi[good, k], questions[good]))]
-        question = questions[order]
-        best = order[np.arange(len(order)) - np.searchsorted(question, question) < self.limits.rounded_off]
+        tasks, found = self._solved(rule, combinations, start, as_made)
+        best = self._best_of_each(rule, combinations, found)
         if not len(best):
             return 0
         if form.gridded.any() and not as_made:
@@ -160,15 +148,38 @@ class JointHeuristics:
         heuristics.polish_best(k, range(k + 1))
         if self.thorough and not as_made:
             # What a combination leaves of the grid may lie far from where it is best without one.
-            left = best[found.phi[best, k] < rule.needed()[questions[best]]]
-            if len(left):
-                branch_and_bound(
-                    form,
-                    form.boxes.leaves(combinations[left]),
-                    rule,
-                    self.clock,
-                    self.rng,
-                    self.limits.settling_boxes * len(left),
-                )
-                heuristics.polish_best(k, range(k + 1))
+            left = best[found.phi[best, k] < rule.needed()[self.codec.question(combinations[best])]]
+            self._settle(rule, heuristics, combinations[left])
         return new
+
+    def _solved(
+        self, rule: BestPerScenario, combinations: np.ndarray, start: np.ndarray, as_made: bool
+    ) -> tuple[Tasks, Solutions]:
+        """Solve the continuous problem of each combination for the objective that is sought; learn from the answers."""
+        form, held = rule.form, rule.form.gridded & as_made
+        low, high = np.where(held, start, form.lower), np.where(held, start, form.upper)
+        weights = np.zeros((len(combinations), len(form.goals)))
+        weights[:, rule.columns[0]] = 1.0
+        cutoffs = rule.known.fixed_cutoffs[self.codec.question(combinations)]
+        tasks = Tasks(weights, np.zeros_like(weights), cutoffs, form.objectives.scales, 0.0)
+        found = form.continuous.solve_many(tasks, combinations, start, low, high)
+        form.continuous.learn(tasks, found, np.ones(len(combinations)))
+        return tasks, found
+
+    def _best_of_each(self, rule: BestPerScenario, combinations: np.ndarray, found: Solutions) -> np.ndarray:
+        """Return the rows of the few best solutions of each question, of those that are of use."""
+        k, questions = rule.columns[0], self.codec.question(combinations)
+        better = found.phi[:, k] < rule.needed()[questions]
+        good = np.flatnonzero((found.violation <= rule.form.tuning.nlp.missed) & better)
+        order = good[np.lexsort((found.phi[good, k], questions[good]))]
+        question = questions[order]
+        best: np.ndarray = order[np.arange(len(order)) - np.searchsorted(question, question) < self.limits.rounded_off]
+        return best
+
+    def _settle(self, rule: BestPerScenario, heuristics: PrimalHeuristics, combinations: np.ndarray) -> None:
+        """Search the makeable designs of a few combinations by trees of a few boxes."""
+        if not len(combinations):
+            return
+        form, k, boxes = rule.form, rule.columns[0], self.limits.settling_boxes * len(combinations)
+        branch_and_bound(form, form.boxes.leaves(combinations), rule, self.clock, self.rng, boxes)
+        heuristics.polish_best(k, range(k + 1))
