@@ -70,6 +70,7 @@ QUESTIONS: dict[str, dict[str, Any]] = {
         "robust": {"load": "+-5 %"},
     },
 }
+QUICK = ("pins", "below zero", "refused", "refused on its edge", "refused for every row")
 BASE = {"parts": {"steel": ["S185", "42CrMo4"]}}
 
 
@@ -87,7 +88,7 @@ def is_feasible(spec: dict[str, Any]) -> bool:
     return bool(synth.synthesize(Bracket(), points=1, **spec).designs)
 
 
-@pytest.mark.parametrize("name", QUESTIONS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in QUESTIONS])
 def test_every_patch_makes_the_question_feasible(name: str) -> None:
     spec, why = question(name), explained(name)
     assert not why.feasible

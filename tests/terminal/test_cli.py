@@ -348,6 +348,7 @@ def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "out" / "front.json").read_text())["interrupted"] == "time limit"
 
 
+@pytest.mark.slow
 def test_the_same_question_gives_the_same_bytes_whether_code_was_compiled_before_or_not(tmp_path):
     words = ("run", HOIST, "--points", "3", "--gap", "0.02", "--quiet", "-o")
     cache = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
