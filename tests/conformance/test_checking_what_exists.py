@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -26,8 +27,14 @@ def found(request):
     return request.param, case, front.question, front.designs[0]
 
 
+@cache
+def written_out(model):
+    """Return all quantities as a function of CasADi, special functions written out."""
+    return ca.Function("reference", model.inputs, [expanded(e, model.calls) for e in model.quantity_sx.values()])
+
+
 def by_casadi(instance, design):
-    """Return the quantities of a design by CasADi alone, special functions written out."""
+    """Return the quantities of a design by CasADi alone."""
     model, d = instance.model, instance.model.declaration
     inputs = [design.values[v.name] for v in model.variables]
     for entry in model.data_inputs:
@@ -43,8 +50,7 @@ def by_casadi(instance, design):
             inputs.append(d.choices[entry.name].labels.index(design.choices[entry.name]))
         else:
             inputs.append(design.values[entry.name])
-    outputs = [expanded(e, model.calls) for e in model.quantity_sx.values()]
-    values = ca.Function("reference", model.inputs, outputs).call(inputs)
+    values = written_out(model).call(inputs)
     return dict(zip(model.quantity_sx, map(float, values), strict=True))
 
 
@@ -72,11 +78,11 @@ def evaluated(problem, requirements, values, parts):
 def test_sizes_outside_of_the_range_are_computed(found):
     family, case, instance, design = found
     model, tried, finite = instance.model, 0, 0
-    spec = design.to_spec()
+    spec, problem = design.to_spec(), synth.load(family, **case.options)
     for name, value in moved_out(instance):
         stated = format_quantity(value, model.units[name], None)
         values = {**spec["values"], name: stated}
-        other = evaluated(synth.load(family, **case.options), case.requirements, values, spec["parts"])
+        other = evaluated(problem, case.requirements, values, spec["parts"])
         if isinstance(other, synth.InputError):
             # What no formula gives a number for although the end of the range does: told with the value it is about.
             assert other.field == f"values: {name}"
