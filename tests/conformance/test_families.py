@@ -3,6 +3,7 @@
 import importlib
 import math
 from dataclasses import replace
+from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -89,6 +90,7 @@ def test_limit_sides_have_the_kind_of_their_unit(traced):
 # -- numbers -----------------------------------------------------------------------------------------
 
 
+@cache
 def outputs(model):
     """Return every quantity and side of a limit, special functions written out, with its unit."""
     named = [(name, e, model.units[name]) for name, e in model.quantity_sx.items()]
@@ -129,22 +131,24 @@ def test_gradients_equal_differences(traced):
     n = len(model.variables)
     values = ca.vertcat(*[e for _, e, _ in named])
     slope = ca.Function("slope", [x], [ca.jacobian(values, x[:n]) if n > 1 else ca.jacobian(values, x[0])])
-    for row in rows:
-        at = np.array([*variables[row], *(v[row] for v in data)])
-        exact = np.array(slope(at))
-        for k in range(n):
-            # Two step sizes: of the truncated and the rounded difference the better one counts.
-            error = np.full(len(named), np.inf)
-            for step in (1e-4, 1e-6):
-                shifted = np.repeat(variables[row][None, :], 4, axis=0)
-                shifted[:, k] *= 1 + step * np.array([-2, -1, 1, 2])
-                result = model.evaluate(shifted, [v[row] for v in data])
-                raw = list(result.values.values()) + [s for y in model.limits for s in result.limits[y.name]]
-                f = np.array([np.broadcast_to(v, 4) for v in raw])
-                size = np.abs(f).max(axis=1) + np.abs(exact[:, k] * at[k])
-                numeric = (f[:, 0] - 8 * f[:, 1] + 8 * f[:, 2] - f[:, 3]) / (12 * step * at[k])
-                error = np.fmin(error, np.abs(numeric - exact[:, k]) * at[k] / np.where(size > 0, size, 1))
-            assert np.all((error < 1e-7) | np.isinf(error)), (named[int(np.nanargmax(error))][0], k)
+    at = np.array([*variables.T, *data])[:, rows]
+    exact = np.array([np.array(slope(point)) for point in at.T]) * variables[rows][:, None, :]
+    # By relative steps from every point along each variable (rows, variables, sizes of a step, steps). Of two sizes, as
+    # of the truncated and the rounded difference, the better one counts.
+    sizes, steps = np.array([1e-4, 1e-6]), np.array([-2, -1, 1, 2])
+    shape = (len(rows), n, len(sizes), len(steps))
+    shifted = np.broadcast_to(variables[rows][:, None, None, None, :], (*shape, n)).copy()
+    for k in range(n):
+        shifted[:, k, :, :, k] *= 1 + sizes[:, None] * steps
+    around = [np.broadcast_to(v[rows][:, None, None, None], shape).ravel() for v in data]
+    result = model.evaluate(shifted.reshape(-1, n), around)
+    raw = list(result.values.values()) + [s for y in model.limits for s in result.limits[y.name]]
+    for (name, _, _), value, wanted in zip(named, raw, np.moveaxis(exact, 1, 0), strict=True):
+        f = np.broadcast_to(value, np.prod(shape)).reshape(shape)
+        numeric = (f @ np.array([1, -8, 8, -1])) / (12 * sizes)
+        size = np.abs(f).max(axis=-1) + np.abs(wanted)[..., None]
+        error = np.fmin.reduce(np.abs(numeric - wanted[..., None]) / np.where(size > 0, size, 1), axis=-1)
+        assert np.all((error < 1e-7) | np.isnan(error)), name
 
 
 def input_dimensions(instance):
