@@ -47,10 +47,16 @@ def modules() -> dict[str, Path]:
     return found
 
 
+@cache
+def tree(text: str) -> ast.Module:
+    """Return what a source text says."""
+    return ast.parse(text)
+
+
 def imports(text: str, known: set[str]) -> set[str]:
     """Return the modules that a source text imports, wherever the import stands."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(tree(text)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -132,7 +138,7 @@ def test_what_proves_does_not_know_what_steers() -> None:
 def test_no_class_name_stands_for_two_things() -> None:
     homes: dict[str, list[str]] = {}
     for module, path in modules().items():
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(tree(path.read_text())):
             if isinstance(node, ast.ClassDef):
                 homes.setdefault(node.name, []).append(module)
     assert len(homes) > 100

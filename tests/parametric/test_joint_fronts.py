@@ -223,6 +223,7 @@ def test_answers_are_those_of_the_kind_of_question() -> None:
     assert _told(joint_answers(two)) == _told(JointFrontSearch(two).answers())
 
 
+@pytest.mark.slow
 def test_the_same_questions_have_the_same_answers_with_any_number_of_threads() -> None:
     questions, answers = answered(3, ("mass", "actuation_force"))
     threaded = [replace(q, settings=replace(q.settings, workers=2)) for q in questions]
@@ -238,6 +239,7 @@ def test_time_that_is_over_stops_the_search() -> None:
         JointFrontSearch(struts(3, 10, 20), time_limit=0).answers()
 
 
+@pytest.mark.slow
 def test_a_study_asks_for_three_designs_of_each_step_together() -> None:
     study = synth.whatif(
         "multi_plate_clutch",

@@ -136,6 +136,7 @@ def test_the_figures_of_a_design_can_be_read(motor: str | None) -> None:
         assert_readable(frame)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("vary", [{"load": "20, 40, 120 kN"}, {"load": "20, 40 kN", "share": "1, 2.5, 3"}])
 def test_the_figures_of_a_study_can_be_read(vary: dict[str, str]) -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])

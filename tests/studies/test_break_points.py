@@ -150,6 +150,7 @@ def crossing(words: Callable[[float], str], low: float, high: float) -> float:
     return low
 
 
+@pytest.mark.slow
 def test_against_a_dense_scan() -> None:
     limits: dict[str, list[float]] = {
         "most": [14, 300, 22, 55, 70],

@@ -139,6 +139,7 @@ def test_one_objective_and_one_to_be_large(front):
     assert found.found == len(members) - 1
 
 
+@pytest.mark.slow
 def test_a_multi_plate_clutch_against_all_rings_of_all_packs():
     duty = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
     parts = {

@@ -170,6 +170,7 @@ def test_bad_input_is_one_sentence_and_nothing_written(tmp_path: Path, words: li
     assert sorted(path.name for path in tmp_path.iterdir()) == ["rows.csv", "wrong.csv"]
 
 
+@pytest.mark.slow
 def test_a_size_range_from_a_table_and_again_from_its_folder(tmp_path: Path) -> None:
     write(tmp_path, *({**GOOD, "load_torque [N*m]": torque} for torque in ("500", "550", "600")))
     refused = clutchsynth("size-range", "rows.csv", folder=tmp_path)

@@ -215,6 +215,7 @@ robust: {friction: +-15 %}
 """
 
 
+@pytest.mark.slow
 def test_families_are_compared_by_what_stands_the_range(tmp_path: Path) -> None:
     (tmp_path / "both.yaml").write_text(FAMILIES)
     out = tmp_path / "out"
