@@ -22,7 +22,6 @@ from synth.question.spec_keys import (
     asks_several,
     hint_at_key,
     read_keys,
-    shown_families,
 )
 
 if TYPE_CHECKING:
@@ -62,11 +61,6 @@ class Spec:
     def compares(self) -> bool:
         """Tell whether several families are asked."""
         return asks_several(self.family)
-
-    @property
-    def shown_family(self) -> str:
-        """Return the family or the families in words."""
-        return shown_families(self.family)
 
     def merged(self, **flags: Any) -> Spec:
         """Return the spec with some of its keys replaced; flags that are None change nothing.

@@ -66,6 +66,8 @@ def test_two_costs_cross(problem: Ropes) -> None:
     assert b.before.value == pytest.approx(10 + 2 * b.low, rel=1e-4)
     assert b.after.value == pytest.approx(20 + b.high, rel=1e-4)
     assert found.statistics["breaks"] == 1
+    told = found.breaks_frame().iloc[0]
+    assert (told["change"], told["from"], told["to"], told["proven"]) == (b.change, b.low, b.high, "yes")
 
 
 def test_several_changes_within_one_step() -> None:
