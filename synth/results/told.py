@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import Field, dataclass, field, fields
 from enum import Enum
-from typing import Any, NoReturn, Self
+from typing import Any, Literal, NoReturn, Self
 
 
 class Untold(Enum):
-    """The value of a field that is not told."""
+    """The value of a field that is not told; it counts as false, as what is not there does."""
 
     UNTOLD = "untold"
+
+    def __bool__(self) -> Literal[False]:
+        """Return that nothing is told."""
+        return False
 
 
 UNTOLD = Untold.UNTOLD
@@ -45,18 +49,27 @@ class Told(dict[str, Any]):
         return cls.from_json(content) if isinstance(content, Mapping) else content
 
     def to_json(self) -> dict[str, Any]:
-        """Return the keys and values as a plain dictionary."""
-        return dict(self)
+        """Return the keys and values as a plain dictionary, plain in depth: for YAML, which knows no records."""
+        return {key: _plain(value) for key, value in self.items()}
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Tell how it is made again: by pickle and copy."""
-        return type(self).from_json, (self.to_json(),)
+        return type(self).from_json, (dict(self),)
 
     def _refuse(self, *_: Any, **__: Any) -> NoReturn:
-        raise TypeError(f"{type(self).__name__} cannot be changed; dict(...) of it can")
+        raise TypeError(f"{type(self).__name__} cannot be changed; its to_json() can")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     update = setdefault = pop = popitem = clear = _refuse
+
+
+def _plain(value: Any) -> Any:
+    """Return a value with all that is in it, records as dictionaries and sequences as lists."""
+    if isinstance(value, Mapping):
+        return {key: _plain(own) for key, own in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(own) for own in value]
+    return value
 
 
 def _key(own: Field[Any]) -> str:

@@ -69,7 +69,7 @@ def test_requirements(named):
         assert from_si(r.lower, unit) == pytest.approx(numbers(row["lower"])), name
         assert from_si(r.upper, unit) == pytest.approx(numbers(row["upper"])), name
         if row["default"]:
-            assert from_si(plain.requirements[name], unit) == pytest.approx(float(row["default"])), name
+            assert from_si(plain.values.requirements[name], unit) == pytest.approx(float(row["default"])), name
         else:
             assert r.default is None, name
 

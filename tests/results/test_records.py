@@ -8,6 +8,7 @@ import pickle
 from dataclasses import replace
 
 import pytest
+import yaml
 
 import synth
 from synth.results import ParetoFront
@@ -78,6 +79,9 @@ def test_a_design_that_was_not_rated_tells_nothing(infeasible: ParetoFront) -> N
     front = synth.synthesize(Strut(), NEEDED, catalogs=CATALOGS, points=2)
     assert not front.designs[0].robust
     assert front.designs[0].robust == {}
+    assert not front.designs[0].robust.holds
+    assert not front.designs[0].robust.share_good
+    assert not front.settings.robust
     assert "robust" not in front.settings
     assert front.explanation is None
 
@@ -101,6 +105,7 @@ def test_records_go_through_files_and_processes(told: Told) -> None:
         assert again == told
         assert repr(again) == repr(dict(told))
     assert replace(told) == told
+    assert yaml.safe_load(yaml.safe_dump(told.to_json())) == told
 
 
 def test_a_key_may_be_no_name() -> None:
