@@ -18,6 +18,8 @@ from tests.conformance.cases import CASES, answer
 
 pytestmark = pytest.mark.slow
 
+SHARE_FINITE = 0.6  # of all quantities of all designs tried
+
 
 @pytest.fixture(scope="module", params=CASES)
 def found(request):
@@ -98,7 +100,7 @@ def test_sizes_outside_of_the_range_are_computed(found):
                 assert x == pytest.approx(reference[quantity], rel=1e-9, abs=1e-300), (name, quantity)
         assert not [n for n, x in other.values.items() if math.isnan(x) and not other.violated]
     assert tried >= len(model.variables) + len(model.declaration.counts)
-    assert finite > 10 * tried  # computed, and checked by CasADi
+    assert finite > SHARE_FINITE * tried * len(model.quantity_sx)  # computed, and checked by CasADi
     assert np.isfinite(list(by_casadi(instance, design).values())).all()
 
 

@@ -113,6 +113,7 @@ class Claims:
 # -- every family --------------------------------------------------------------------------------------
 
 POINTS = 400
+SHARE_JUDGED = 5 / 9  # of the pairs of a node and an input that moves
 QUESTIONS = [
     (family, name, optional)
     for family, data in CASES.items()
@@ -164,11 +165,12 @@ def test_claims_hold_in_every_family(traced, ranges):
             assert np.all(known * shape.sign >= 0)
             assert np.all(known != 0) or not shape.nonzero
     first, second = (scattered(points[rng.permutation(len(points))[:POINTS]], low, high, rng) for _ in range(2))
-    assert claims.check_curvature(first, second) > 20
+    enough = len(model.quantity_sx) + len(model.limits)  # more nodes than there are things declared from them
+    assert claims.check_curvature(first, second) > enough
     near = first**0.9 * second**0.1
-    assert claims.check_curvature(first, near) > 20
+    assert claims.check_curvature(first, near) > enough
     judged = claims.check_elasticities(first, np.exp(rng.uniform(-0.3, 0.3, POINTS)), low, high)
-    assert judged > 5 * len(found.nodes)
+    assert judged > SHARE_JUDGED * np.count_nonzero(high > low) * len(found.nodes)
 
 
 def test_narrower_ranges_tell_no_less(traced):
