@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -154,6 +155,15 @@ def test_the_file_has_the_patches_and_the_amounts_of_refusals(tmp_path: Path) ->
     assert told["refused"][0]["lifted_by"] == {"room": "30.0001 mm", "least": "29.9999 mm"}
     assert [way["patch"] for way in told["ways"]] == [way.patch for way in why.ways]
     assert is_feasible(patched(spec, told["ways"][0]["patch"]))
+
+
+def test_values_are_told_to_six_digits_and_pinned_ones_stated_in_full() -> None:
+    joint = explained("pins").joint
+    assert joint is not None
+    assert joint.patch is not None
+    assert "fix" in joint.patch
+    assert all(len(number.replace(".", "").lstrip("0")) <= 6 for number in re.findall(r"[0-9.]+", joint.sentence))
+    assert any(len(value) > len("0.123456 mm") for value in map(str, joint.patch["fix"].values()))
 
 
 def test_a_patch_is_written_in_the_words_of_the_spec() -> None:

@@ -37,6 +37,11 @@ class _Change:
     shown: str
     texts: tuple[str, ...]  # the first is nearest, each other one further on the side where it does
     given: str
+    rounded: str = ""  # what is told in place of the text, where that has all digits
+
+    def words(self, k: int) -> str:
+        """Return what changes, at the k-th of the values."""
+        return f"{self.shown} {self.rounded or self.texts[k]} instead of {self.given}"
 
 
 class JointWay:
@@ -130,7 +135,8 @@ class JointWay:
             if not pin.low <= value <= pin.high:
                 end = pin.high if value > pin.high else pin.low
                 texts = (format_quantity(value, pin.unit, None),) * self.search.ways.further
-                changes.append(_Change(PIN, pin.name, pin.name, texts, format_quantity(end, pin.unit)))
+                shown, given = format_quantity(value, pin.unit), format_quantity(end, pin.unit)
+                changes.append(_Change(PIN, pin.name, pin.name, texts, given, shown))
         return changes
 
     def _needed(
@@ -145,7 +151,7 @@ class JointWay:
                 fewer = [x for x in some if x is not change]
                 if self.patches.works(self._together(fewer, k, rest), design):
                     some = fewer
-            return self._together(some, k, rest), [f"{x.shown} {x.texts[k]} instead of {x.given}" for x in some]
+            return self._together(some, k, rest), [x.words(k) for x in some]
         return None
 
     def _together(self, changes: Sequence[_Change], k: int, rest: Mapping[str, Any]) -> dict[str, Any]:
