@@ -260,14 +260,40 @@ def _parse_yaml(text: str, shown: str) -> Any:
     except RecursionError as error:
         raise InputError(shown, Described("brackets nested too deeply"), "YAML of a spec") from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:
-        mark = getattr(error, "problem_mark", None)
-        where = shown if mark is None else f"{shown}, line {mark.line + 1}"
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
-        problem = problem.replace("but found another document", "a second document after ---")
-        raise InputError(where, Described(problem), _yaml_advice(text, mark, problem)) from error
+        slip = next((x for x in _SLIPS if re.search(x.problem, problem)), _Slip("", problem.removeprefix("found ")))
+        mark = getattr(error, "context_mark" if slip.where_it_begins else "problem_mark", None)
+        where = shown if mark is None else f"{shown}, line {mark.line + 1}"
+        advice = "a file in YAML or JSON; this one is a table" if shown.lower().endswith(".csv") else ""
+        raise InputError(where, Described(slip.got), advice or _yaml_advice(text, mark, problem, slip)) from error
 
 
-def _yaml_advice(text: str, mark: Any, problem: str) -> str:
+@dataclass(frozen=True)
+class _Slip:
+    """A slip in YAML: how PyYAML tells it (a pattern), what it is in words, and what would be right."""
+
+    problem: str
+    got: str
+    right: str = "YAML: one 'name: value' on a line, indented with spaces"
+    where_it_begins: bool = (
+        False  # the line to look at is where the bracket, text or name begins, not where it is missed
+    )
+
+
+_SLIPS = (
+    _Slip(r"expected ',' or ']'", "a list whose bracket [ is not closed", "entries with commas between [ and ]", True),
+    _Slip(r"expected ',' or '}'", "a bracket { that is not closed", "'name: value' with commas between { and }", True),
+    _Slip("unexpected end of stream", "a quote that is not closed", "the same quote at both ends of a text", True),
+    _Slip("could not find expected ':'", "a name without a colon", where_it_begins=True),
+    _Slip("mapping values are not allowed", "a colon where no value can begin"),
+    _Slip("sequence entries are not allowed", "a dash where no list can begin"),
+    _Slip("expected the node content, but found (?!another)", "a sign where a value should begin"),
+    _Slip("expected <block end>|expected '<document start>'", "an entry that does not go on with those above it"),
+    _Slip("another document", "a second document after ---"),
+)
+
+
+def _yaml_advice(text: str, mark: Any, problem: str, slip: _Slip) -> str:
     """Return what to type instead, for the slips that happen."""
     lines = text.splitlines()
     line = lines[mark.line] if mark is not None and mark.line < len(lines) else ""
@@ -275,4 +301,4 @@ def _yaml_advice(text: str, mark: Any, problem: str) -> str:
         return "spaces instead of tabs at the beginning of the line"
     if re.search(r":\s*[>&*%@`!|]", line):
         return "quotes around a text that begins with a sign, for example outer_diameter: '>= 200 mm'"
-    return "YAML: one 'name: value' on a line, indented with spaces"
+    return slip.right
