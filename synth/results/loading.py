@@ -63,10 +63,10 @@ def _read(folder: str | Path) -> tuple[Path, dict[str, Any]]:
         settle(path)
         path = path / "front.json"
     content = read_json(path, "front", "a folder that clutchsynth run has written, or its front.json")
-    if not isinstance(content, dict) or content.get("format") != FRONT_FORMAT:
-        raise InputError(
-            f"front {path}", content.get("format") if isinstance(content, dict) else None, f"format {FRONT_FORMAT}"
-        )
+    if not isinstance(content, dict):
+        raise InputError("front", str(path), "a front.json as clutchsynth has written it; this one is no JSON object")
+    if content.get("format") != FRONT_FORMAT:
+        raise InputError(f"front {path}: format", content.get("format"), f"format {FRONT_FORMAT}")
     return path, content
 
 
@@ -86,7 +86,9 @@ def front_of_record(content: dict[str, Any], path: Path) -> ParetoFront:
     """
     try:
         return _front_from_json(content, path.parent)
-    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+    except KeyError as error:
+        raise InputError(f"front {path}: {error.args[0]}", None, "a front.json that is complete") from error
+    except (TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(f"front {path}", str(error), "a front.json that is complete") from error
 
 

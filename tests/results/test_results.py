@@ -289,10 +289,20 @@ def test_a_place_that_cannot_be_written_is_told(front, tmp_path):
         front.save(file / "below")
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"format": 0}', "{}"])
-def test_a_file_that_is_no_front_is_told(tmp_path, text):
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no JSON"),
+        ("{", "no JSON"),
+        ("[]", "this one is no JSON object"),
+        ("null", "this one is no JSON object"),
+        ('{"format": 0}', "format: got 0; expected format 1"),
+        ("{}", "format: is missing; expected format 1"),
+    ],
+)
+def test_a_file_that_is_no_front_is_told(tmp_path, text, words):
     (tmp_path / "front.json").write_text(text, encoding="utf-8")
-    with pytest.raises(synth.InputError, match="front"):
+    with pytest.raises(synth.InputError, match=f"front.*{words}"):
         synth.load_front(tmp_path)
     with pytest.raises(synth.InputError, match="front"):
         synth.load_front(tmp_path / "nowhere")
