@@ -201,7 +201,9 @@ class Questioner:
         self.columns = read_columns(table, mapping, self.universe)
         self.structural = {c.name: c for c in self.columns if c.name in STRUCTURE and not c.carried}
         if self.default is None and FAMILY not in self.structural:
-            raise InputError(f"{table.name}, line 1", None, "a column family (or a family for all rows: --family)")
+            raise InputError(
+                f"{table.name}, line 1, column {FAMILY}", None, "such a column (or a family for all rows: --family)"
+            )
         for column in self.structural.values():
             if column.unit is not None:
                 raise InputError(f"{table.name}, line 1", column.title, f"{column.name} without a unit")

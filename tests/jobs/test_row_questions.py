@@ -185,7 +185,7 @@ def test_families_and_their_options_are_checked_row_by_row() -> None:
     assert (wrong.line, wrong.column, wrong.value) == (4, "family", "multi_plate")
     assert all(name in wrong.expected for name in families())
     assert fourth.faults[0].value is None
-    with pytest.raises(InputError, match="a column family"):
+    with pytest.raises(InputError, match=r"line 1, column family: is missing; expected such a column .*--family"):
         questioner([base], None)
 
 
