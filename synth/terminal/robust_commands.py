@@ -59,10 +59,13 @@ def rate(
     told = {name: value for name, value in flags.items() if value is not None}
     designs, problem, catalogs, known = _designs(source)
     block = dict(pairs) if pairs else {**known}
+    if not block:
+        right = "what scatters, for example --over 'friction=catalogue range' (the question has no robust block)"
+        raise InputError("--over", None, right)
     with progress_display(quiet) as progress:
         found = rate_designs(
             designs,
-            {**block, **told} if block or told else None,
+            {**block, **told},
             problem=problem,
             catalogs=catalogs,
             progress=progress,

@@ -75,7 +75,8 @@ def test_out_of_time_ends_with_four(saved: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        ([], ["robust", "ranges"]),
+        ([], ["--over: is missing", "--over 'friction=catalogue range'", "no robust block"]),
+        (["--samples", "256"], ["--over: is missing"]),
         (["--over", "friction"], ["--over", "name=value"]),
         (["--over", "friction=+-5 %", "--over", "friction=+-6 %"], ["--over", "once"]),
         (["--over", "friction=rough"], ["friction", "rough", "catalogue range"]),
