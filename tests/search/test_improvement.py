@@ -65,9 +65,11 @@ def test_a_front_is_improved_until_it_is_proven(unproven):
 @pytest.mark.parametrize("seconds", [1e-3, 0.2, 0.5])
 def test_a_front_that_is_stopped_again_is_never_worse(unproven, seconds):
     again = unproven.improve(time_limit=seconds)
-    proven = again.certificate.kind == "global"
+    # Stopped while its report is made, a front is proven as asked without being called so.
+    proven = again.certificate.gap <= 1e-3
+    assert proven or again.certificate.kind != "global"
     assert no_larger_ends(again, unproven) if proven else no_worse(again, unproven)
-    assert proven or again.certificate.gap <= unproven.certificate.gap * (1 + 1e-12)
+    assert again.certificate.gap <= unproven.certificate.gap * (1 + 1e-12)
     assert all(not d.violated for d in again.designs)
 
 
