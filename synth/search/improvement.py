@@ -55,7 +55,6 @@ def improve(
     """
     from synth.question.request import Request  # costly to import
     from synth.question.settings import SearchSettings, check_progress
-    from synth.search.question import pose
 
     begun = time.monotonic()
     check_progress(progress)
@@ -77,8 +76,7 @@ def improve(
         weights=kept["weights"],
         grid=kept["grid"],
     )
-    question = pose(request, settings)
-    return go_on(front, question.within(settings.since(begun).time_limit), "front", progress)
+    return improve_for(front, request, settings.since(begun), "front", progress)
 
 
 def improve_for(
