@@ -7,6 +7,8 @@ from dataclasses import Field, dataclass, field, fields
 from enum import Enum
 from typing import Any, Literal, NoReturn, Self
 
+from synth.results.plain import plain
+
 
 class Untold(Enum):
     """The value of a field that is not told; it counts as false, as what is not there does."""
@@ -49,8 +51,8 @@ class Told(dict[str, Any]):
         return cls.from_json(content) if isinstance(content, Mapping) else content
 
     def to_json(self) -> dict[str, Any]:
-        """Return the keys and values as a plain dictionary, plain in depth: for YAML, which knows no records."""
-        return {key: _plain(value) for key, value in self.items()}
+        """Return the keys and values as front.json has them, plain in depth: for YAML too, which knows no records."""
+        return dict(plain(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Tell how it is made again: by pickle and copy."""
@@ -61,15 +63,6 @@ class Told(dict[str, Any]):
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     update = setdefault = pop = popitem = clear = _refuse
-
-
-def _plain(value: Any) -> Any:
-    """Return a value with all that is in it, records as dictionaries and sequences as lists."""
-    if isinstance(value, Mapping):
-        return {key: _plain(own) for key, own in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(own) for own in value]
-    return value
 
 
 def _key(own: Field[Any]) -> str:

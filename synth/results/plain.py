@@ -1,0 +1,23 @@
+"""Values as JSON and YAML know them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+
+def finite(value: Any) -> Any:
+    """Return a value as JSON knows it: infinities in words, nothing for what is no number."""
+    if isinstance(value, float) and math.isinf(value):
+        return "inf" if value > 0 else "-inf"  # JSON has no infinity; float() reads these words back
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def plain(value: Any) -> Any:
+    """Return nested mappings and sequences with all numbers as JSON knows them."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(v) for v in value]
+    return finite(value)
