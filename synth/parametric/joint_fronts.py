@@ -15,11 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from synth.parametric.joint_question import different, groups_of
-from synth.parametric.joint_search import JointSearch, SharedBounds
+from synth.parametric.joint_groups import groups_of
+from synth.parametric.joint_report import JointReport
+from synth.parametric.joint_search import JointSearch, told
 from synth.pareto import spread_subset
 from synth.results import ParetoFront
 from synth.search.archive import Candidate, distinct
+from synth.search.budget import Clock
+from synth.search.joint.joint_optima import JointOptima, SharedBounds
+from synth.search.joint.joint_question import different
 from synth.search.question import Question
 
 
@@ -77,12 +81,14 @@ class JointFrontSearch:
     ) -> None:
         self.questions, self.progress = list(questions), progress
         self.tuning, self.limits = questions[0].tuning, questions[0].tuning.joint
-        self.deadline = math.inf if time_limit is None else time.monotonic() + time_limit
+        started = time.monotonic()
+        self.clock = Clock(math.inf if time_limit is None else started + time_limit, self._working)
         self.between = questions[0].settings.points - 2
         moving = different([q.instance for q in questions])
-        self.others: list[tuple[JointSearch, np.ndarray]] = []  # with the positions of the questions that each asks
+        self.others: list[tuple[JointOptima, np.ndarray]] = []  # with the positions of the questions that each asks
         self.shared, self.reverse = (SharedBounds(questions, moving, first) for first in questions[0].chosen)
-        self.first = self._search(np.arange(len(self.questions)), self.shared)
+        self.first = first = self._search(np.arange(len(self.questions)), self.shared)
+        self.report = JointReport(self.questions, first.instance, first.form, first.goals, started)
 
     def answers(self) -> list[ParetoFront | None]:
         """Return the front of each question; None where it is not proven or has fewer designs: better asked alone."""
@@ -103,12 +109,14 @@ class JointFrontSearch:
         solves = self._work_counted()
         fronts = [distinct(first.form.points.as_they_are(own), 2, self.tuning) for own in found.values()]
         chosen = [c for front in fronts if len(front) == 2 + self.between for c in front]
-        return first.report.fronts(first.pool, chosen, 2, solves)
+        return self.report.fronts(first.pool, chosen, 2, solves)
 
-    def _search(self, positions: np.ndarray, shared: SharedBounds, **more: Any) -> JointSearch:
-        left = None if math.isinf(self.deadline) else max(self.deadline - time.monotonic(), 0.0)
-        questions = [self.questions[q] for q in positions]
-        return JointSearch(questions, self.progress, left, shared=shared, **more)
+    def _search(self, positions: np.ndarray, shared: SharedBounds, **more: Any) -> JointOptima:
+        self.under_way = JointOptima([self.questions[q] for q in positions], self.clock, shared, **more)
+        return self.under_way
+
+    def _working(self, open_boxes: int) -> None:
+        told(self.progress, self.under_way, open_boxes)
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
@@ -137,7 +145,7 @@ class JointFrontSearch:
 
     # -- designs between -----------------------------------------------------------------------
 
-    def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> JointSearch:
+    def _at_levels(self, numbers: Sequence[int], levels: np.ndarray, known: Sequence[Candidate]) -> JointOptima:
         """Return the search for the least second objective, the first one being capped.
 
         Parameters

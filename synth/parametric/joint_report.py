@@ -12,12 +12,12 @@ import numpy as np
 from synth.analysis.designs import make_frame, offered
 from synth.bounds.boxes import Boxes
 from synth.feasibility import Status
-from synth.parametric.joint_question import JointInstance
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import front_of, ranked
 from synth.search.archive import Candidate, rows_of
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
+from synth.search.joint.joint_question import JointInstance
 from synth.search.polishing import break_ties
 from synth.search.question import Question
 from synth.search.resolution import rounded_up

@@ -16,7 +16,7 @@ import pytest
 
 import synth
 from synth.parametric.joint_fronts import JointFrontSearch
-from synth.parametric.joint_question import joint_key
+from synth.parametric.joint_groups import joint_key
 from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.search.stages import trees
 from synth.tables.catalogs import Catalogs

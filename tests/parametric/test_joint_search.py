@@ -19,11 +19,14 @@ from synth.bounds import question_bounds
 from synth.deadline import Stopped
 from synth.feasibility import Status
 from synth.model.problem import DesignProblem
-from synth.parametric import joint_search
-from synth.parametric.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different, groups_of
-from synth.parametric.joint_search import JointSearch, SharedBounds
+from synth.parametric.joint_groups import groups_of
+from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
+from synth.search.budget import Clock
 from synth.search.formulation import Formulation
+from synth.search.joint import joint_optima
+from synth.search.joint.joint_optima import JointOptima, SharedBounds
+from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance, different
 from synth.search.question import Question
 from synth.tables.catalogs import Catalogs
 from synth.tuning import TUNING
@@ -386,13 +389,13 @@ def test_struts(grid: bool, at_once: bool) -> None:
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
 def test_a_search_goes_on_by_turns(grid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     asked_of: list[tuple[bool, int]] = []
-    proceed = joint_search.JointTree.open_questions
+    proceed = joint_optima.JointTree.open_questions
 
     def noted(tree: Any, questions: np.ndarray, node_limit: float) -> np.ndarray:
         asked_of.append((tree.form.infeasibility, int(questions.sum())))
         return proceed(tree, questions, node_limit)
 
-    monkeypatch.setattr(joint_search.JointTree, "open_questions", noted)
+    monkeypatch.setattr(joint_optima.JointTree, "open_questions", noted)
     turns = ((1, 1, 1), (2, 2, 2), (20_000, 20_000, 20_000))
     tuning = tuned(joint={"turns": turns, "nearly_closed": 0})
     varied = [{"load": f"{f} kN", "safety": s, "room": "90 mm"} for f, s in ((3, 1.5), (7, 2), (20, 4), (89, 9.9))]
@@ -723,8 +726,8 @@ def test_caps_and_room_of_boxes_over_several_questions(seed: int) -> None:
 
 
 @cache
-def an_open_search() -> JointSearch:
-    return JointSearch(asked(MAKEABLE, loads(3, 7, 20, 45, 90)))
+def an_open_search() -> JointOptima:
+    return JointOptima(asked(MAKEABLE, loads(3, 7, 20, 45, 90)), Clock())
 
 
 @given(st.integers(0, 10**6))

@@ -72,7 +72,7 @@ def forms(tuning=TUNING):
     strut = Strut()
     more = {"catalogs": {"rods": RODS}, "limits": {"area": ">= 60 mm2"}, "tuning": tuning}
     ask = [pose(strut, {"load": load, "room": "150 mm"}, ["mass"], 1, **more) for load in ("20 kN", "30 kN")]
-    return {"one question": ask[0].search().state.form, "two together": JointSearch(ask).form}
+    return {"one question": ask[0].search().state.form, "two together": JointSearch(ask).search.form}
 
 
 FORMS = forms()

@@ -15,9 +15,11 @@ from typing import Any, Protocol
 
 from synth.deadline import Stopped
 from synth.errors import InputError
-from synth.parametric.joint_question import different, groups_of, joint_key
-from synth.parametric.joint_search import JointSearch, SharedBounds
+from synth.parametric.joint_groups import groups_of, joint_key
+from synth.parametric.joint_search import JointSearch
 from synth.results import Design, ParetoFront
+from synth.search.joint.joint_optima import SharedBounds
+from synth.search.joint.joint_question import different
 from synth.search.question import Question
 from synth.studies.whatif.steps import Steps
 from synth.studies.whatif.study_answers import Break, Composition, StudyStep, best_design

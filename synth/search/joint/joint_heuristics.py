@@ -6,9 +6,9 @@ import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.nlp.batch import Solutions, Tasks
-from synth.parametric.joint_question import BestPerScenario, JointInstance
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
+from synth.search.joint.joint_question import BestPerScenario, JointInstance
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.refused_cells import not_refused
 from synth.tuning import JointHeuristicLimits

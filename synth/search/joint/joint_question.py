@@ -9,7 +9,6 @@ own would prove.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -25,7 +24,6 @@ from synth.question.search_space import SearchSpace
 from synth.search.archive import Archive, Candidate
 from synth.search.formulation import Formulation
 from synth.search.pruning import reaches_beyond
-from synth.search.question import Question
 from synth.tuning import TUNING, Tuning
 
 
@@ -37,7 +35,7 @@ class JointInstance(SearchSpace):
     Parameters
     ----------
     each : list of Instance
-        That are alike, as :func:`joint_key` tells.
+        That are alike: the same but for the numbers of some requirements.
     moving : collection of str, optional
         Requirements that may differ although they do not here, so that code is compiled once for several searches.
     cutoffs : mapping, optional
@@ -88,26 +86,6 @@ def different(each: Sequence[Instance]) -> list[str]:
     asked = [i.values.requirements for i in each]
     names = dict.fromkeys(n for own in asked for n in own)
     return [n for n in names if len({own[n] for own in asked if n in own}) > 1]
-
-
-def joint_key(question: Question) -> tuple[Any, ...]:
-    """Return what questions must have in common to be answered together."""
-    instance, settings = question.instance, question.settings
-    ranges, selection = instance.ranges, instance.selection
-    return (
-        instance.model,
-        ranges.grid,
-        ranges.lower.tobytes(),
-        ranges.upper.tobytes(),
-        ranges.pinned.tobytes(),
-        tuple(instance.limits.judging),
-        tuple((s.slot, tuple(s.table.hashes[int(r)] for r in s.rows)) for s in selection.slots),
-        tuple((n, v.tobytes()) for n, v in (*selection.counts.items(), *selection.choices.items())),
-        tuple(question.chosen.items()),
-        settings.gap,
-        settings.seed,
-        question.tuning,
-    )
 
 
 class IncumbentPerScenario(Archive):
@@ -263,20 +241,3 @@ class BestPerScenario:
             rows = self._tree.rows(int(cluster))
             result[rows] |= needed[rows] > least
         return result
-
-
-def groups_of(questions: Sequence[Question], least: int = 2, objectives: int = 1) -> list[list[int]]:
-    """Return the positions of questions that can be answered together: so many or more, alike.
-
-    ``objectives``: how many each must have.
-    """
-    groups: dict[Any, list[int]] = {}
-    for k, question in enumerate(questions):
-        if len(question.chosen) == objectives:
-            groups.setdefault(joint_key(question), []).append(k)
-    return [g for g in groups.values() if least <= len(g) <= _most(questions[g[0]])]
-
-
-def _most(question: Question) -> int:
-    """Return how many questions such as this the numbers of combinations reach for."""
-    return question.tuning.joint.numbers // question.instance.combinations.count

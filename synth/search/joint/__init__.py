@@ -1,0 +1,1 @@
+"""Questions that are alike, searched as one tree."""

@@ -1,0 +1,272 @@
+"""A joint search: many questions as one tree. What is proven of each is what a search of its own would prove."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from synth.bounds.boxes import Boxes
+from synth.compiled.execution import Execution
+from synth.question.instance import Instance
+from synth.question.objectives import with_ties
+from synth.question.settings import SearchSettings
+from synth.search.archive import Candidate, rows_of
+from synth.search.branch_and_bound import branch_and_bound
+from synth.search.budget import Clock
+from synth.search.formulation import Formulation
+from synth.search.joint.joint_heuristics import JointHeuristics
+from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
+from synth.search.resolution import gap_tolerance
+from synth.tuning import Tuning
+
+
+class Posed(Protocol):
+    """A question as it is posed: what is asked, what is traded off, how it is searched."""
+
+    @property
+    def instance(self) -> Instance:
+        """What is asked."""
+
+    @property
+    def chosen(self) -> Mapping[str, str]:
+        """The objectives with their sense."""
+
+    @property
+    def settings(self) -> SearchSettings:
+        """How it is searched."""
+
+    @property
+    def tuning(self) -> Tuning:
+        """What its search goes by."""
+
+
+class SharedBounds:
+    """What holds for many questions, found once for all searches of some of them.
+
+    Parameters
+    ----------
+    questions : list of Question
+        Alike.
+    moving : collection of str
+        As for :class:`JointInstance`.
+    first : str, optional
+        Of several chosen objectives that which comes first; the others settle ties.
+    """
+
+    def __init__(self, questions: Sequence[Posed], moving: Collection[str], first: str | None = None) -> None:
+        self.moving, self._tuning = moving, questions[0].tuning
+        self._instance = JointInstance([q.instance for q in questions], moving)
+        chosen = dict(questions[0].chosen)
+        in_order = {first: chosen[first], **chosen} if first is not None else chosen
+        self.goals = with_ties(self._instance.model, in_order)
+        self._forms: dict[bool, Formulation] = {}
+
+    def among(self, instance: JointInstance, infeasibility: bool, workers: int = 1) -> Formulation | None:
+        """Return questions prepared for a search; None where their numbers are not among those of these."""
+        if infeasibility not in self._forms:
+            self._forms[infeasibility] = Formulation(self._instance, self.goals, 1, infeasibility, tuning=self._tuning)
+        return self._forms[infeasibility].among(instance, workers)
+
+
+class JointTree:
+    """One tree over the questions, by one way of bounding them, which goes on where it stopped."""
+
+    def __init__(self, search: JointOptima, form: Formulation, known: IncumbentPerScenario, boxes: Boxes) -> None:
+        self.search, self.form, self.known, self.left = search, form, known, boxes
+
+    def open_questions(self, asked: np.ndarray, node_limit: float) -> np.ndarray:
+        """Go on for so many boxes; tell of which of the questions asked it is not proven what is best."""
+        search, form = self.search, self.form
+        limits = search.limits
+        if not asked.any():
+            return asked
+        if self.known is not search.known:
+            # Designs of other questions would only seem to say that those of these are found.
+            rows = asked[search.known.questions()]
+            self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
+        before = form.counters.contracted, form.counters.nlp_solves
+        rule = BestPerScenario(form, self.known, search.tolerance_of(search.sought), asked)
+        for _ in range(2):
+            self.left = branch_and_bound(
+                form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
+            ).open
+            if not 0 < len(self.left) < limits.nearly_closed * node_limit:
+                break
+        if self.known is not search.known:
+            search.known.add(self.known.combination, self.known.variables, self.known.phi)
+            search.form.counters.contracted += form.counters.contracted - before[0]
+            search.form.counters.nlp_solves += form.counters.nlp_solves - before[1]
+        return rule.open_questions(self.left)
+
+
+class JointOptima:
+    """The best design of each of several questions, sought and proven as one tree.
+
+    Parameters
+    ----------
+    questions : list of Posed
+        Alike; threads as the first asks.
+    clock : Clock
+        ``Stopped`` is raised when its time is over.
+    shared : SharedBounds, optional
+        Of questions that these are among.
+    sought : int
+        Number of the objective that is sought.
+    cutoffs : mapping, optional
+        As for :class:`JointInstance`.
+    """
+
+    def __init__(
+        self,
+        questions: Sequence[Posed],
+        clock: Clock,
+        shared: SharedBounds | None = None,
+        sought: int = 0,
+        cutoffs: Mapping[int, np.ndarray] | None = None,
+    ) -> None:
+        self.questions, self.clock = list(questions), clock
+        first = questions[0]
+        self.tuning, self.limits = first.tuning, first.tuning.joint
+        self.shared, self.workers, self.sought = shared, first.settings.workers, sought
+        moving = () if shared is None else shared.moving
+        self.instance = JointInstance([q.instance for q in questions], moving, cutoffs)
+        self.gap = first.settings.gap
+        self.goals = with_ties(first.instance.model, dict(first.chosen)) if shared is None else shared.goals
+        self.form = self._prepared()
+        self.fixed_cutoffs = np.full((len(self.questions), len(self.form.goals)), np.inf)
+        for k, values in (cutoffs or {}).items():
+            self.fixed_cutoffs[:, k] = self.form.objectives.phi_of(np.tile(values[:, None], k + 1))[:, k]
+        self.known = self.none_known()
+        self.form.archive = self.known
+        self.rng = np.random.default_rng(first.settings.seed)
+        self.pool = self.form.boxes.nothing()
+        # What is capped is as narrow as what boxes cannot settle soon: good designs are worth a longer look.
+        self.heuristics = JointHeuristics(
+            self.instance, self.clock, self.rng, bool(cutoffs), self.tuning.heuristics.joint
+        )
+
+    def optima(self, asked: np.ndarray) -> list[Candidate]:
+        """Return the best designs of the questions asked, as far as they are proven; the next objective settles ties.
+
+        Parameters
+        ----------
+        asked : array of bool (questions,)
+        """
+        proven = self.prove(asked, False)
+        return self._second([c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]])
+
+    def glimpse(self) -> list[Candidate]:
+        """Return good designs of the questions, of which nothing is proven."""
+        self.pool, self.heuristics.thorough = self.form.boxes.root(), False
+        if len(self.pool):
+            rule = BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), self.told_apart())
+            self.heuristics.warm_start(rule)
+            self.heuristics.improve(rule)
+        return list(self.known)
+
+    def prove(self, asked: np.ndarray, excluded: bool) -> np.ndarray:
+        """Find the best design of each question asked; tell of which it is proven.
+
+        ``excluded``: also where no question has a design that is easily found; then it is proven that there is none.
+        """
+        self.pool = self.form.boxes.root()
+        if not len(self.pool) or not asked.any():
+            return asked
+        self.heuristics.first(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), asked), self.pool)
+        found, unproven = np.isfinite(self.known.best()), asked.copy()
+        if not found.any() and not excluded:
+            return np.zeros_like(asked)
+        by_objectives = JointTree(self, self.form, self.known, self.pool)
+        by_limits: JointTree | None = None
+        # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
+        for boxes, sure_boxes, unsure_boxes in self.limits.turns:
+            now = unproven & found
+            unproven &= ~found | by_objectives.open_questions(now, boxes * int(now.sum()))
+            if not unproven.any():
+                break
+            self.heuristics.thorough = True
+            self.heuristics.improve(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), unproven))
+            by_limits = self._in_infeasibility_mode() if by_limits is None else by_limits
+            sure = int((unproven & np.isfinite(self.known.best())).sum())
+            node_limit = sure_boxes * sure + unsure_boxes * (int(unproven.sum()) - sure)
+            unproven &= by_limits.open_questions(unproven, node_limit)
+        proven: np.ndarray = asked & ~unproven
+        return proven
+
+    def best_among(self, combinations: np.ndarray, points: np.ndarray) -> tuple[IncumbentPerScenario, np.ndarray]:
+        """Return the best designs among given combinations, and of which questions it is proven.
+
+        Parameters
+        ----------
+        combinations : array
+            At most one of each question.
+        points : array (combinations, variables)
+            Where to look first.
+        """
+        form, codec, known = self.form, self.instance.combinations, self.none_known()
+        asked = self.told_apart()
+        asked &= np.isin(np.arange(len(asked)), codec.question(combinations))
+        form.archive = known
+        rule = BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
+        self.heuristics.tried(rule, combinations, points)
+        node_limit = self.limits.given_parts * len(combinations)
+        left = branch_and_bound(form, form.boxes.leaves(combinations), rule, self.clock, self.rng, node_limit).open
+        form.archive = self.known
+        return known, asked & ~rule.open_questions(left)
+
+    def _in_infeasibility_mode(self) -> JointTree:
+        """Return what tries with boxes that carry what limits share, which helps where limits leave little room."""
+        form = self._prepared(infeasibility=True)
+        form.counters.work = self.form.counters.work
+        form.counters.solved_combinations = self.form.counters.solved_combinations
+        form.bounding.branching.adopt(self.form.bounding.branching.statistics())
+        form.archive = known = self.none_known()
+        return JointTree(self, form, known, form.boxes.root())
+
+    def none_known(self) -> IncumbentPerScenario:
+        """Return what will hold the best design of each question."""
+        return IncumbentPerScenario(
+            self.instance, self.sought, self.form.n, len(self.form.goals), self.fixed_cutoffs, self.tuning
+        )
+
+    def _prepared(self, infeasibility: bool = False) -> Formulation:
+        form = None if self.shared is None else self.shared.among(self.instance, infeasibility, self.workers)
+        if form is None:
+            form = Formulation(
+                self.instance, self.goals, 1, infeasibility, Execution(workers=self.workers), self.tuning
+            )
+        return form
+
+    def told_apart(self) -> np.ndarray:
+        """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
+        tree = self.form.boxes.cells.trees[0]
+        result = np.zeros(len(self.questions), dtype=bool)
+        result[tree.first[tree.leaf]] = True
+        return result
+
+    def tolerance_of(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
+        """Return the gap as a distance in phi of an objective, per design."""
+        form = self.form
+        own = (form.objectives.log[k], form.objectives.finest[k])
+        return lambda phi: gap_tolerance(self.gap, *own, np.abs(phi))
+
+    def _second(self, chosen: Sequence[Candidate]) -> list[Candidate]:
+        """Return designs that are as good in the objective and better in the next one, over all parts."""
+        form, sought = self.form, self.sought
+        if len(form.goals) < 2 or not chosen:
+            return list(chosen)
+        following = 1 if sought == 0 else 0
+        questions = self.instance.combinations.question(np.array([c.combination for c in chosen]))
+        cutoffs = self.fixed_cutoffs.copy()
+        cutoffs[questions, sought] = np.array([c.phi[sought] for c in chosen]) + form.tuning.tolerances.tie
+        known = IncumbentPerScenario(self.instance, following, form.n, len(form.goals), cutoffs, self.tuning)
+        asked = np.zeros(len(self.questions), dtype=bool)
+        asked[questions] = True
+        known.add(*rows_of(chosen))
+        rule = BestPerScenario(form, known, self.tolerance_of(following), asked)
+        self.heuristics.improve(rule)
+        branch_and_bound(form, self.pool, rule, self.clock, self.rng, self.limits.tie * len(chosen))
+        better = dict(zip(known.questions().tolist(), known, strict=True))
+        return [better.get(int(q), c) for q, c in zip(questions, chosen, strict=True)]
