@@ -34,10 +34,12 @@ class Tolerances:
     pinned : float
         Relative, and in SI beside ``snap``. As ``snap`` where a range is one value.
     tie : float
-        In phi. Objectives that differ by less are the same; caps are looser by as much.
+        In phi. Objectives that differ by less are the same; cutoffs are looser by as much.
     rounded : float
         Relative, of phi. By how much designs of one front may miss each other and still beat each other: what settling
         ties twice may give away.
+    point : float
+        Relative. A box as narrow as this in every variable is a single point, settled by its evaluation.
     point_share : float
         Of a range. As how wide a box counts that is a point, where extents of boxes are summed up.
     multiplier_noise : float
@@ -52,6 +54,7 @@ class Tolerances:
     pinned: float = 1e-12
     tie: float = 1e-9
     rounded: float = 2e-9
+    point: float = 1e-12
     point_share: float = 1e-8
     multiplier_noise: float = 1e-6
     tight: float = 1e-5

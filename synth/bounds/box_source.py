@@ -44,7 +44,7 @@ def _sizes(code: Code) -> str:
     nodes = code.nodes
     sizes = {
         "N": nodes.layout.n_variables + len(nodes.auxiliary),
-        "LIMITS": len(nodes.cuts),
+        "LIMITS": len(nodes.constraints),
         "GOALS": len(nodes.goals),
         "TABLES": len(nodes.tables),
         "NODES": len(nodes.program.nodes),

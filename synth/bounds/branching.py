@@ -95,7 +95,7 @@ class BranchingWeights:
         self._range = np.maximum(question.high - question.low, 1e-300)
         self._bits = question.bounded if question.bounded <= settings.most_bits else 0
         self.tables = self._score_tables(influences.anywhere)
-        self._statistics = BranchingStatistics.none(1 << self._bits, len(question.cuts) + len(question.goals))
+        self._statistics = BranchingStatistics.none(1 << self._bits, len(question.constraints) + len(question.goals))
         self.weights = self._weights()
 
     @property
@@ -129,7 +129,7 @@ class BranchingWeights:
         array (boxes, variables + factors)
         """
         question = self._question
-        count, limits, width = len(boxes), len(question.cuts), question.width
+        count, limits, width = len(boxes), len(question.constraints), question.width
         counted = np.zeros((count, limits + len(question.goals)), dtype=np.float32)
         for j, flag in enumerate(undecided):
             counted[:, j] = flag
@@ -172,7 +172,7 @@ class BranchingWeights:
         if not good.any():
             return
         shares = sizes[good] / total[good, None]
-        first = len(self._question.cuts)
+        first = len(self._question.constraints)
         own = shares[:, first : first + self._bits]
         pattern = self._pattern(own > self._settings.some * own.sum(axis=1, keepdims=True))
         np.add.at(self._statistics.shares, pattern, importance[good, None] * shares)
@@ -203,7 +203,7 @@ class BranchingWeights:
 
     def _weights(self) -> np.ndarray:
         """Return the weights of limits and objectives; one without a cutoff decides nothing, unless none has one."""
-        first, known = len(self._question.cuts), self._statistics
+        first, known = len(self._question.constraints), self._statistics
         result = np.ones(known.shares.shape)
         if known.count.any():
             result[:] = known.shares.sum(axis=0) / known.importance.sum()
@@ -230,7 +230,7 @@ class BranchingWeights:
             width = np.where(low > 0, np.log(high / low), high - low)
         width = np.where(np.isnan(width), np.where(tree.leaf, 0.0, 1.0)[:, None], width)
         # The cutoff of a row is as far off as its objective.
-        capped = np.eye(len(influence))[:, [len(question.cuts) + g for g in factor.capped]]
+        capped = np.eye(len(influence))[:, [len(question.constraints) + g for g in factor.capped]]
         own = np.concatenate([influence[:, [question.n + i for i in factor.inputs]], capped], axis=1)
         first = self._settings.parts_first if factor.name else self._settings.questions_first
         result: np.ndarray = (first * width @ own.T).astype(np.float32)

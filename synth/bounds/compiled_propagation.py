@@ -109,7 +109,7 @@ class CompiledPropagation:
         """Return the arrays that the code reads, made anew where boxes are scored by other tables."""
         scoring, prepared = self._prepared.get(every, (None, None))
         if prepared is None or scoring is not self._branching.tables:
-            prepared = Prepared(len(self._propagation.question.cuts), self._question(every))
+            prepared = Prepared(len(self._propagation.question.constraints), self._question(every))
             self._prepared[every] = self._branching.tables, prepared
         return prepared
 

@@ -73,7 +73,7 @@ class Contractor:
         capped : bool
             Whether objectives have cutoffs.
         """
-        sides = [(k, c.scale) for c in self.nodes.cuts for k in (c.value, c.limit) if k is not None]
+        sides = [(k, c.scale) for c in self.nodes.constraints for k in (c.value, c.limit) if k is not None]
         large = tuple(bool(root.low[k] > scale) for k, scale in sides)
         key = (capped, (root.low > 0).tobytes(), (root.low >= 0).tobytes(), large)
         if key not in self._codes:

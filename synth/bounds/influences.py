@@ -79,7 +79,7 @@ class Influences:
         with np.errstate(all="ignore"):
             inputs = inputs + [np.broadcast_to(np.asarray(v, dtype=float), (count,)) for v in at_auxiliary(inputs)]
         moving += range(len(inputs) - len(auxiliary), len(inputs))
-        result = np.zeros((len(question.cuts) + len(question.goals), len(inputs)))
+        result = np.zeros((len(question.constraints) + len(question.goals), len(inputs)))
         scales = np.ones(len(moving))
         # The points as they are, and with one input after the other a little larger: all in one evaluation.
         moved = [np.tile(x, (1 + len(moving), 1)) for x in inputs]
@@ -103,10 +103,10 @@ class Influences:
         """Return limits as log(value/limit) and objectives as logarithms, or as scaled differences."""
         sides = iter(values)
         result = []
-        for cut in self._question.cuts:
+        for constraint in self._question.constraints:
             value = next(sides)
-            limit = np.full(value.shape, cut.bound) if cut.limit is None else next(sides)
-            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
+            limit = np.full(value.shape, constraint.bound) if constraint.limit is None else next(sides)
+            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), constraint.scale)
             result.append(np.where((value > 0) & (limit > 0), np.log(value / limit), (value - limit) / size))
         for _ in self._question.goals:
             value = next(sides)

@@ -42,7 +42,7 @@ class PropagatedNodes:
     ----------
     program : Program
     layout : MovingInputs
-    cuts : list of NodeConstraint
+    constraints : list of NodeConstraint
         Limits; ``bound`` of a constant right side is handed over with each question.
     goals : list of Goal
     auxiliary : list of int
@@ -65,13 +65,14 @@ class PropagatedNodes:
         self,
         program: Program,
         layout: MovingInputs,
-        cuts: Sequence[NodeConstraint],
+        constraints: Sequence[NodeConstraint],
         goals: Sequence[Goal],
         auxiliary: Sequence[int] = (),
     ) -> None:
         self.program, self.layout, self.auxiliary = program, layout, tuple(auxiliary)
-        self.cuts, self.goals = list(cuts), list(goals)
-        wanted = [c.value for c in cuts] + [c.limit for c in cuts if c.limit is not None] + [g.node for g in goals]
+        self.constraints, self.goals = list(constraints), list(goals)
+        sides = [c.value for c in constraints] + [c.limit for c in constraints if c.limit is not None]
+        wanted = sides + [g.node for g in goals]
         self.order = program.needed(wanted) if wanted else []
         self.kind, self.factor = self._kinds()
         # What a limit says of a column that may lack a value holds only for rows that have one: it is read, never cut.

@@ -35,7 +35,7 @@ class QuestionBounds:
     Parameters
     ----------
     instance : SearchSpace
-    cuts : list of NodeConstraint
+    constraints : list of NodeConstraint
         Limits, with the constant right sides of this question.
     goals : list of Goal
         Objectives: those to trade off first.
@@ -67,16 +67,16 @@ class QuestionBounds:
     def __init__(
         self,
         instance: SearchSpace,
-        cuts: Sequence[NodeConstraint],
+        constraints: Sequence[NodeConstraint],
         goals: Sequence[Goal],
         bounded: int,
         infeasibility: bool,
         settings: BranchingSettings,
     ) -> None:
         self.instance, self.model = instance, instance.model
-        self.cuts, self.goals, self.bounded = list(cuts), list(goals), bounded
+        self.constraints, self.goals, self.bounded = list(constraints), list(goals), bounded
         self.infeasibility = infeasibility
-        self.right_sides = [cut.bound for cut in cuts]
+        self.right_sides = [constraint.bound for constraint in constraints]
         self.n = len(self.model.variables)
         owner = instance.owners()
         self.contractors = self._contractors(owner, ())
@@ -135,7 +135,7 @@ class QuestionBounds:
 
     def sides(self) -> list[int]:
         """Return the nodes of both sides of all limits and of all objectives, as far as there are any."""
-        return [k for c in self.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
+        return [k for c in self.constraints for k in (c.value, c.limit) if k is not None] + [g.node for g in self.goals]
 
     # -- preparation ---------------------------------------------------------------------------
 
@@ -143,7 +143,7 @@ class QuestionBounds:
         model = self.model
         optional = tuple(k for k, e in enumerate(model.data_inputs) if not e.required)
         layout = MovingInputs(self.n, tuple(owner), optional)
-        plain = tuple(replace(c, bound=0.0) for c in self.cuts)
+        plain = tuple(replace(c, bound=0.0) for c in self.constraints)
 
         def contractor(wanted: Sequence[Goal]) -> Contractor:
             made: Contractor = model.function(

@@ -87,8 +87,8 @@ class _RootPropagation:
                 self._forward(k, sweep > 0)
             if sweep == SWEEPS - 1:
                 break
-            for cut, constant in zip(self.nodes.cuts, self.right_sides, strict=True):
-                self._cut(cut, constant)
+            for constraint, constant in zip(self.nodes.constraints, self.right_sides, strict=True):
+                self._cut(constraint, constant)
             for k in reversed(self.nodes.inner):
                 self._backward(k)
         a, b = self.a, self.b
@@ -114,17 +114,17 @@ class _RootPropagation:
             if bound is not None:
                 self._narrow(j, *bound)
 
-    def _cut(self, cut: NodeConstraint, constant: float) -> None:
-        a, b, v, w = self.a, self.b, cut.value, cut.limit
+    def _cut(self, constraint: NodeConstraint, constant: float) -> None:
+        a, b, v, w = self.a, self.b, constraint.value, constraint.limit
         low, high = (constant, constant) if w is None else (a[w], b[w])
-        if cut.sense in ("at_most", "equal"):
-            top, bottom = loosened(high, cut.scale, +1), loosened(a[v], cut.scale, -1)
+        if constraint.sense in ("at_most", "equal"):
+            top, bottom = loosened(high, constraint.scale, +1), loosened(a[v], constraint.scale, -1)
             self.empty |= bool(a[v] > top)
             self._narrow(v, -np.inf, top)
             if w is not None:
                 self._narrow(w, bottom, np.inf)
-        if cut.sense in ("at_least", "equal"):
-            bottom, top = loosened(low, cut.scale, -1), loosened(b[v], cut.scale, +1)
+        if constraint.sense in ("at_least", "equal"):
+            bottom, top = loosened(low, constraint.scale, -1), loosened(b[v], constraint.scale, +1)
             self.empty |= bool(b[v] < bottom)
             self._narrow(v, bottom, np.inf)
             if w is not None:

@@ -41,7 +41,7 @@ class SweepWriter:
                 *((k, nodes.layout.n_variables + i) for i, k in enumerate(nodes.auxiliary)),
             ),
             goals=tuple(f"l{g.node}" if g.sign > 0 else f"-h{g.node}" for g in nodes.goals),
-            limits=len(nodes.cuts),
+            limits=len(nodes.constraints),
         )
 
     def _positive(self, k: int) -> bool:
@@ -66,11 +66,11 @@ class SweepWriter:
     # -- forward
 
     def _forward(self, later: bool) -> None:
-        cut_at: dict[int, list[int]] = {}
+        constraints_at: dict[int, list[int]] = {}
         position = {k: i for i, k in enumerate(self.nodes.order)}
-        for j, cut in enumerate(self.nodes.cuts):
-            sides = [k for k in (cut.value, cut.limit) if k is not None]
-            cut_at.setdefault(max(sides, key=lambda k: position[k]), []).append(j)
+        for j, constraint in enumerate(self.nodes.constraints):
+            sides = [k for k in (constraint.value, constraint.limit) if k is not None]
+            constraints_at.setdefault(max(sides, key=lambda k: position[k]), []).append(j)
         goals_at: dict[int, list[int]] = {}
         for j, goal in enumerate(self.nodes.goals):
             goals_at.setdefault(goal.node, []).append(j)
@@ -79,7 +79,7 @@ class SweepWriter:
                 self._node(k, later)
             for j in goals_at.get(k, ()) if self.capped else ():
                 self._cap(j)
-            for j in cut_at.get(k, ()):
+            for j in constraints_at.get(k, ()):
                 self._cut(j)
 
     def _node(self, k: int, later: bool) -> None:
@@ -163,27 +163,27 @@ class SweepWriter:
         return f"loosened({end}, {scale!r}, {side})"
 
     def _cut(self, j: int) -> None:
-        cut = self.nodes.cuts[j]
-        v, w = cut.value, cut.limit
+        constraint = self.nodes.constraints[j]
+        v, w = constraint.value, constraint.limit
         low, high = (f"B[{j}]", f"B[{j}]") if w is None else (f"l{w}", f"h{w}")
         moving = w is not None and self._moves(w)
         opens = []
-        if cut.sense in ("at_most", "equal"):
-            self._set("s", self._loose(high, w, cut.scale, +1))
+        if constraint.sense in ("at_most", "equal"):
+            self._set("s", self._loose(high, w, constraint.scale, +1))
             self.out.append(Kill(f"l{v} > s"))
             if moving:
-                self._set("t", f"v_fmax({low}, {self._loose(f'l{v}', v, cut.scale, -1)})")
+                self._set("t", f"v_fmax({low}, {self._loose(f'l{v}', v, constraint.scale, -1)})")
             if self._moves(v):
                 self._set(f"h{v}", f"v_fmin(h{v}, s)")
             self._set(f"o{j}", f"h{v} > {low}")
             opens.append(f"o{j}")
             if moving:
                 self._set(f"l{w}", "t")
-        if cut.sense in ("at_least", "equal"):
-            self._set("s", self._loose(low, w, cut.scale, -1))
+        if constraint.sense in ("at_least", "equal"):
+            self._set("s", self._loose(low, w, constraint.scale, -1))
             self.out.append(Kill(f"h{v} < s"))
             if moving:
-                self._set("t", f"v_fmin({high}, {self._loose(f'h{v}', v, cut.scale, +1)})")
+                self._set("t", f"v_fmin({high}, {self._loose(f'h{v}', v, constraint.scale, +1)})")
             if self._moves(v):
                 self._set(f"l{v}", f"v_fmax(l{v}, s)")
             self._set(f"o{j}", " | ".join([*opens, f"(l{v} < {high})"]))

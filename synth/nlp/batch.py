@@ -3,7 +3,7 @@
 The problem is that of :class:`synth.nlp.ipopt.ParametricNlp`,
 
     minimise  weights . phi + t_weight t
-    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k,
+    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cutoff_k,
 
 solved for whole arrays of data by an interior-point method of our own. ``min``, ``max`` and ``where`` are
 differentiated piecewise as they stand, which leads to optima beside their kinks; for those on kinks see
@@ -40,8 +40,8 @@ class Tasks:
 
     Parameters
     ----------
-    weights, slopes, caps : array (problems, objectives)
-        A cap of infinity is none.
+    weights, slopes, cutoffs : array (problems, objectives)
+        A cutoff of infinity is none.
     goal_scales : array (objectives,)
         Size of objectives that do not enter by logarithm.
     t_weight : float
@@ -54,7 +54,7 @@ class Tasks:
 
     weights: np.ndarray
     slopes: np.ndarray
-    caps: np.ndarray
+    cutoffs: np.ndarray
     goal_scales: np.ndarray
     t_weight: float = 1.0
     elastic: float = 0.0
@@ -63,7 +63,7 @@ class Tasks:
     def take(self, rows: np.ndarray) -> Tasks:
         """Return some of the problems, by positions."""
         moved = None if self.moved is None else self.moved[rows]
-        own = self.weights[rows], self.slopes[rows], self.caps[rows]
+        own = self.weights[rows], self.slopes[rows], self.cutoffs[rows]
         return Tasks(*own, self.goal_scales, self.t_weight, self.elastic, moved)
 
 
@@ -79,7 +79,7 @@ class Solutions:
     t : array (problems,)
     violation : array (problems,)
         Largest violation of a row at the point; 0 where all hold, infinite where one does not exist.
-    cut_multipliers : array (problems, cuts)
+    constraint_multipliers : array (problems, constraints)
     goal_multipliers : array (problems, objectives)
     converged : array of bool (problems,)
         Whether the point met the tolerances of an optimum.
@@ -89,7 +89,7 @@ class Solutions:
     phi: np.ndarray
     t: np.ndarray
     violation: np.ndarray
-    cut_multipliers: np.ndarray
+    constraint_multipliers: np.ndarray
     goal_multipliers: np.ndarray
     converged: np.ndarray
 
@@ -133,9 +133,9 @@ class BatchNlp:
         self.rows, self.settings = rows, settings
         self.functions = RowFunctions(program, n_variables, rows, edge)
         self.log_variables = np.array(rows.log_variables, dtype=bool)
-        self.equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
-        self.guard = np.array([c.guard for c in rows.cuts], dtype=bool)
-        self.rigid = self.guard | (np.arange(len(rows.cuts)) >= len(rows.cuts) - conditions)
+        self.equal = np.array([c.sense == "equal" for c in rows.constraints], dtype=bool)
+        self.guard = np.array([c.guard for c in rows.constraints], dtype=bool)
+        self.rigid = self.guard | (np.arange(len(rows.constraints)) >= len(rows.constraints) - conditions)
         self.solver: InteriorPoint | Solver = self._solver(code)
         self.compiled = isinstance(self.solver, Solver)
         self._stored = self.functions.compile_stored()
@@ -155,7 +155,7 @@ class BatchNlp:
 
     def _compile_sides(self, program: Program) -> Any:
         """Return a function of both sides of the rows that enter by a scaled difference."""
-        plain = [c for c, log in zip(self.rows.cuts, self.rows.log_cuts, strict=True) if not log]
+        plain = [c for c, log in zip(self.rows.constraints, self.rows.log_constraints, strict=True) if not log]
         wanted = [k for c in plain for k in (c.value, c.limit) if k is not None]
         return program.compile(wanted) if wanted else None
 
@@ -180,8 +180,8 @@ class BatchNlp:
         start, low, high : array (problems, variables)
             SI; equal bounds pin a variable.
         bounds : list of float
-            Constant right sides, in the order of the cuts.
-        void : array of bool (problems, cuts)
+            Constant right sides, in the order of the constraints.
+        void : array of bool (problems, constraints)
             Limits that do not count.
         workers : int
             Threads that may solve at the same time, where the code is compiled.
@@ -201,7 +201,7 @@ class BatchNlp:
                 Tasks(
                     tasks.weights[rows],
                     tasks.slopes[rows],
-                    tasks.caps[rows],
+                    tasks.cutoffs[rows],
                     tasks.goal_scales,
                     tasks.t_weight,
                     tasks.elastic,
@@ -251,7 +251,7 @@ class BatchNlp:
                 start=self._to_search(first, scales),
                 low=self._to_search(low, scales),
                 high=self._to_search(high, scales),
-                counts=np.concatenate([~void, np.isfinite(tasks.caps)], axis=1).T,
+                counts=np.concatenate([~void, np.isfinite(tasks.cutoffs)], axis=1).T,
                 slopes=self._slopes(tasks),
                 rights=self._rights(tasks),
                 weights=(tasks.weights * worth[:, None]).T,
@@ -316,13 +316,13 @@ class BatchNlp:
         """Return one over what one unit of a scaled difference is, per row."""
         result: list[Any] = []
         sides = iter([] if self._sides is None else self._sides(inputs))
-        for j, cut in enumerate(self.rows.cuts):
-            if self.rows.log_cuts[j]:
+        for j, constraint in enumerate(self.rows.constraints):
+            if self.rows.log_constraints[j]:
                 result.append(1.0)
                 continue
             value = next(sides)
-            limit = bounds[j] if cut.limit is None else next(sides)
-            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), cut.scale)
+            limit = bounds[j] if constraint.limit is None else next(sides)
+            size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), constraint.scale)
             result.append(1.0 / np.where(np.isfinite(size), size, 1.0))
         return [*result, *(1.0 / tasks.goal_scales)]
 
@@ -340,13 +340,13 @@ class BatchNlp:
 
     def _slopes(self, tasks: Tasks) -> np.ndarray:
         give = np.where(self.rigid, 0.0, tasks.elastic)
-        return np.concatenate([np.broadcast_to(give, (len(tasks.caps), len(give))), tasks.slopes], axis=1).T
+        return np.concatenate([np.broadcast_to(give, (len(tasks.cutoffs), len(give))), tasks.slopes], axis=1).T
 
     def _rights(self, tasks: Tasks) -> np.ndarray:
         margin = np.where(self.guard, -GUARD_MARGIN, 0.0)
-        caps = np.where(np.isfinite(tasks.caps), tasks.caps, 0.0)
-        allowed = np.broadcast_to(margin, (len(caps), len(margin))) + (0.0 if tasks.moved is None else tasks.moved)
-        return np.concatenate([allowed, caps], axis=1).T
+        cutoffs = np.where(np.isfinite(tasks.cutoffs), tasks.cutoffs, 0.0)
+        allowed = np.broadcast_to(margin, (len(cutoffs), len(margin))) + (0.0 if tasks.moved is None else tasks.moved)
+        return np.concatenate([allowed, cutoffs], axis=1).T
 
     def _finished(
         self,
@@ -357,20 +357,20 @@ class BatchNlp:
         high: np.ndarray,
         worth: np.ndarray,
     ) -> Solutions:
-        cuts = self.functions.n_cuts
+        constraints = self.functions.n_constraints
         logs = self.log_variables[:, None]
         variables = np.where(logs, np.exp(np.where(logs, ends.y, 0.0)), ends.y * scales)
         t = self._least_t(problems, ends)
         left = ends.rows - problems.slopes * t - problems.rights
-        left[:cuts] = np.where(self.equal[:, None], np.abs(left[:cuts]), left[:cuts])
+        left[:constraints] = np.where(self.equal[:, None], np.abs(left[:constraints]), left[:constraints])
         left = np.where(problems.counts, np.where(np.isnan(left), np.inf, left), 0.0)
         return Solutions(
             variables=np.clip(variables.T, low, high),
-            phi=ends.rows[cuts:].T,
+            phi=ends.rows[constraints:].T,
             t=t,
             violation=left.max(axis=0, initial=0.0),
-            cut_multipliers=(ends.multipliers[:cuts] / worth).T,
-            goal_multipliers=(ends.multipliers[cuts:] / worth).T,
+            constraint_multipliers=(ends.multipliers[:constraints] / worth).T,
+            goal_multipliers=(ends.multipliers[constraints:] / worth).T,
             converged=ends.status == CONVERGED,
         )
 
@@ -387,7 +387,7 @@ class BatchNlp:
 
 def worth_of(tasks: Tasks) -> np.ndarray:
     """Return factors for the objective that make multipliers a matter of ones, one per problem."""
-    slopes = np.where(np.isfinite(tasks.caps), tasks.slopes, 0.0)
+    slopes = np.where(np.isfinite(tasks.cutoffs), tasks.slopes, 0.0)
     slope = np.maximum(np.max(slopes, axis=1, initial=0.0), tasks.elastic)
     by_t = np.where(slope > 0, tasks.t_weight / np.where(slope > 0, slope, 1.0), 0.0)
     size = np.maximum(np.max(np.abs(tasks.weights), axis=1, initial=0.0), by_t)

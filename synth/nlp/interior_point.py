@@ -103,7 +103,7 @@ class SparsityPattern:
 
     def __init__(self, functions: RowFunctions) -> None:
         self.n, self.rows, self.goals = functions.n, functions.n_rows, functions.n_goals
-        self.cuts = functions.n_cuts
+        self.constraints = functions.n_constraints
         self.row, self.column = functions.row, functions.column
         self.hessian = functions.hessian
         self.columns = [np.flatnonzero(self.column == a) for a in range(self.n)]
@@ -114,10 +114,10 @@ class SparsityPattern:
                 first = [int(k) for r in shared for k in self.columns[a] if self.row[k] == r]
                 second = [int(k) for r in shared for k in self.columns[b] if self.row[k] == r]
                 self.pairs.append((a, b, np.array(first, dtype=np.int64), np.array(second, dtype=np.int64)))
-        cuts = functions.rows.cuts
-        self.equal = np.array([c.sense == "equal" for c in cuts] + [False] * self.goals, dtype=bool)[:, None]
-        self.guard = np.array([c.guard for c in cuts] + [False] * self.goals, dtype=bool)
-        self.is_goal = (np.arange(self.rows) >= self.cuts)[:, None]
+        constraints = functions.rows.constraints
+        self.equal = np.array([c.sense == "equal" for c in constraints] + [False] * self.goals, dtype=bool)[:, None]
+        self.guard = np.array([c.guard for c in constraints] + [False] * self.goals, dtype=bool)
+        self.is_goal = (np.arange(self.rows) >= self.constraints)[:, None]
         self.has_equal, self.has_guard = bool(self.equal.any()), bool(self.guard.any())
 
     def transposed(self, jacobian: np.ndarray, vector: np.ndarray) -> np.ndarray:

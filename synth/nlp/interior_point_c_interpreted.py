@@ -27,7 +27,19 @@ from synth.tuning import InteriorPointSettings, NlpSettings
 MOST = {"N": 24, "ROWS": 96, "GOALS": 16, "NONZEROS": 1024, "CURVATURES": 300}
 WIDTH = 5  # of an instruction: what is done, where the result goes, and up to three operands
 INTEGERS = ctypes.POINTER(ctypes.c_int)
-NUMBERS = ("n", "rows", "cuts", "goals", "nonzeros", "curvatures", "stored", "slots", "constants", "steps", "terms")
+NUMBERS = (
+    "n",
+    "rows",
+    "constraints",
+    "goals",
+    "nonzeros",
+    "curvatures",
+    "stored",
+    "slots",
+    "constants",
+    "steps",
+    "terms",
+)
 LISTS = ("equal", "guard", "row", "column", "curvature", "term", "code", "output")
 
 
@@ -93,7 +105,7 @@ class General(Solver):
         numbers = {
             "n": layout.n,
             "rows": layout.rows,
-            "cuts": layout.cuts,
+            "constraints": layout.constraints,
             "goals": layout.goals,
             "nonzeros": len(layout.row),
             "curvatures": len(layout.hessian),

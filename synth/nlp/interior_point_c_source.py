@@ -55,7 +55,7 @@ def _sizes(functions: RowFunctions, own: InteriorPointSettings) -> str:
     numbers = {
         "N": layout.n,
         "ROWS": layout.rows,
-        "CUTS": layout.cuts,
+        "CONSTRAINTS": layout.constraints,
         "GOALS": layout.goals,
         "NONZEROS": len(layout.row),
         "CURVATURES": len(layout.hessian),

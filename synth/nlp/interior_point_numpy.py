@@ -266,7 +266,7 @@ class InteriorPointBatch:
     ) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
         layout, count = self.layout, len(self)
         weights = np.where(self.counts & ~self.absent, self._signed(multipliers), 0.0)
-        weights[layout.cuts :] += self._objective()
+        weights[layout.constraints :] += self._objective()
         out = point(list(y), list(weights), self.stored)
         form, jacobian = np.empty((layout.rows, count)), np.empty((len(layout.row), count))
         for k in range(layout.rows):
@@ -288,7 +288,7 @@ class InteriorPointBatch:
         """Return which rows do not exist at a point, and how many; clear what must not count there."""
         layout = self.layout
         wanted = self.counts.copy()
-        wanted[layout.cuts :] |= self.weights != 0
+        wanted[layout.constraints :] |= self.weights != 0
         absent = ~(np.abs(form) < self.method.largest_row)
         strange = ~np.isfinite(jacobian)
         if strange.any():
@@ -340,7 +340,7 @@ class InteriorPointBatch:
         if self.layout.has_equal:
             rows -= np.where(self.layout.equal, self.penalty * values, 0.0)
         below, above = self._room(y)
-        goals = form[self.layout.cuts :]
+        goals = form[self.layout.constraints :]
         objective = np.where(self.weights != 0, self.weights * goals, 0.0).sum(axis=0) + self.t_weight * t
         barrier = self.barrier * np.log(below * above).sum(axis=0)
         result: np.ndarray = rows.sum(axis=0) - barrier + np.where(self._first(missing), 0.0, objective)
@@ -387,7 +387,7 @@ class InteriorPointBatch:
         self._bring_in(own, below, above)
         signed = self._signed(self.multipliers)
         weights = signed.copy()
-        weights[layout.cuts :] += self._objective()
+        weights[layout.constraints :] += self._objective()
         residual = layout.transposed(jacobian, weights)
         residual += np.where(self.free, self.high_dual - self.low_dual, 0.0)
         along_t = np.where(self.t_free & ~first, self.t_weight - (slopes * signed).sum(axis=0), 0.0)
@@ -460,7 +460,7 @@ class InteriorPointBatch:
         weights = self._signed(own)
         along_t = self.t_weight - (slopes * weights).sum(axis=0)
         weights = weights.copy()
-        weights[layout.cuts :] += self._objective()
+        weights[layout.constraints :] += self._objective()
         gradient = np.empty((n + 1, len(self)))
         gradient[:n] = layout.transposed(jacobian, weights) - self.barrier / below + self.barrier / above
         held = ~self.t_free | self._first(self.missing)

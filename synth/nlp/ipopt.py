@@ -5,7 +5,7 @@ it shares the rows with them, but neither derivatives nor method. Positive varia
 their logarithm, as there. All scalar problems are one problem with different parameters:
 
     minimise  weights . phi + t_weight t + variable_weights . y
-    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cap_k
+    over y, t such that  limits(y) - elastic t <= 0,  phi_k(y) - slope_k t <= cutoff_k
 
 ``min``, ``max`` and ``where`` never reach IPOPT: a branch fixes which piece is used and carries the piece's condition
 as a row of its own.
@@ -48,7 +48,7 @@ class Solution:
     variables: np.ndarray
     phi: np.ndarray
     t: float
-    cut_multipliers: np.ndarray
+    constraint_multipliers: np.ndarray
     goal_multipliers: np.ndarray
     converged: bool
 
@@ -62,7 +62,7 @@ class Task:
 
     weights: np.ndarray
     slopes: np.ndarray
-    caps: np.ndarray
+    cutoffs: np.ndarray
     goal_scales: np.ndarray
     t_weight: float = 1.0
     elastic: float = 0.0
@@ -190,8 +190,8 @@ class ParametricNlp:
         self.program = program
         self.n = n_variables
         self.rows = rows
-        wanted = [c.value for c in rows.cuts]
-        wanted += [c.limit for c in rows.cuts if c.limit is not None]
+        wanted = [c.value for c in rows.constraints]
+        wanted += [c.limit for c in rows.constraints if c.limit is not None]
         wanted += [g.node for g in rows.goals]
         self.branches = Branches(program, n_variables, wanted)
         self._solvers: dict[tuple[bool, ...], tuple[Any, list[int]]] = {}
@@ -202,8 +202,8 @@ class ParametricNlp:
         rows, n = self.rows, self.n
         y, t = ca.SX.sym("y", n), ca.SX.sym("t")
         data = ca.SX.sym("data", self.program.n_inputs - n)
-        bounds = ca.SX.sym("bounds", len(rows.cuts))
-        sizes = ca.SX.sym("sizes", len(rows.cuts) + len(rows.goals))
+        bounds = ca.SX.sym("bounds", len(rows.constraints))
+        sizes = ca.SX.sym("sizes", len(rows.constraints) + len(rows.goals))
         weights, slopes = ca.SX.sym("weights", len(rows.goals)), ca.SX.sym("slopes", len(rows.goals))
         variable_weights = ca.SX.sym("variable_weights", n)
         t_weight, elastic = ca.SX.sym("t_weight"), ca.SX.sym("elastic")
@@ -211,18 +211,18 @@ class ParametricNlp:
         inputs = variables + [data[i] for i in range(self.program.n_inputs - n)]
         outputs, conditions = self.branches.smooth(pieces, inputs)
         sides = iter(outputs)
-        values = [next(sides) for _ in rows.cuts]
-        limits = [bounds[j] if c.limit is None else next(sides) for j, c in enumerate(rows.cuts)]
+        values = [next(sides) for _ in rows.constraints]
+        limits = [bounds[j] if c.limit is None else next(sides) for j, c in enumerate(rows.constraints)]
         goals = [next(sides) for _ in rows.goals]
-        cut_rows = []
-        for j, cut in enumerate(rows.cuts):
-            form = ca.log(values[j] / limits[j]) if rows.log_cuts[j] else (values[j] - limits[j]) / sizes[j]
+        constraint_rows = []
+        for j, constraint in enumerate(rows.constraints):
+            form = ca.log(values[j] / limits[j]) if rows.log_constraints[j] else (values[j] - limits[j]) / sizes[j]
             # A guard never gives way, and holds only strictly: beyond it the other formulas do not exist.
-            give = -GUARD_MARGIN if cut.guard else elastic * t
-            cut_rows.append((-form if cut.sense == "at_least" else form) - give)
+            give = -GUARD_MARGIN if constraint.guard else elastic * t
+            constraint_rows.append((-form if constraint.sense == "at_least" else form) - give)
         phi = []
         for j, goal in enumerate(rows.goals):
-            form = ca.log(goals[j]) if rows.log_goals[j] else goals[j] / sizes[len(rows.cuts) + j]
+            form = ca.log(goals[j]) if rows.log_goals[j] else goals[j] / sizes[len(rows.constraints) + j]
             phi.append(goal.sign * form)
         goal_rows = [phi[j] - slopes[j] * t for j in range(len(phi))]
         condition_sizes = ca.SX.sym("condition_sizes", len(self.branches.decisions))
@@ -231,7 +231,7 @@ class ParametricNlp:
         parameters = ca.vertcat(
             data, bounds, sizes, weights, slopes, variable_weights, t_weight, elastic, condition_sizes
         )
-        g = ca.vertcat(*cut_rows, *goal_rows, *condition_rows)
+        g = ca.vertcat(*constraint_rows, *goal_rows, *condition_rows)
         problem = {"x": ca.vertcat(y, t), "p": parameters, "f": cost, "g": g}
         solver = ca.nlpsol("nlp", "ipopt", problem, IPOPT)
         objectives = ca.Function("objectives", [problem["x"], parameters], [ca.vertcat(*phi)])
@@ -263,9 +263,9 @@ class ParametricNlp:
         start, low, high : array (variables,)
             SI.
         bounds : list of float
-            Constant right sides, in the order of the cuts.
+            Constant right sides, in the order of the constraints.
         void : array of bool
-            Cuts that do not count for this combination.
+            Constraints that do not count for this combination.
 
         Returns
         -------
@@ -330,12 +330,12 @@ class ParametricNlp:
                 condition_sizes,
             ]
         )
-        equal = np.array([c.sense == "equal" for c in rows.cuts], dtype=bool)
-        upper_g = np.zeros(len(rows.cuts))
+        equal = np.array([c.sense == "equal" for c in rows.constraints], dtype=bool)
+        upper_g = np.zeros(len(rows.constraints))
         lower_g = np.where(void | ~equal, -np.inf, 0.0)
         upper_g[void] = np.inf
         lower = np.concatenate([lower_g, np.full(len(rows.goals) + len(positions), -np.inf)])
-        upper = np.concatenate([upper_g, task.caps, np.zeros(len(positions))])
+        upper = np.concatenate([upper_g, task.cutoffs, np.zeros(len(positions))])
         free_t = task.t_weight != 0.0 or task.elastic != 0.0
         t_bound = np.inf if free_t else 0.0
         low_y, high_y = self.to_search(low), self.to_search(high)
@@ -357,14 +357,14 @@ class ParametricNlp:
         multipliers = np.asarray(answer["lam_g"]).ravel()
         phi = objectives(x, parameters)
         g = np.asarray(answer["g"]).ravel()
-        first = len(rows.cuts) + len(rows.goals)
+        first = len(rows.constraints) + len(rows.goals)
         border = [p for k, p in enumerate(positions) if abs(g[first + k]) < ACTIVE]
         solution = Solution(
             variables=variables,
             phi=np.asarray(phi).ravel(),
             t=float(x[n]),
-            cut_multipliers=multipliers[: len(rows.cuts)],
-            goal_multipliers=multipliers[len(rows.cuts) : first],
+            constraint_multipliers=multipliers[: len(rows.constraints)],
+            goal_multipliers=multipliers[len(rows.constraints) : first],
             converged=bool(solver.stats()["success"]),
         )
         return solution, border
@@ -372,9 +372,9 @@ class ParametricNlp:
     def _row_sizes(self, task: Task, x0: np.ndarray, data: Sequence[float], bounds: Sequence[float]) -> np.ndarray:
         with np.errstate(all="ignore"):
             raw = [abs(float(np.asarray(v).ravel()[0])) for v in self._sizes([*x0, *data])]
-        cuts = self.rows.cuts
-        values = raw[: len(cuts)]
-        moving = iter(raw[len(cuts) : len(raw) - len(self.rows.goals)])
-        limits = [abs(bounds[j]) if c.limit is None else next(moving) for j, c in enumerate(cuts)]
-        sizes = [max(v, b, c.scale) for v, b, c in zip(values, limits, cuts, strict=True)]
+        constraints = self.rows.constraints
+        values = raw[: len(constraints)]
+        moving = iter(raw[len(constraints) : len(raw) - len(self.rows.goals)])
+        limits = [abs(bounds[j]) if c.limit is None else next(moving) for j, c in enumerate(constraints)]
+        sizes = [max(v, b, c.scale) for v, b, c in zip(values, limits, constraints, strict=True)]
         return np.array([*(s if np.isfinite(s) else 1.0 for s in sizes), *task.goal_scales])

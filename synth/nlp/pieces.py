@@ -39,7 +39,7 @@ DECISIONS = (ca.OP_LT, ca.OP_LE, ca.OP_FMIN, ca.OP_FMAX, ca.OP_FABS)
 def decisions(program: Program, n_variables: int, rows: Rows) -> list[int]:
     """Return the nodes of the rows that choose between formulas by what the variables are."""
     moving = program.dependence(range(n_variables))
-    return [k for k in program.needed(_wanted(rows)) if moving[k] and program.nodes[k].op in DECISIONS]
+    return [k for k in program.needed(rows.nodes) if moving[k] and program.nodes[k].op in DECISIONS]
 
 
 def sides(program: Program, k: int) -> tuple[int, int | None]:
@@ -49,10 +49,6 @@ def sides(program: Program, k: int) -> tuple[int, int | None]:
         return node.args[0], node.args[1]
     inner = program.nodes[node.args[0]]
     return inner.args if inner.op == ca.OP_SUB else (node.args[0], None)  # type: ignore[return-value]
-
-
-def _wanted(rows: Rows) -> list[int]:
-    return [k for c in rows.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in rows.goals]
 
 
 class Pieces:
@@ -116,7 +112,7 @@ class Pieces:
         inverse_sizes = [ca.SX.sym(f"inverse_size{k}") for k in range(count)]
         number = {k: position for position, k in enumerate(self.decisions)}
         values: dict[int, Any] = {}
-        for k in program.needed([*_wanted(rows), *(a for pair in self._sides for a in pair if a is not None)]):
+        for k in program.needed([*rows.nodes, *(a for pair in self._sides for a in pair if a is not None)]):
             node = program.nodes[k]
             if node.op == ca.OP_CONST:
                 values[k] = ca.SX(node.constant)
@@ -133,13 +129,17 @@ class Pieces:
                 first, second = second, first
             less, more = ca.if_else(ways[position], first, second), ca.if_else(ways[position], second, first)
             conditions += [less, more] if self.log[position] else [(less - more) * inverse_sizes[position]]
-        wanted = _wanted(rows)
+        wanted = rows.nodes
         made = Program([*inputs, *ways, *inverse_sizes], [*(values[k] for k in wanted), *conditions])
         place = iter(made.outputs)
-        cuts = [replace(c, value=next(place), limit=None if c.limit is None else next(place)) for c in rows.cuts]
+        constraints = [
+            replace(c, value=next(place), limit=None if c.limit is None else next(place)) for c in rows.constraints
+        ]
         goals = tuple(replace(g, node=next(place)) for g in rows.goals)
-        cuts += [NodeConstraint("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
-        return made, Rows(tuple(cuts), goals, (*rows.log_cuts, *self.log), rows.log_goals, rows.log_variables)
+        constraints += [NodeConstraint("at_most", next(place), next(place) if log else None, 1.0) for log in self.log]
+        return made, Rows(
+            tuple(constraints), goals, (*rows.log_constraints, *self.log), rows.log_goals, rows.log_variables
+        )
 
     def at(self, inputs: Sequence[Any], reach: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return, at some points, which way each decision goes, how far its sides are apart, and their size.
@@ -183,7 +183,7 @@ class Pieces:
         program, count = self.program, len(ways)
         number = {k: position for position, k in enumerate(self.decisions)}
         nothing, everything = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-        read: dict[int, np.ndarray] = dict.fromkeys(_wanted(self.rows), everything)
+        read: dict[int, np.ndarray] = dict.fromkeys(self.rows.nodes, everything)
         truths: dict[int, np.ndarray | None] = {}
 
         def truth(k: int) -> np.ndarray | None:
@@ -201,7 +201,7 @@ class Pieces:
                     truths[k] = inner[0] & inner[1] if node.op == ca.OP_AND else inner[0] | inner[1]
             return truths[k]
 
-        for k in reversed(program.needed(_wanted(self.rows))):
+        for k in reversed(program.needed(self.rows.nodes)):
             own, node = read.get(k, nothing), program.nodes[k]
             shares = [own] * len(node.args)
             if node.op in (OP_SELECT, ca.OP_IF_ELSE_ZERO) and (chosen := truth(node.args[0])) is not None:
@@ -362,9 +362,9 @@ class _Question:
         # In a branch that is not taken decisions go the way they would if it were: an exchange may lead there.
         there, _, _ = pieces.at([*found.variables.T, *self.inputs(rows)], _reach(low, high))
         ways = np.where(live, ways, there)
-        cuts = self.void.shape[1]
-        own = replace(found, cut_multipliers=found.cut_multipliers[:, :cuts])
-        return _State(own, found.cut_multipliers[:, cuts:], ways, start, size)
+        constraints = self.void.shape[1]
+        own = replace(found, constraint_multipliers=found.constraint_multipliers[:, :constraints])
+        return _State(own, found.constraint_multipliers[:, constraints:], ways, start, size)
 
     def _right_sides(self) -> list[float]:
         return [*self.bounds, *([0.0] * len(self.solver.pieces))]
@@ -408,20 +408,20 @@ class _Question:
             the edge of a max that must be small, it is not the right one here.)
         """
         solver, settings, nlp = self.solver, self.solver.settings, self.solver.nlp
-        count, cuts, found = len(solver.pieces), self.void.shape[1], state.best.take(rows)
+        count, constraints, found = len(solver.pieces), self.void.shape[1], state.best.take(rows)
         pressed, apart = np.zeros((len(rows), count)), np.zeros((len(rows), count), dtype=bool)
         if not len(rows):
             return pressed, apart
         weight = np.zeros((nlp.functions.n_rows, len(rows)))
-        weight[:cuts] = found.cut_multipliers.T
-        weight[nlp.functions.n_cuts :] = (found.goal_multipliers + self.tasks.weights[rows]).T
+        weight[:constraints] = found.constraint_multipliers.T
+        weight[nlp.functions.n_constraints :] = (found.goal_multipliers + self.tasks.weights[rows]).T
         least = settings.press / worth_of(self.tasks.take(rows))
         live, ways = solver.pieces.live(state.ways[rows]), state.ways[rows]
         values, first = self._slopes(rows, state, ways)
         for k in range(count):
             others, second = self._slopes(rows, state, _turned(ways, k))
             picked = np.zeros_like(weight)
-            picked[cuts + k] = 1.0
+            picked[constraints + k] = 1.0
             normal = nlp.layout.transposed(first, picked)
             length = np.sum(normal * normal, axis=0)
             change = nlp.layout.transposed(np.nan_to_num(second - first), weight)

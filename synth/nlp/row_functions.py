@@ -51,11 +51,11 @@ class RowFunctions:
         self.n = n = n_variables
         self.edge = edge
         self.rows = rows
-        self.n_cuts, self.n_goals = len(rows.cuts), len(rows.goals)
-        self.n_rows = self.n_cuts + self.n_goals
+        self.n_constraints, self.n_goals = len(rows.constraints), len(rows.goals)
+        self.n_rows = self.n_constraints + self.n_goals
         self.n_data = program.n_inputs - n
         y, scales = ca.SX.sym("y", n), ca.SX.sym("scales", n)
-        data, bounds = ca.SX.sym("data", self.n_data), ca.SX.sym("bounds", self.n_cuts)
+        data, bounds = ca.SX.sym("data", self.n_data), ca.SX.sym("bounds", self.n_constraints)
         sizes = ca.SX.sym("inverse_sizes", self.n_rows)
         variables = [ca.exp(y[i]) if rows.log_variables[i] else scales[i] * y[i] for i in range(n)]
         sides = self._sides(program, [*variables, *_scalars(data)], bounds, sizes)
@@ -84,10 +84,9 @@ class RowFunctions:
     def _sides(self, program: Program, inputs: Sequence[Any], bounds: Any, sizes: Any) -> list[Any]:
         """Return what each row is made of: value over limit, a scaled difference, or an objective."""
         rows = self.rows
-        wanted = [k for c in rows.cuts for k in (c.value, c.limit) if k is not None] + [g.node for g in rows.goals]
         values: dict[int, Any] = {}
         moving = program.dependence(range(self.n))
-        for k in program.needed(wanted):
+        for k in program.needed(rows.nodes):
             node = program.nodes[k]
             if node.op == ca.OP_CONST:
                 values[k] = ca.SX(node.constant)
@@ -99,21 +98,22 @@ class RowFunctions:
             else:
                 values[k] = program.apply(node, [values[a] for a in node.args])
         sides = []
-        for j, cut in enumerate(rows.cuts):
-            limit = bounds[j] if cut.limit is None else values[cut.limit]
-            sides.append(values[cut.value] / limit if rows.log_cuts[j] else (values[cut.value] - limit) * sizes[j])
+        for j, constraint in enumerate(rows.constraints):
+            limit = bounds[j] if constraint.limit is None else values[constraint.limit]
+            value = values[constraint.value]
+            sides.append(value / limit if rows.log_constraints[j] else (value - limit) * sizes[j])
         for j, goal in enumerate(rows.goals):
-            sides.append(values[goal.node] if rows.log_goals[j] else values[goal.node] * sizes[self.n_cuts + j])
+            sides.append(values[goal.node] if rows.log_goals[j] else values[goal.node] * sizes[self.n_constraints + j])
         return sides
 
     def _form(self, sweeps: DerivativeSweeps, j: int, side: int) -> int:
         """Return a row as a node."""
         graph, rows = sweeps.graph, self.rows
-        if j >= self.n_cuts:
-            log, sign = rows.log_goals[j - self.n_cuts], rows.goals[j - self.n_cuts].sign
+        if j >= self.n_constraints:
+            log, sign = rows.log_goals[j - self.n_constraints], rows.goals[j - self.n_constraints].sign
         else:
-            log, sign = rows.log_cuts[j], -1 if rows.cuts[j].sense == "at_least" else 1
-        if log and sign < 0 and j < self.n_cuts:
+            log, sign = rows.log_constraints[j], -1 if rows.constraints[j].sense == "at_least" else 1
+        if log and sign < 0 and j < self.n_constraints:
             return _continued_logarithm(sweeps, side)
         form = graph.node(ca.OP_LOG, side) if log else side
         return graph.negative(form) if sign < 0 else form
@@ -123,7 +123,7 @@ class RowFunctions:
         lengths = {
             "y": self.n,
             "data": self.n_data,
-            "bounds": self.n_cuts,
+            "bounds": self.n_constraints,
             "sizes": self.n_rows,
             "scales": self.n,
             "weights": self.n_rows,

@@ -16,18 +16,24 @@ class Rows:
 
     Parameters
     ----------
-    cuts : tuple of NodeConstraint
+    constraints : tuple of NodeConstraint
         Limits; a constant right side is handed over with each call.
     goals : tuple of Goal
         Objectives.
-    log_cuts, log_goals : tuple of bool
+    log_constraints, log_goals : tuple of bool
         Which are positive on both sides, and so enter by logarithm.
     log_variables : tuple of bool
         Which variables are positive.
     """
 
-    cuts: tuple[NodeConstraint, ...]
+    constraints: tuple[NodeConstraint, ...]
     goals: tuple[Goal, ...]
-    log_cuts: tuple[bool, ...]
+    log_constraints: tuple[bool, ...]
     log_goals: tuple[bool, ...]
     log_variables: tuple[bool, ...]
+
+    @property
+    def nodes(self) -> list[int]:
+        """What is computed: both sides of each limit, as far as they move, then the objectives."""
+        sides = [k for c in self.constraints for k in (c.value, c.limit) if k is not None]
+        return sides + [goal.node for goal in self.goals]

@@ -15,6 +15,7 @@ import numpy as np
 from synth.bounds.boxes import Boxes, Subtrees
 from synth.search.archive import Candidate, rows_of
 from synth.search.budget import Clock
+from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, reaches_beyond
@@ -123,13 +124,13 @@ def further(
         # A small batch costs as much as a larger one, so that it is split twice at once.
         batch, small = form.boxes.split(batch)
         if len(small):
-            stuck.append(heuristics.fathom(small))
+            stuck.append(left_open(form, small, rule, heuristics))
     grown = _grown(form, batch, rule, heuristics, node_limit - looked) if not heuristics.every_goal else None
     if grown is not None:
         looked += grown.looked
         batch = grown.halves
         if len(grown.small):
-            stuck.append(heuristics.fathom(grown.small))
+            stuck.append(left_open(form, grown.small, rule, heuristics))
     return batch, Boxes.joined(stuck) if stuck else none, looked
 
 

@@ -32,17 +32,17 @@ def rows_of_question(question: QuestionBounds, log_goals: Sequence[bool]) -> Row
         Which objectives are measured by logarithm.
     """
 
-    def both_positive(cut: NodeConstraint) -> bool:
+    def both_positive(constraint: NodeConstraint) -> bool:
         positive = question.surely_positive
         # Where nothing is feasible nothing proves a sign, and logarithms would not exist.
-        right = cut.bound > 0 if cut.limit is None else positive(cut.limit)
-        return not question.root.empty and positive(cut.value) and right
+        right = constraint.bound > 0 if constraint.limit is None else positive(constraint.limit)
+        return not question.root.empty and positive(constraint.value) and right
 
-    cuts = question.cuts
+    constraints = question.constraints
     return Rows(
-        cuts=tuple(replace(c, bound=0.0) for c in cuts),
+        constraints=tuple(replace(c, bound=0.0) for c in constraints),
         goals=tuple(question.goals),
-        log_cuts=tuple(c.sense != "equal" and both_positive(c) for c in cuts),
+        log_constraints=tuple(c.sense != "equal" and both_positive(c) for c in constraints),
         log_goals=tuple(bool(x) for x in log_goals),
         log_variables=tuple(bool(x > 0) for x in question.instance.ranges.lower),
     )
@@ -166,7 +166,7 @@ class ContinuousProblems:
 
     def learn(self, tasks: Tasks, found: Solutions, importance: np.ndarray) -> None:
         """Learn from the multipliers of problems solved what is worth splitting; ``importance`` per problem."""
-        prices = np.concatenate([found.cut_multipliers, found.goal_multipliers + tasks.weights], axis=1)
+        prices = np.concatenate([found.constraint_multipliers, found.goal_multipliers + tasks.weights], axis=1)
         self.branching.learn(prices[found.converged], importance[found.converged])
 
     def _batch_nlp(self) -> BatchNlp | KinkedNlp:

@@ -66,8 +66,8 @@ class Formulation:
         ]
         self.constraints = instance.constraints
         # All that the search knows of limits is made of these rows, one of each constraint.
-        self.cuts = [NodeConstraint.of(x) for x in self.constraints]
-        self.bounds = [cut.bound for cut in self.cuts]
+        self.node_constraints = [NodeConstraint.of(x) for x in self.constraints]
+        self.bounds = [constraint.bound for constraint in self.node_constraints]
         # A single objective needs bounds of the next one as well, which settles ties.
         self.bounded = min(max(traded, 2), len(self.goals)) if traded else 0
         self.lower, self.upper = instance.ranges.lower, instance.ranges.upper
@@ -76,7 +76,9 @@ class Formulation:
         self.infeasibility = infeasibility
         moved = [model.program.dependence([k]) for k in range(self.n)]
         self.seen_by_goal = np.array([[m[g.node] for m in moved] for g in self.goals], dtype=bool)
-        question = QuestionBounds(instance, self.cuts, self.goals, self.bounded, infeasibility, tuning.branching)
+        question = QuestionBounds(
+            instance, self.node_constraints, self.goals, self.bounded, infeasibility, tuning.branching
+        )
         self.bounding = Bounding(question, execution, tuning)
         self.objectives = self._log_objectives()
         self._immovable = self.unmoved(gridded=False)

@@ -43,8 +43,8 @@ def large_neighbourhood_search(
         best = form.archive.phi[:, k].min()
         combinations = _promising(form, columns, k, float(tolerance[place]), rng)
         if len(combinations):
-            nothing_capped = np.full(len(form.goals), np.inf)
-            rule = EpsilonCover([k], tolerance[place : place + 1], nothing_capped, form.new_archive([k]))
+            no_cutoffs = np.full(len(form.goals), np.inf)
+            rule = EpsilonCover([k], tolerance[place : place + 1], no_cutoffs, form.new_archive([k]))
             rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
             branch_and_bound(form, form.boxes.leaves(combinations), rule, clock, rng, limits.boxes)
         failures = 0 if form.archive.phi[:, k].min() < best - tolerance[place] else failures + 1

@@ -50,17 +50,17 @@ class PointEvaluation:
         self.instance, self.constraints, self.objectives = instance, constraints, objectives
         self.margins = tuning.tolerances
         self.n = len(instance.model.variables)
-        self._cuts = cuts = [NodeConstraint.of(x) for x in constraints]
+        self._node_constraints = node_constraints = [NodeConstraint.of(x) for x in constraints]
         self._signs = np.array([float(g.sign) for g in goals])
-        kinds = [(c.sense, c.guard) for c in cuts]
+        kinds = [(c.sense, c.guard) for c in node_constraints]
         self._of_kind = {kind: np.flatnonzero([k == kind for k in kinds]) for kind in dict.fromkeys(kinds)}
-        self._scales = np.array([c.scale for c in cuts], dtype=float)
+        self._scales = np.array([c.scale for c in node_constraints], dtype=float)
         self._tolerances = np.where(immovable, TOLERANCE, tuning.tolerances.limit)
-        values = [c.value for c in cuts]
-        bounds = [c.value if c.limit is None else c.limit for c in cuts]
+        values = [c.value for c in node_constraints]
+        bounds = [c.value if c.limit is None else c.limit for c in node_constraints]
         nodes, model = (*values, *bounds, *(g.node for g in goals)), instance.model
         self._sides = model.function(("screen", nodes), lambda: model.program.compile(nodes))
-        self._constant = {len(cuts) + k: c.bound for k, c in enumerate(cuts) if c.limit is None}
+        self._constant = {len(node_constraints) + k: c.bound for k, c in enumerate(node_constraints) if c.limit is None}
 
     def evaluate(self, variables: np.ndarray, combinations: np.ndarray) -> Evaluation:
         """Evaluate all that is declared for designs (designs, variables), (designs,)."""
@@ -87,7 +87,7 @@ class PointEvaluation:
         Where something that moves continuously enters a limit such a point is of use only if nothing near to it keeps
         the limit more closely: ``PrimalHeuristics.on_edge``.
         """
-        phi, held = self._judged(variables, combinations, np.full(len(self._cuts), TOLERANCE))
+        phi, held = self._judged(variables, combinations, np.full(len(self._node_constraints), TOLERANCE))
         rows = np.flatnonzero(held)
         closely = np.isin(rows, rows[self.feasible_rows(variables[rows], combinations[rows])[0]])
         return rows[~closely], phi
@@ -115,17 +115,17 @@ class PointEvaluation:
         data = self.instance.data(combinations)
         keep = np.ones(np.broadcast_shapes(combinations.shape, *(x.shape for x in variables)), dtype=bool)
         most = self.objectives.values_of(cutoffs + 2 * self.margins.tie * np.maximum(np.abs(cutoffs), 1.0))
-        limits = len(self._cuts)
+        limits = len(self._node_constraints)
         with np.errstate(all="ignore"):
             sides = self._screen([*variables, *data])
             for k, sign in enumerate(self._signs[: cutoffs.shape[1]]):
                 keep &= sign * sides[2 * limits + k] <= most[:, k, None]
-            for j, cut in enumerate(self._cuts):
+            for j, constraint in enumerate(self._node_constraints):
                 value, limit = sides[j], sides[limits + j]
                 # Where a limit holds within the tolerance, it does within twice that of its own size, and little more.
-                margin = 4 * TOLERANCE * np.maximum(np.abs(limit), cut.scale)
-                kept = np.True_ if cut.sense == "at_least" else value <= limit + margin
-                kept = kept if cut.sense == "at_most" else kept & (value >= limit - margin)
+                margin = 4 * TOLERANCE * np.maximum(np.abs(limit), constraint.scale)
+                kept = np.True_ if constraint.sense == "at_least" else value <= limit + margin
+                kept = kept if constraint.sense == "at_most" else kept & (value >= limit - margin)
                 for k in self.constraints[j].void_without:
                     kept = kept | np.isnan(np.asarray(data[k], dtype=float))
                 keep &= kept
@@ -144,7 +144,7 @@ class PointEvaluation:
             sides = np.empty((len(raw), count))
             for row, x in zip(sides, raw, strict=True):
                 row[:] = x
-            limits = len(self._cuts)
+            limits = len(self._node_constraints)
             phi = self.objectives.phi_of((sides[2 * limits :] * self._signs[:, None]).T)
             held = void_limits(self.constraints, data, count).T
             for (sense, guard), rows in self._of_kind.items():

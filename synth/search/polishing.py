@@ -174,7 +174,7 @@ def polish_variables(
         tasks = Tasks(
             weights=np.tile(np.eye(goals)[j], (len(moving), 1)),
             slopes=np.zeros((len(moving), goals)),
-            caps=cutoffs[moving],
+            cutoffs=cutoffs[moving],
             goal_scales=form.objectives.scales,
             t_weight=0.0,
         )

@@ -122,24 +122,6 @@ class PrimalHeuristics:
             importance = np.maximum(excess, float(self.rule.tolerance.min())) ** -2.0
         self.form.continuous.learn(tasks, found, importance)
 
-    def fathom(self, small: Boxes) -> Boxes:
-        """Look into boxes too small to split; return those that may still hold something nothing known covers."""
-        form = self.form
-        self.offer(form.boxes.inside(small, 0.5), form.boxes.combination(small))
-        rest = small.take(self.rule.possible_gain(form.objectives.phi_of(small.bounds), small.cell) > 0)
-        # What is left is feasible by the tolerance alone, or nearly so.
-        _, stood_for = self.on_edge(form.boxes.inside(rest, 0.5), form.boxes.combination(rest), len(rest))
-        low, high = form.boxes.ends(rest)
-        # A single point is settled by its evaluation; a small box only nearly so.
-        left = np.any(high - low > 1e-12 * np.abs(high), axis=1)
-        phi = form.objectives.phi_of(rest.bounds)
-        # Whatever the tolerance of the rule, what a design gains by using up the tolerance is not worth telling apart.
-        left[stood_for] = True
-        worth = np.zeros(phi.shape[1])
-        worth[self.rule.columns] = np.maximum(form.tuning.tolerances.edge_worth - self.rule.tolerance, 0.0)
-        phi[stood_for] += worth
-        return rest.take(left & (self.rule.possible_gain(phi, rest.cell) > 0))
-
     def _tightened(self, boxes: Boxes) -> Boxes:
         cutoffs = self.rule.cutoffs(self.form.objectives.phi_of(boxes.bounds), boxes.cell)
         return self.form.boxes.contract(boxes, cutoffs, every_goal=self.every_goal)

@@ -78,8 +78,8 @@ def elasticities(form: Formulation, candidates: Sequence[Candidate], chosen: int
     tight, sizes = _tight(form, result), _sizes(form, result)
     # Where a tight limit speaks of a requirement, the least change breaks what no variable can restore.
     _, follows = _shares(form, combinations)
-    spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.cuts)), tight)
-    logs, noise = np.array(form.continuous.rows.log_cuts, dtype=bool), form.tuning.tolerances.multiplier_noise
+    spoken = np.einsum("iqr,rj,ij->iq", follows, speaking.reshape(len(positions), len(form.node_constraints)), tight)
+    logs, noise = np.array(form.continuous.rows.log_constraints, dtype=bool), form.tuning.tolerances.multiplier_noise
     for k in range(chosen):
         if not form.objectives.log[k]:
             continue
@@ -121,10 +121,10 @@ def optima(
     data = form.instance.data(combinations)
     sizes = _sizes(form, form.instance.evaluate(start, data)) if sizes is None else sizes
     bounds = _bounds(form, answer.variables, data)
-    logs = np.array(form.continuous.rows.log_cuts, dtype=bool)
-    signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.cuts])
+    logs = np.array(form.continuous.rows.log_constraints, dtype=bool)
+    signs = np.array([1.0 if c.sense == "at_least" else -1.0 for c in form.node_constraints])
     with np.errstate(all="ignore"):
-        limits = signs * answer.cut_multipliers * np.where(logs, 1.0, bounds / sizes)
+        limits = signs * answer.constraint_multipliers * np.where(logs, 1.0, bounds / sizes)
     limits = np.where(np.isfinite(limits) & (bounds != 0), limits, np.nan)
     positions = requirement_positions(form)
     slopes = form.model.function(("gradient", form.continuous.rows), lambda: _gradient(form))
@@ -136,7 +136,13 @@ def optima(
             known[:, j] = x[solved] if isinstance(x, np.ndarray) and x.ndim else x
         points = answer.variables[solved]
         own, at_ends = slopes(
-            form, points, known, sizes[solved], answer.cut_multipliers[solved], answer.goal_multipliers[solved], k
+            form,
+            points,
+            known,
+            sizes[solved],
+            answer.constraint_multipliers[solved],
+            answer.goal_multipliers[solved],
+            k,
         )
         ends[solved] = at_ends * points
         places = list(positions.values())
@@ -144,7 +150,7 @@ def optima(
         slope = _sum_of_shares(share, own[:, places])
         requirements[solved] = slope * known[:, places]
     return Optima(
-        answer.variables, answer.phi[:, k], answer.converged, answer.cut_multipliers, limits, requirements, ends
+        answer.variables, answer.phi[:, k], answer.converged, answer.constraint_multipliers, limits, requirements, ends
     )
 
 
@@ -247,27 +253,27 @@ def _gradient(form: Formulation) -> Any:
     rows, program, n = form.continuous.rows, form.model.program, form.n
     x, data = ca.SX.sym("x", n), ca.SX.sym("data", program.n_inputs - n)
     values = dict(zip(program.outputs, program.symbolic(ca.vertsplit(ca.vertcat(x, data))), strict=True))
-    bounds, sizes = ca.SX.sym("bounds", len(rows.cuts)), ca.SX.sym("sizes", len(rows.cuts))
-    cut_rows = []
-    for j, cut in enumerate(rows.cuts):
-        value, limit = values[cut.value], bounds[j] if cut.limit is None else values[cut.limit]
-        row = ca.log(value / limit) if rows.log_cuts[j] else (value - limit) / sizes[j]
-        cut_rows.append(-row if cut.sense == "at_least" else row)
+    bounds, sizes = ca.SX.sym("bounds", len(rows.constraints)), ca.SX.sym("sizes", len(rows.constraints))
+    constraint_rows = []
+    for j, constraint in enumerate(rows.constraints):
+        value, limit = values[constraint.value], bounds[j] if constraint.limit is None else values[constraint.limit]
+        row = ca.log(value / limit) if rows.log_constraints[j] else (value - limit) / sizes[j]
+        constraint_rows.append(-row if constraint.sense == "at_least" else row)
     phi = []
     for j, goal in enumerate(rows.goals):
         form_of = ca.log(values[goal.node]) if rows.log_goals[j] else values[goal.node]
         phi.append(goal.sign * form_of)
-    cut_weights, goal_weights = ca.SX.sym("cuts", len(cut_rows)), ca.SX.sym("goals", len(phi))
-    total = ca.dot(cut_weights, ca.vertcat(*cut_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
+    constraint_weights, goal_weights = ca.SX.sym("constraints", len(constraint_rows)), ca.SX.sym("goals", len(phi))
+    total = ca.dot(constraint_weights, ca.vertcat(*constraint_rows)) + ca.dot(goal_weights, ca.vertcat(*phi))
     wanted = [ca.gradient(total, data), ca.gradient(total, x)]
-    function = ca.Function("gradient", [x, data, bounds, sizes, cut_weights, goal_weights], wanted)
+    function = ca.Function("gradient", [x, data, bounds, sizes, constraint_weights, goal_weights], wanted)
 
     def evaluate(
         own: Formulation,
         points: np.ndarray,
         known: np.ndarray,
         size: np.ndarray,
-        cuts: np.ndarray,
+        constraints: np.ndarray,
         goals: np.ndarray,
         k: int,
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -277,7 +283,7 @@ def _gradient(form: Formulation) -> Any:
         weights[:, k] += 1.0 / units[k]
         limits = np.tile(own.bounds, (len(points), 1))
         # One call for all designs, a column each.
-        found = function(points.T, clean.T, limits.T, size.T, np.where(cuts == 0, 0.0, cuts).T, weights.T)
+        found = function(points.T, clean.T, limits.T, size.T, np.where(constraints == 0, 0.0, constraints).T, weights.T)
         slopes, ends = (np.nan_to_num(np.asarray(part)).T for part in found)
         return slopes, ends
 
@@ -291,7 +297,7 @@ def sides(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]) 
 
 def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return the size of every limit as its row measures it (designs, limits)."""
-    sizes = np.empty((len(result.feasible), len(form.cuts)))
+    sizes = np.empty((len(result.feasible), len(form.node_constraints)))
     for j, x in enumerate(form.constraints):
         value, limit = result.limits[x.name]
         size = np.maximum(np.maximum(np.abs(value), np.abs(limit)), x.scale)
@@ -301,20 +307,20 @@ def _sizes(form: Formulation, result: Evaluation) -> np.ndarray:
 
 def _bounds(form: Formulation, variables: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
     """Return the limits themselves (designs, limits)."""
-    moving = [cut.limit for cut in form.cuts if cut.limit is not None]
+    moving = [constraint.limit for constraint in form.node_constraints if constraint.limit is not None]
     limits = form.model.function(("right sides", *moving), lambda: form.model.program.compile(moving))
     with np.errstate(all="ignore"):
         found = iter(limits([*variables.T, *data]))
-    bounds = np.empty((len(variables), len(form.cuts)))
-    for j, cut in enumerate(form.cuts):
-        bounds[:, j] = cut.bound if cut.limit is None else next(found)
+    bounds = np.empty((len(variables), len(form.node_constraints)))
+    for j, constraint in enumerate(form.node_constraints):
+        bounds[:, j] = constraint.bound if constraint.limit is None else next(found)
     return bounds
 
 
 def _tight(form: Formulation, result: Evaluation) -> np.ndarray:
     """Return which limits that no variable can move are active (designs, limits)."""
     fixed = form.unmoved(gridded=True)
-    tight = np.zeros((len(result.feasible), len(form.cuts)), dtype=bool)
+    tight = np.zeros((len(result.feasible), len(form.node_constraints)), dtype=bool)
     for j in np.flatnonzero(fixed):
         x = form.constraints[j]
         tight[:, j] = np.abs(residual(*result.limits[x.name], x.sense, x.scale)) < form.tuning.tolerances.tight

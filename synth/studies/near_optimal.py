@@ -1,8 +1,8 @@
 """Designs of other parts, counts or choices that are nearly as good as a chosen one.
 
 Boxes of everything that keeps within so many per cent of the chosen design are tightened and split until every
-combination is shown to hold such a design or shown to hold none: the tree of the search with fixed caps. Of those that
-do, a few that differ most are made as good as their parts allow.
+combination is shown to hold such a design or shown to hold none: the tree of the search with fixed cutoffs. Of those
+that do, a few that differ most are made as good as their parts allow.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.search.archive import Archive, Candidate
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
+from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
 from synth.search.polishing import polish_discrete, polish_variables
 from synth.search.primal_heuristics import PrimalHeuristics, roundings
@@ -196,25 +197,25 @@ def _share(within: Any) -> float:
 
 
 class _Near:
-    """The rule of the tree: every combination that holds a design within the caps.
+    """The rule of the tree: every combination that holds a design within the cutoffs.
 
     ``found`` holds, per combination, the design that is least worse than the chosen one, and by how much.
     """
 
     proves = False
 
-    def __init__(self, traded: int, own: np.ndarray, caps: np.ndarray, sizes: np.ndarray, tie: float) -> None:
+    def __init__(self, traded: int, own: np.ndarray, cutoffs: np.ndarray, sizes: np.ndarray, tie: float) -> None:
         self.columns, self.tie = list(range(traded)), tie
-        self.tolerance, self.fixed_cutoffs = sizes, caps
+        self.tolerance, self.fixed_cutoffs = sizes, cutoffs
         self.own = own
         self.found: dict[int, tuple[float, Candidate]] = {}
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return the caps, the same for every box."""
+        """Return the cutoffs, the same for every box."""
         return np.tile(self.fixed_cutoffs[: lower.shape[1]] + self.tie, (len(lower), 1))
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
-        """Return how far within the caps a box could be."""
+        """Return how far within the cutoffs a box could be."""
         with np.errstate(all="ignore"):
             distance = (self.fixed_cutoffs[self.columns] + self.tie - lower[:, self.columns]).min(axis=1)
         room: np.ndarray = np.where(np.isnan(distance), np.inf, np.maximum(distance, 0.0))
@@ -284,10 +285,10 @@ class _Enumeration:
         own = np.full(len(form.goals), np.inf)
         own[:m] = form.objectives.phi_of(values[:1])[0]
         slack = np.where(form.objectives.log[:m], np.log1p(self.share), self.share * size / form.objectives.scales[:m])
-        caps = np.full(len(form.goals), np.inf)
-        caps[:m] = own[:m] + slack
+        cutoffs = np.full(len(form.goals), np.inf)
+        cutoffs[:m] = own[:m] + slack
         tie = form.tuning.tolerances.tie
-        return _Near(m, own, caps, np.maximum(slack, tie), tie)
+        return _Near(m, own, cutoffs, np.maximum(slack, tie), tie)
 
     def _working(self, open_boxes: int) -> None:
         if self.progress is not None:
@@ -328,7 +329,7 @@ class _Enumeration:
         """Look at everything; tell whether every combination is decided."""
         form, near, batch_size = self.form, self.near, self.limits.batch
         heuristics = PrimalHeuristics(form, near, self.rng, every_goal=False)
-        caps = near.fixed_cutoffs[: form.bounded] + near.tie
+        cutoffs = near.fixed_cutoffs[: form.bounded] + near.tie
         stack = [form.boxes.lean(form.boxes.root())]
         while stack:
             boxes = stack.pop()
@@ -338,7 +339,7 @@ class _Enumeration:
             if self.looked > self.limits.boxes or len(near.found) > self.limits.most:
                 return False
             self.looked += len(batch)
-            batch = form.boxes.contract(batch, caps)
+            batch = form.boxes.contract(batch, cutoffs)
             batch = self._open(batch.take(near.possible_gain(form.objectives.phi_of(batch.bounds)) > 0))
             if not len(batch):
                 continue
@@ -346,7 +347,7 @@ class _Enumeration:
             batch = self._open(batch)
             batch, small = form.boxes.split(batch)
             if len(small):
-                left = self._open(heuristics.fathom(small))
+                left = self._open(left_open(form, small, near, heuristics))
                 self.undecided.update(form.boxes.cells.all_members(left.cell, self.limits.most).tolist())
             if len(batch):
                 stack.append(batch)
@@ -382,9 +383,9 @@ class _Enumeration:
             self._offer(start, combinations)
             return
         count, goals = len(combinations), len(form.goals)
-        slopes, caps = np.zeros((count, goals)), np.full((count, goals), np.inf)
-        slopes[:, :m], caps[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
-        tasks = Tasks(np.zeros((count, goals)), slopes, caps, form.objectives.scales, t_weight=1.0)
+        slopes, cutoffs = np.zeros((count, goals)), np.full((count, goals), np.inf)
+        slopes[:, :m], cutoffs[:, :m] = near.tolerance / near.tolerance.max(), near.own[:m]
+        tasks = Tasks(np.zeros((count, goals)), slopes, cutoffs, form.objectives.scales, t_weight=1.0)
         answer = form.continuous.solve_many(tasks, combinations, start)
         if not form.gridded.any():
             self._offer(answer.variables, combinations)
@@ -451,9 +452,9 @@ class _Enumeration:
             return known
         gap = self.limits.settling_gap
         slack = np.where(form.objectives.log[:m], -np.log1p(-gap), gap / self.share * near.tolerance)
-        caps = near.fixed_cutoffs.copy()
-        caps[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
-        rule = EpsilonCover(range(m), slack, caps, form.new_archive(range(m)))
+        cutoffs = near.fixed_cutoffs.copy()
+        cutoffs[:m] = near.own[:m] + max(float(near.worse(known.phi[None, :])[0]), 0.0) * near.tolerance + near.tie
+        rule = EpsilonCover(range(m), slack, cutoffs, form.new_archive(range(m)))
         rule.take(np.array([combination]), known.variables[None, :], known.phi[None, :])
         branch_and_bound(
             form, form.boxes.leaves(np.array([combination])), rule, self.clock, self.rng, self.limits.settling_boxes

@@ -44,13 +44,13 @@ class Workload:
         self.model = model = instance.model
         self.n = len(model.variables)
         self.rows = Rows(
-            cuts=tuple(NodeConstraint.of(x) for x in model.constraints),
+            constraints=tuple(NodeConstraint.of(x) for x in model.constraints),
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
-            log_cuts=tuple(x.sense != "equal" for x in model.limits),
+            log_constraints=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),
             log_variables=tuple(bool(x > 0) for x in instance.ranges.lower),
         )
-        self.bounds = [0.0] * len(self.rows.cuts)
+        self.bounds = [0.0] * len(self.rows.constraints)
         rng = np.random.default_rng(seed)
         outer = rng.uniform(0.15, 0.45, SAMPLES)
         force, ramp = np.exp(rng.uniform(np.log([[4e3], [0.1]]), np.log([[6e4], [4.0]]), (2, SAMPLES)))
@@ -84,7 +84,7 @@ class Workload:
 
         def solve() -> None:
             for k in range(count):
-                task = Task(tasks.weights[k], tasks.slopes[k], tasks.caps[k], tasks.goal_scales, tasks.t_weight)
+                task = Task(tasks.weights[k], tasks.slopes[k], tasks.cutoffs[k], tasks.goal_scales, tasks.t_weight)
                 data = [float(x[k]) for x in columns]
                 nlp.solve(task, data, self.start[k], self.low[k], self.high[k], self.bounds, self.void[k])
 

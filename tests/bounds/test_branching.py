@@ -11,15 +11,17 @@ from tests.sample_problems.strut import designs_of, strut_form
 
 def test_weights_are_learned_for_each_set_of_objectives():
     bounding = strut_form().bounding
-    cuts, branching = len(bounding.question.cuts), bounding.branching
-    multipliers = np.zeros((40, cuts + 3))
-    multipliers[:20, [0, cuts]] = 3.0, 1.0  # the first objective hinges on the first limit
-    multipliers[20:, [1, cuts + 1]] = 1.0, 1.0
+    constraints, branching = len(bounding.question.constraints), bounding.branching
+    multipliers = np.zeros((40, constraints + 3))
+    multipliers[:20, [0, constraints]] = 3.0, 1.0  # the first objective hinges on the first limit
+    multipliers[20:, [1, constraints + 1]] = 1.0, 1.0
     branching.learn(multipliers, np.ones(40))
     weights = branching.weights
-    assert np.argmax(weights[1, :cuts]) == 0
-    assert np.argmax(weights[2, :cuts]) == 1
-    assert weights[1, cuts + 1] == weights[2, cuts] == 0.0  # an objective without a cutoff decides nothing
+    assert np.argmax(weights[1, :constraints]) == 0
+    assert np.argmax(weights[2, :constraints]) == 1
+    assert (
+        weights[1, constraints + 1] == weights[2, constraints] == 0.0
+    )  # an objective without a cutoff decides nothing
     for one, other in itertools.pairwise((weights[0], weights[3])):
         np.testing.assert_array_equal(one, other)  # no cutoff, or both: all problems count
     assert weights[0, 0] == pytest.approx(0.375, abs=0.01)
@@ -27,8 +29,8 @@ def test_weights_are_learned_for_each_set_of_objectives():
 
 def test_what_is_important_is_learned_most():
     bounding = strut_form().bounding
-    cuts, branching = len(bounding.question.cuts), bounding.branching
-    multipliers = np.zeros((10, cuts + 3))
+    constraints, branching = len(bounding.question.constraints), bounding.branching
+    multipliers = np.zeros((10, constraints + 3))
     multipliers[:9, 0] = multipliers[9:, 1] = 1.0
     branching.learn(multipliers, np.array([1.0] * 9 + [91.0]))
     assert branching.weights[0, 1] == pytest.approx(0.91, abs=0.01)
@@ -36,9 +38,9 @@ def test_what_is_important_is_learned_most():
 
 def test_what_teaches_nothing_is_passed_over():
     bounding = strut_form().bounding
-    cuts, branching = len(bounding.question.cuts), bounding.branching
+    constraints, branching = len(bounding.question.constraints), bounding.branching
     before = branching.weights
-    multipliers = np.zeros((2, cuts + 3))
+    multipliers = np.zeros((2, constraints + 3))
     multipliers[1, 0] = np.nan
     branching.learn(multipliers, np.ones(2))
     assert branching.learned == 0
@@ -86,7 +88,7 @@ def test_influences_are_slopes_between_logarithms():
     form = strut_form()
     question, influences = form.bounding.question, form.bounding._influences
     names = [v.name for v in form.model.variables]
-    mass, flexibility, width = influences.anywhere[len(question.cuts) :]
+    mass, flexibility, width = influences.anywhere[len(question.constraints) :]
     for objective, expected in ((mass, (1, 1)), (flexibility, (1, 1)), (width, (1, 0))):
         found = [objective[names.index(name)] for name in ("width", "length")]
         np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-12)

@@ -67,15 +67,15 @@ class Case:
         Inputs: variables, two columns of the first slot, one of the second, a requirement.
     n : int
         Variables.
-    cuts, goals : list
+    constraints, goals : list
     range_ : (float, float)
         Of all inputs.
     """
 
-    def __init__(self, program, n, cuts, goals, range_, rng, boxes):
-        self.rng, self.n, self.cuts, self.goals, self.boxes = rng, n, cuts, goals, boxes
-        self.bounds = [c.bound for c in cuts]
-        nodes = PropagatedNodes(program, MovingInputs(n, (0, 0, 1, -1), (1,)), cuts, goals)
+    def __init__(self, program, n, constraints, goals, range_, rng, boxes):
+        self.rng, self.n, self.constraints, self.goals, self.boxes = rng, n, constraints, goals, boxes
+        self.bounds = [c.bound for c in constraints]
+        nodes = PropagatedNodes(program, MovingInputs(n, (0, 0, 1, -1), (1,)), constraints, goals)
         self.contractor = c = Contractor(nodes)
         least, most = range_
         columns = rng.uniform(least, most, (3, ROWS))
@@ -107,18 +107,21 @@ class Case:
         self.low, self.high = ends.min(axis=0), ends.max(axis=0)
         whole = rng.random((boxes, n)) < 0.2
         self.low, self.high = np.where(whole, least, self.low), np.where(whole, most, self.high)
-        self.caps = rng.normal(0, 3, (boxes, len(goals))) * most
-        self.steep = rng.random((len(cuts) + len(goals), n))
-        self.spreads = [rng.random((CLUSTERS, len(cuts) + len(goals))).astype(np.float32) for _ in range(2)]
+        self.cutoffs = rng.normal(0, 3, (boxes, len(goals))) * most
+        self.steep = rng.random((len(constraints) + len(goals), n))
+        self.spreads = [rng.random((CLUSTERS, len(constraints) + len(goals))).astype(np.float32) for _ in range(2)]
 
     def numpy(self, code, capped, passes):
         """Contract box by box: in NumPy a rule may look at all boxes of a batch."""
         alive, low, high = np.zeros(self.boxes, dtype=bool), self.low.copy(), self.high.copy()
-        goals, opens = np.zeros((self.boxes, len(self.goals))), np.zeros((self.boxes, len(self.cuts)), dtype=bool)
+        goals, opens = (
+            np.zeros((self.boxes, len(self.goals))),
+            np.zeros((self.boxes, len(self.constraints)), dtype=bool),
+        )
         for b in range(self.boxes):
             ends = [(low[b : b + 1, i], high[b : b + 1, i]) for i in range(self.n)]
             tables = [(x[self.cell[b, f]][None], y[self.cell[b, f]][None]) for f, x, y in self.tables]
-            caps = [self.caps[b : b + 1, j] for j in range(len(self.goals))] if capped else None
+            caps = [self.cutoffs[b : b + 1, j] for j in range(len(self.goals))] if capped else None
             with np.errstate(all="ignore"):
                 dead, least, flags = code.function(self.root)(
                     ends, tables, self.constants, self.bounds, caps, self.root.low, self.root.high, passes, 1
@@ -145,19 +148,19 @@ class Case:
             TUNING.tolerances.margins,
             sizes,
         )
-        prepared = Prepared(len(self.cuts), question)
+        prepared = Prepared(len(self.constraints), question)
         boxes = Boxes(
             self.cell,
             self.low,
             self.high,
-            np.full(self.caps.shape, -np.inf),
+            np.full(self.cutoffs.shape, -np.inf),
             np.ones((self.boxes, self.n + 2), dtype=np.float32),
             np.arange(self.boxes),
         )
         return loaded(code).contract(
             prepared,
             boxes,
-            self.caps if capped else None,
+            self.cutoffs if capped else None,
             np.ones((1, len(self.steep))),
             passes,
             workers,
@@ -187,14 +190,16 @@ def limits_at(rng, program, nodes, inputs):
     """Return limits on some nodes that hold at a point with a little to spare, with sides at random."""
     with np.errstate(all="ignore"):
         values = [float(np.asarray(v).ravel()[0]) for v in program.compile(nodes)(inputs)]
-    cuts = []
+    constraints = []
     for node, value in zip(nodes, values, strict=True):
         # With nothing to spare the last bit of a logarithm would decide whether a limit is open.
         spare = 1e-3 * (1 + abs(value)) if np.isfinite(value) else np.inf
         sense = "at_most" if rng.random() < 0.5 or not np.isfinite(value) else "at_least"
         level = value if np.isfinite(value) else 0.0
-        cuts.append(NodeConstraint(sense, node, None, 1e-9, level + spare if sense == "at_most" else level - spare))
-    return cuts
+        constraints.append(
+            NodeConstraint(sense, node, None, 1e-9, level + spare if sense == "at_most" else level - spare)
+        )
+    return constraints
 
 
 OF_ONE_SIGN = [(0.2, 2.5), (1.0, 3.0)]
@@ -248,8 +253,8 @@ def test_every_rule_agrees(range_, capped):
     goals = [symbols[0] * data[0] + data[1], data[2] / data[3] - symbols[1]]
     program = Program([*symbols, *data], [*outputs, *goals])
     point = rng.uniform(*range_, n + 4)
-    cuts = limits_at(rng, program, program.outputs[: len(outputs)], list(point))
-    case = Case(program, n, cuts, [Goal(program.outputs[-2], 1), Goal(program.outputs[-1], -1)], range_, rng, 60)
+    constraints = limits_at(rng, program, program.outputs[: len(outputs)], list(point))
+    case = Case(program, n, constraints, [Goal(program.outputs[-2], 1), Goal(program.outputs[-1], -1)], range_, rng, 60)
     # Boxes around the point stay alive, so that what each rule narrows is compared.
     around = rng.random(case.low.shape) < 0.97
     case.low = np.where(around, np.minimum(case.low, point[:n]), case.low)
@@ -313,9 +318,9 @@ def random_case(seed, makers, boxes=60):
     program = Program([*symbols, *data], pool[-6:], calls)
     range_ = [(-1.5, 2.0), (0.1, 2.0), (1.0, 4.0)][rng.integers(3)]
     node = program.outputs
-    cuts = limits_at(rng, program, node[:2], list(rng.uniform(*range_, n + 4)))
-    cuts.append(NodeConstraint(["at_most", "at_least", "equal"][rng.integers(3)], node[2], node[3], 1e-9))
-    return Case(program, n, cuts, [Goal(node[4], 1), Goal(node[5], -1)], range_, rng, boxes)
+    constraints = limits_at(rng, program, node[:2], list(rng.uniform(*range_, n + 4)))
+    constraints.append(NodeConstraint(["at_most", "at_least", "equal"][rng.integers(3)], node[2], node[3], 1e-9))
+    return Case(program, n, constraints, [Goal(node[4], 1), Goal(node[5], -1)], range_, rng, boxes)
 
 
 @pytest.mark.slow
@@ -477,8 +482,8 @@ def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
     monkeypatch.delitem(box_source.rules.FORWARD, ca.OP_FLOOR)
     x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
     program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
-    cuts = [NodeConstraint("at_most", program.outputs[0], None, 1e-9, 1.0)]
-    case = Case(program, 1, cuts, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
+    constraints = [NodeConstraint("at_most", program.outputs[0], None, 1e-9, 1.0)]
+    case = Case(program, 1, constraints, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
     assert box_source.source(code) is None
     assert compiled_boxes.compiled(code, CompilingEffort()) is None

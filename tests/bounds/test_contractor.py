@@ -78,7 +78,7 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
     ``data`` holds, per data input, a number or the column of the factor it belongs to.
     """
     n, factor_of = contractor.nodes.layout.n_variables, contractor.nodes.layout.factor_of
-    right = [cut.bound for cut in contractor.nodes.cuts] if bounds is None else bounds
+    right = [constraint.bound for constraint in contractor.nodes.constraints] if bounds is None else bounds
     alone = [np.nan if f >= 0 else x for x, f in zip(data, factor_of, strict=True)]
     with np.errstate(all="ignore"):
         constants = [float(np.ravel(v)[0]) for v in contractor.constant_values([None] * n + alone)]
@@ -157,22 +157,22 @@ class Question:
     def limits(self):
         """Return limits that the points keep (some with nothing to spare), the caps they keep, and which points."""
         a, b, c, e, void = self.program.outputs
-        cuts, kept = [], self.exists.copy()
+        constraints, kept = [], self.exists.copy()
         for node, value in ((a, self.values[0]), (b, self.values[1])):
             sense = ("at_most", "at_least")[self.rng.integers(2)]
             level = float(self.rng.choice(value)) if np.isfinite(value).any() else 0.0
-            cuts.append(NodeConstraint(sense, node, None, 1e-9, level))
+            constraints.append(NodeConstraint(sense, node, None, 1e-9, level))
             kept &= (value <= level) if sense == "at_most" else (value >= level)
-        cuts += [NodeConstraint("at_most", a, b, 1e-9), NodeConstraint("at_least", c, void, 1e-9)]
+        constraints += [NodeConstraint("at_most", a, b, 1e-9), NodeConstraint("at_least", c, void, 1e-9)]
         kept &= self.values[0] <= self.values[1]
         kept &= np.isnan(self.values[4]) | (self.values[2] >= self.values[4])
         goals = [Goal(c, 1), Goal(e, -1)]
         spare = self.rng.exponential(0.3, (2, self.boxes)) * (self.rng.random((2, self.boxes)) < 0.6)
         caps = [self.values[2] + spare[0] + TIE, -self.values[3] + spare[1] + TIE]
-        return cuts, goals, caps, kept
+        return constraints, goals, caps, kept
 
-    def contracted(self, cuts, goals, caps, passes):
-        contractor = Contractor(PropagatedNodes(self.program, self.layout, cuts, goals))
+    def contracted(self, constraints, goals, caps, passes):
+        contractor = Contractor(PropagatedNodes(self.program, self.layout, constraints, goals))
         return contraction(contractor, self.data, self.trees, self.cell, self.low, self.high, caps, passes)
 
 
@@ -180,8 +180,8 @@ class Question:
 @settings(deadline=None, derandomize=True, max_examples=120)
 def test_a_box_with_a_feasible_point_survives_and_keeps_it(seed, passes, capped):
     question = Question(seed)
-    cuts, goals, caps, kept = question.limits()
-    result = question.contracted(cuts, goals, caps if capped else None, passes)
+    constraints, goals, caps, kept = question.limits()
+    result = question.contracted(constraints, goals, caps if capped else None, passes)
     assert result.alive[kept].all()
     slack = 1e-7 * (1 + np.abs(question.point))
     good = (question.point >= result.low - slack) & (question.point <= result.high + slack)
@@ -195,7 +195,7 @@ def test_the_random_questions_are_worth_asking():
     asked = [(q, q.limits()) for q in tried]
     kept = np.concatenate([x[3] for _, x in asked])
     assert 0.1 < kept.mean() < 0.9
-    results = [q.contracted(cuts, goals, caps, 2) for q, (cuts, goals, caps, _) in asked]
+    results = [q.contracted(constraints, goals, caps, 2) for q, (constraints, goals, caps, _) in asked]
     assert np.mean(np.concatenate([r.alive for r in results])) < 0.95
     width = np.concatenate([(r.high - r.low)[r.alive].ravel() for r in results])
     before = np.concatenate([(q.high - q.low)[r.alive].ravel() for q, r in zip(tried, results, strict=True)])
@@ -235,9 +235,9 @@ def test_a_box_of_one_point_survives_its_own_values(seed):
     if not question.exists[0]:
         return
     outputs, values = question.program.outputs, question.values
-    cuts = [NodeConstraint("equal", outputs[k], None, 1e-9, float(values[k][0])) for k in (0, 1)]
-    cuts += [NodeConstraint("equal", outputs[k], outputs[k], 1e-9) for k in (2, 3)]
-    result = question.contracted(cuts, [Goal(outputs[2], 1)], [values[2] + TIE], 5)
+    constraints = [NodeConstraint("equal", outputs[k], None, 1e-9, float(values[k][0])) for k in (0, 1)]
+    constraints += [NodeConstraint("equal", outputs[k], outputs[k], 1e-9) for k in (2, 3)]
+    result = question.contracted(constraints, [Goal(outputs[2], 1)], [values[2] + TIE], 5)
     assert result.alive[0]
     np.testing.assert_allclose(result.low, question.point, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(result.high, question.point, rtol=1e-6, atol=1e-9)
@@ -246,19 +246,19 @@ def test_a_box_of_one_point_survives_its_own_values(seed):
 # -- what needs care ---------------------------------------------------------------------------------
 
 
-def contract(expressions, cuts, goals, low, high, caps=None, data=(), passes=2):
+def contract(expressions, constraints, goals, low, high, cutoffs=None, data=(), passes=2):
     """Return the contraction of one box of a program of x and y (and constants given with their values)."""
     symbols = [ca.SX.sym("x"), ca.SX.sym("y")]
     extra = [ca.SX.sym(f"c{k}") for k in range(len(data))]
     program = Program([*symbols, *extra], expressions(*symbols, *extra))
     node = program.outputs
-    made = [NodeConstraint(s, node[v], b if b is None else node[b], 1e-9, level) for s, v, b, level in cuts]
+    made = [NodeConstraint(s, node[v], b if b is None else node[b], 1e-9, level) for s, v, b, level in constraints]
     nodes = PropagatedNodes(
         program, MovingInputs(2, (-1,) * len(data)), made, [Goal(node[k], sign) for k, sign in goals]
     )
     contractor = Contractor(nodes)
     ends = np.array([low], dtype=float), np.array([high], dtype=float)
-    return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, caps, passes)
+    return contraction(contractor, data, [], np.zeros((1, 0), dtype=int), *ends, cutoffs, passes)
 
 
 def test_what_cannot_hold_dies_and_what_can_is_narrowed():
@@ -268,7 +268,7 @@ def test_what_cannot_hold_dies_and_what_can_is_narrowed():
     assert result.low[0] == pytest.approx([1, 1], abs=1e-4)
     assert result.bounds[0, 0] == pytest.approx(1, abs=1e-4)
     assert not contract(lambda x, y: [x + y, x], limit, [(1, 1)], [0, 0], [1.4, 1.4]).alive[0]
-    assert not contract(lambda x, y: [x + y, x], limit, [(1, 1)], [0, 0], [2, 2], caps=[0.9]).alive[0]
+    assert not contract(lambda x, y: [x + y, x], limit, [(1, 1)], [0, 0], [2, 2], cutoffs=[0.9]).alive[0]
 
 
 def test_bounds_are_not_taken_from_where_a_limit_fails():
@@ -279,13 +279,13 @@ def test_bounds_are_not_taken_from_where_a_limit_fails():
 
     limit = [("at_least", 0, None, 0.1)]
     assert contract(expressions, limit, [(1, 1)], [0, 0], [2, 2]).bounds[0, 0] <= 0.01
-    assert contract(expressions, limit, [(1, 1)], [0, 0], [2, 2], caps=[0.5]).alive[0]  # x = y = 1.0488 has f = 0.01
+    assert contract(expressions, limit, [(1, 1)], [0, 0], [2, 2], cutoffs=[0.5]).alive[0]  # x = y = 1.0488 has f = 0.01
 
 
 def test_a_comparison_used_as_a_number_jumps():
     result = contract(lambda x, y: [(x > 0.5) * (-10.0) + x], [], [(0, 1)], [0, 0], [1, 1])
     assert result.bounds[0, 0] <= -9.5
-    assert contract(lambda x, y: [(x > 0.5) * (-10.0) + x], [], [(0, 1)], [0, 0], [1, 1], caps=[-5.0]).alive[0]
+    assert contract(lambda x, y: [(x > 0.5) * (-10.0) + x], [], [(0, 1)], [0, 0], [1, 1], cutoffs=[-5.0]).alive[0]
 
 
 @pytest.mark.parametrize(
@@ -305,7 +305,7 @@ def test_nothing_known_never_means_no(choose):
     def expressions(x, y, zero):
         return [choose(ca.SX.binary(ca.OP_COPYSIGN, x, y) * zero, x)]
 
-    result = contract(expressions, [], [(0, 1)], [0.1, -1], [0.9, 1], caps=[6.0], data=[0.0])
+    result = contract(expressions, [], [(0, 1)], [0.1, -1], [0.9, 1], cutoffs=[6.0], data=[0.0])
     assert result.alive[0]
     assert not result.bounds[0, 0] > 5.9
 
@@ -321,7 +321,7 @@ def test_a_pinned_variable_survives_a_subtraction_that_magnifies_rounding(value,
         [value, 2.0],
         [value, 2.0],
         data=[size],
-        caps=[value * 2.0],
+        cutoffs=[value * 2.0],
         passes=6,
     )
     assert result.alive[0]
@@ -337,7 +337,7 @@ def test_a_point_survives_the_inverse_of_a_saturated_exponential(value):
         return [-np.expm1(-x / (1 + y)) * (2 + y), x - 5 * y]
 
     low = [value, 0.1]
-    result = contract(expressions, [("at_least", 1, None, 0.0)], [(0, 1)], low, low, caps=[1e3], passes=6)
+    result = contract(expressions, [("at_least", 1, None, 0.0)], [(0, 1)], low, low, cutoffs=[1e3], passes=6)
     assert result.alive[0]
     assert result.low[0] == pytest.approx(low, rel=1e-12)
     assert result.high[0] == pytest.approx(low, rel=1e-12)

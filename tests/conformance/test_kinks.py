@@ -94,11 +94,11 @@ class Question:
         kept, (phi,) = self.form.points.feasible_rows(point[None, :], self.own[:1])
         if not len(kept):
             return np.inf
-        return float(task.weights @ phi + (task.t_weight * np.max(phi - task.caps) if task.t_weight else 0.0))
+        return float(task.weights @ phi + (task.t_weight * np.max(phi - task.cutoffs) if task.t_weight else 0.0))
 
     def answers(self, task: Task) -> list[tuple[float, np.ndarray]]:
         """Return cost and sizes of what the search's own solver calls optima, from every start."""
-        wide = [np.tile(x, (STARTS, 1)) for x in (task.weights, task.slopes, task.caps)]
+        wide = [np.tile(x, (STARTS, 1)) for x in (task.weights, task.slopes, task.cutoffs)]
         tasks = Tasks(wide[0], wide[1], wide[2], task.goal_scales, task.t_weight)
         found = self.form.continuous.solve_many(tasks, self.own, self.starts)
         called = np.flatnonzero(found.converged & (found.violation <= TUNING.nlp.missed))

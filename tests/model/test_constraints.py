@@ -211,8 +211,8 @@ def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
 
 def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
     form = Formulation(asked.instance, asked.chosen, len(asked.chosen), execution=Execution(compiled=False))
-    result, goals, logs = asked.result, len(form.goals), form.continuous.rows.log_cuts
-    assert form.cuts == [NodeConstraint.of(x) for x in asked.instance.constraints]
+    result, goals, logs = asked.result, len(form.goals), form.continuous.rows.log_constraints
+    assert form.node_constraints == [NodeConstraint.of(x) for x in asked.instance.constraints]
     comparable = guarded(asked, result)
     for x, log in zip(asked.instance.constraints, logs, strict=True):
         if log:  # both sides are positive wherever a design may be feasible, and so not at all points

@@ -73,16 +73,18 @@ class Small:
         sides = [s for _, value, limit in limits for s in (value, limit)]
         self.program = Program([*x, *d], [ca.SX(s) for s in [*sides, *goals]])
         nodes = iter(self.program.outputs)
-        cuts, self.bounds = [], []
+        constraints, self.bounds = [], []
         for k, (sense, _, limit) in enumerate(limits):
             value_node, limit_node = next(nodes), next(nodes)
             constant = isinstance(limit, float)
-            cuts.append(NodeConstraint(sense, value_node, None if constant else limit_node, 1e-9, guard=k in guards))
+            constraints.append(
+                NodeConstraint(sense, value_node, None if constant else limit_node, 1e-9, guard=k in guards)
+            )
             self.bounds.append(limit if constant else 0.0)
         self.rows = Rows(
-            cuts=tuple(cuts),
+            constraints=tuple(constraints),
             goals=tuple(Goal(next(nodes)) for _ in goals),
-            log_cuts=tuple(logs and c.sense != "equal" for c in cuts),
+            log_constraints=tuple(logs and c.sense != "equal" for c in constraints),
             log_goals=(logs,) * len(goals),
             log_variables=(logs,) * n,
         )
@@ -109,7 +111,7 @@ class Small:
             **{"t_weight": 0.0, **more},
         )
         points = [np.broadcast_to(np.asarray(x, dtype=float), (count, n)) for x in (start, low, high)]
-        gone = np.zeros((count, len(self.rows.cuts)), dtype=bool) if void is None else np.asarray(void)
+        gone = np.zeros((count, len(self.rows.constraints)), dtype=bool) if void is None else np.asarray(void)
         return self.solver.solve(tasks, data, *points, self.bounds, gone)
 
 
@@ -131,7 +133,9 @@ def test_the_method_has_the_numbers_that_it_is_given(code):
     for most in (4, TUNING.nlp.method.max_evaluations):
         method = InteriorPointSettings(max_evaluations=most)
         small = Small(3, 2, box, code=code, settings=NlpSettings(method=method, other_starts=()))
-        found = small.solve([4.0, 50.0], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), caps=(np.inf, np.inf))
+        found = small.solve(
+            [4.0, 50.0], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), cutoffs=(np.inf, np.inf)
+        )
         converged[most] = bool(found.converged[0])
     assert list(converged.values()) == [False, True]
 
@@ -144,7 +148,7 @@ def test_optima_of_a_whole_batch_are_the_known_ones(code):
     volume, height = rng.uniform(0.5, 8.0, count), np.where(rng.random(count) < 0.5, 50.0, 0.4)
     start = np.exp(rng.uniform(-2, 2, (count, 3)))
     solution = small.solve(
-        [volume, height], start, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), caps=(np.inf, np.inf), count=count
+        [volume, height], start, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), cutoffs=(np.inf, np.inf), count=count
     )
     side = np.cbrt(volume)
     free = height > side
@@ -156,9 +160,9 @@ def test_optima_of_a_whole_batch_are_the_known_ones(code):
     np.testing.assert_allclose(solution.variables[:, 2], third, rtol=1e-4)
     assert solution.violation.max() <= 1e-8
     # Elasticities: the surface grows with the volume, by 2/3 where the height is free.
-    np.testing.assert_allclose(solution.cut_multipliers[free, 0], 2 / 3, atol=1e-5)
-    np.testing.assert_allclose(solution.cut_multipliers[free, 1], 0.0, atol=1e-6)
-    assert (solution.cut_multipliers[~free, 1] > 0.01).all()
+    np.testing.assert_allclose(solution.constraint_multipliers[free, 0], 2 / 3, atol=1e-5)
+    np.testing.assert_allclose(solution.constraint_multipliers[free, 1], 0.0, atol=1e-6)
+    assert (solution.constraint_multipliers[~free, 1] > 0.01).all()
 
 
 @EVERY
@@ -181,7 +185,7 @@ def test_a_chebyshev_task_meets_both_objectives_at_the_same_share(code):
         1e2,
         weights=(0.0, 0.0),
         slopes=(1.0, 0.5),
-        caps=(np.log(6.0), np.log(0.5)),
+        cutoffs=(np.log(6.0), np.log(0.5)),
         t_weight=1.0,
     )
     excess = (solution.phi[0] - [np.log(6.0), np.log(0.5)]) / [1.0, 0.5]
@@ -232,7 +236,7 @@ def test_equalities_are_met_from_both_sides(code):
     assert solution.violation.max() <= 1e-9
     # d phi/d radius**2 = -1/(2 sqrt 2), times the size of the row at the start
     sizes = np.maximum((starts**2).sum(axis=1), 4.0)
-    np.testing.assert_allclose(solution.cut_multipliers[:, 0], sizes / (2 * np.sqrt(2.0)), rtol=1e-5)
+    np.testing.assert_allclose(solution.constraint_multipliers[:, 0], sizes / (2 * np.sqrt(2.0)), rtol=1e-5)
 
 
 @EVERY
@@ -244,7 +248,7 @@ def test_void_rows_and_columns_without_value_do_not_count(code):
     void = np.array([[False, False], [False, True], [True, False]])
     solution = small.solve([np.array([2.0, 2.0, np.nan]), np.array([3.0, np.nan, 3.0])], 9.0, 1.0, 10.0, void, count=3)
     np.testing.assert_allclose(solution.variables[:, 0], [3.0, 2.0, 3.0], rtol=1e-7)
-    np.testing.assert_allclose(solution.cut_multipliers, [[0, 1], [1, 0], [0, 1]], atol=1e-6)
+    np.testing.assert_allclose(solution.constraint_multipliers, [[0, 1], [1, 0], [0, 1]], atol=1e-6)
     assert solution.converged.all()
 
 
@@ -252,7 +256,7 @@ def test_void_rows_and_columns_without_value_do_not_count(code):
 def test_caps_that_cannot_be_met_are_told_by_the_violation(code):
     small = Small(3, 2, box, code=code)
     caps = np.log([[5.0, 9.0], [6.1, 9.0], [6.1, 0.5]])  # a cube of 1 has a surface of 6
-    solution = small.solve([1.0, 50.0], 1.3, 1e-2, 1e2, weights=(0.0, 1.0), slopes=(0.0, 0.0), caps=caps, count=3)
+    solution = small.solve([1.0, 50.0], 1.3, 1e-2, 1e2, weights=(0.0, 1.0), slopes=(0.0, 0.0), cutoffs=caps, count=3)
     assert solution.converged.tolist() == [False, True, False]
     # The best that can be done lies between breaking the cap alone and breaking both rows alike.
     assert 0.5 * np.log(6 / 5) <= solution.violation[0] <= np.log(6 / 5) + 1e-6
@@ -288,7 +292,7 @@ def test_guards_never_give_way_and_open_the_way_to_other_formulas(code):
         10.0,
         weights=(0.0,),
         slopes=(1.0,),
-        caps=(0.0,),
+        cutoffs=(0.0,),
         t_weight=1.0,
         elastic=1.0,
         count=3,
@@ -301,7 +305,7 @@ def test_guards_never_give_way_and_open_the_way_to_other_formulas(code):
         return [("at_least", x[0], d[0])], [x[0]]
 
     barely = Small(1, 1, tight, guards=(0,), code=code).solve(
-        [3.0], 5.0, 0.1, 10.0, t_weight=1.0, slopes=(1.0,), caps=(0.0,), elastic=5.0, weights=(0.0,)
+        [3.0], 5.0, 0.1, 10.0, t_weight=1.0, slopes=(1.0,), cutoffs=(0.0,), elastic=5.0, weights=(0.0,)
     )
     assert barely.variables[0, 0] == pytest.approx(3.0 * np.exp(GUARD_MARGIN), rel=1e-8)
 
@@ -378,7 +382,7 @@ def test_without_variables_the_rows_are_evaluated(code):
 def test_an_empty_batch_is_an_empty_answer(code):
     small = Small(3, 2, box, code=code)
     solution = small.solve(
-        [2.0, 0.9], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), caps=(np.inf, np.inf), count=0
+        [2.0, 0.9], 1.0, 1e-2, 1e2, weights=(1.0, 0.0), slopes=(0.0, 0.0), cutoffs=(np.inf, np.inf), count=0
     )
     assert solution.variables.shape == (0, 3)
     assert solution.converged.shape == (0,)
@@ -434,13 +438,13 @@ class Clutch:
         self.model = model = self.instance.model
         self.n = len(model.variables)
         self.rows = Rows(
-            cuts=tuple(NodeConstraint.of(x) for x in model.constraints),
+            constraints=tuple(NodeConstraint.of(x) for x in model.constraints),
             goals=tuple(Goal(model.quantity_node[name]) for name in OBJECTIVES),
-            log_cuts=tuple(x.sense != "equal" for x in model.limits),
+            log_constraints=tuple(x.sense != "equal" for x in model.limits),
             log_goals=(True,) * len(OBJECTIVES),
             log_variables=tuple(bool(x > 0) for x in self.instance.ranges.lower),
         )
-        self.bounds = [0.0] * len(self.rows.cuts)
+        self.bounds = [0.0] * len(self.rows.constraints)
         rng = np.random.default_rng(seed)
         # Around most of the points, which are sound (rings of a sensible ratio), something is feasible.
         combination, point = self._points(80_000, rng)
@@ -459,7 +463,7 @@ class Clutch:
         caps = phi + rng.normal(0.1, 0.3, (count, 2))
         if kind == "single":
             self.tasks = Tasks(np.tile([1.0, 1e-6], (count, 1)), np.zeros((count, 2)), caps, np.ones(2), 0.0)
-            self.tasks.caps[:, 0] = np.inf
+            self.tasks.cutoffs[:, 0] = np.inf
         else:
             slopes = np.exp(rng.uniform(-2.0, 0.5, (count, 2)))
             self.tasks = Tasks(np.full((count, 2), 1e-6), slopes, caps, np.ones(2))
@@ -483,7 +487,7 @@ class Clutch:
         result = self.model.evaluate(variables, self.data)
         with np.errstate(all="ignore"):
             phi = np.log(np.stack([result.values[name] for name in OBJECTIVES], axis=1))
-            worst = np.max(np.nan_to_num(phi - self.tasks.slopes * t[:, None] - self.tasks.caps, nan=np.inf), axis=1)
+            worst = np.max(np.nan_to_num(phi - self.tasks.slopes * t[:, None] - self.tasks.cutoffs, nan=np.inf), axis=1)
             for j, limit in enumerate(self.model.limits):
                 value, bound = result.limits[limit.name]
                 form = np.log(value / bound) * (-1 if limit.sense == "at_least" else 1)
@@ -497,7 +501,7 @@ class Clutch:
         variables, t = np.full_like(self.start, np.nan), np.full(len(self.start), np.nan)
         tasks = self.tasks
         for k in range(len(t)):
-            task = Task(tasks.weights[k], tasks.slopes[k], tasks.caps[k], tasks.goal_scales, tasks.t_weight)
+            task = Task(tasks.weights[k], tasks.slopes[k], tasks.cutoffs[k], tasks.goal_scales, tasks.t_weight)
             data = [float(np.broadcast_to(x, len(t))[k]) for x in self.data]
             answer = nlp.solve(task, data, self.start[k], self.low[k], self.high[k], self.bounds, self.void[k])
             if answer is not None:

@@ -52,12 +52,12 @@ class Kinked:
         rows = limits(x)
         self.program = Program(x, [ca.SX(s) for s in [*(side for _, a, b in rows for side in (a, b)), goal(x)]])
         nodes = iter(self.program.outputs)
-        cuts = tuple(NodeConstraint(sense, next(nodes), next(nodes), 1e-9) for sense, _, _ in rows)
-        log_cuts = tuple(logs and c.sense != "equal" for c in cuts)
-        self.rows = Rows(cuts, (Goal(next(nodes)),), log_cuts, (logs,), (logs,) * n)
+        constraints = tuple(NodeConstraint(sense, next(nodes), next(nodes), 1e-9) for sense, _, _ in rows)
+        log_constraints = tuple(logs and c.sense != "equal" for c in constraints)
+        self.rows = Rows(constraints, (Goal(next(nodes)),), log_constraints, (logs,), (logs,) * n)
         self.n, self.logs = n, logs
         self.low, self.high = np.full(n, 0.2 if logs else -3.0), np.full(n, 5.0 if logs else 3.0)
-        self.bounds, self.void = [0.0] * len(cuts), np.zeros(len(cuts), dtype=bool)
+        self.bounds, self.void = [0.0] * len(constraints), np.zeros(len(constraints), dtype=bool)
         kinks = decisions(self.program, n, self.rows)
         self.pieces = Pieces(self.program, n, self.rows, kinks)
         # As the search does it: rounded off first where both sides of a max or min move.
@@ -82,8 +82,8 @@ class Kinked:
             sides = [np.broadcast_to(v, len(points)) for v in self._sides(list(points.T))]
             cost = np.log(sides[-1]) if self.logs else sides[-1]
         worst = np.zeros(len(points))
-        for j, cut in enumerate(self.rows.cuts):
-            worst = np.fmax(worst, residual(sides[2 * j], sides[2 * j + 1], cut.sense, cut.scale))
+        for j, constraint in enumerate(self.rows.constraints):
+            worst = np.fmax(worst, residual(sides[2 * j], sides[2 * j + 1], constraint.sense, constraint.scale))
         return cost, worst
 
     def best(self, starts: np.ndarray, low: np.ndarray, high: np.ndarray, allowed: float) -> float:

@@ -4,7 +4,7 @@
 
 typedef struct {
     /* Slots hold constants, stored nodes, variables, weights and results, in this order. */
-    int n, rows, cuts, goals, nonzeros, curvatures, stored, slots, constants, steps, terms;
+    int n, rows, constraints, goals, nonzeros, curvatures, stored, slots, constants, steps, terms;
     const int *equal, *guard, *row, *column, *curvature, *term, *code, *output;
     const double *constant;
 } Shape;
@@ -20,7 +20,7 @@ OF_THE_THREAD vd *slots;
 
 #define N (shape->n)
 #define ROWS (shape->rows)
-#define CUTS (shape->cuts)
+#define CONSTRAINTS (shape->constraints)
 #define GOALS (shape->goals)
 #define NONZEROS (shape->nonzeros)
 #define CURVATURES (shape->curvatures)

@@ -59,7 +59,7 @@ INLINE vd above(const State *s, const vd *y, int a) { return choose(s->free[a], 
 INLINE vi first_phase(const State *s, vi missing) { return (missing > 0) | s->restoring; }
 /* As long as rows are to be met, those that t can meet do not count; as long as rows are to exist, limits all do. */
 INLINE vi idle(const State *s, const vi *absent, vi missing, int r) {
-    const vi phase = r < CUTS ? s->restoring : s->restoring | (missing > 0);
+    const vi phase = r < CONSTRAINTS ? s->restoring : s->restoring | (missing > 0);
     return absent[r] | ((s->slopes[r] != 0.0) & phase);
 }
 
@@ -94,7 +94,7 @@ INLINE vd row_merit(const State *s, int r, vd value, vd total, vd least) {
 }
 INLINE vd other_merit(const State *s, const vd *y, vd t, const vd *form, vi missing, Logarithms *logs) {
     vd objective = s->t_weight * t;
-    EACH(k, GOALS) objective += keep(s->weights[k] != 0.0, s->weights[k] * form[CUTS + k]);
+    EACH(k, GOALS) objective += keep(s->weights[k] != 0.0, s->weights[k] * form[CONSTRAINTS + k]);
     EACH(a, N) add_logarithm(logs, below(s, y, a) * above(s, y, a));
     return keep(~first_phase(s, missing), objective) - s->barrier * (logs->sum + v_log(logs->product));
 }
@@ -126,7 +126,7 @@ static vi absent_of(const State *s, vd *form, vd *jacobian, vi *absent) {
     vi wanted[MOST_ROWS];
     EACH(r, ROWS) {
         wanted[r] = s->counts[r];
-        if (r >= CUTS) wanted[r] |= s->weights[r - CUTS] != 0.0;
+        if (r >= CONSTRAINTS) wanted[r] |= s->weights[r - CONSTRAINTS] != 0.0;
         absent[r] = wanted[r] & (GUARD[r] ? absent[r] : absent[r] | beyond);
         missing -= absent[r];
         form[r] = choose(absent[r], all(NAN), form[r]);
@@ -187,7 +187,7 @@ static vi judge(State *s, vi taken, const vd *jacobian, const vd *slopes, vd *to
         s->multipliers[r] = choose(taken, bring_in(s, r, own), s->multipliers[r]);
         const vd signed_one = sign(s, r, s->multipliers[r]);
         weights[r] = signed_one;
-        if (r >= CUTS) weights[r] += keep(~first, s->weights[r - CUTS]);
+        if (r >= CONSTRAINTS) weights[r] += keep(~first, s->weights[r - CONSTRAINTS]);
         along_t -= slopes[r] * signed_one;
         largest_multiplier = v_max(largest_multiplier, v_abs(signed_one));
         const vd products[2] = {s->multipliers[r] * slack, (price(s, r) - s->multipliers[r]) * excess};
@@ -304,7 +304,7 @@ static void direct(State *s, vi taken, vi bent, const vd *jacobian, const vd *he
         stiffness[r] = both * both * one_over;
         weights[r] = sign(s, r, own[r]);
         along_t -= slopes[r] * weights[r];
-        if (r >= CUTS) weights[r] += keep(~first, s->weights[r - CUTS]);
+        if (r >= CONSTRAINTS) weights[r] += keep(~first, s->weights[r - CONSTRAINTS]);
     }
     transposed(jacobian, weights, gradient);
     EACH(a, N) {
@@ -381,7 +381,7 @@ static void advance(State *s) {
     EACH(r, ROWS) {
         multipliers[r] = s->multipliers[r] + s->dual_step * s->change[r];
         weights[r] = keep(s->counts[r] & ~s->absent[r], sign(s, r, multipliers[r]));
-        if (r >= CUTS) weights[r] += keep(~first_phase(s, s->missing), s->weights[r - CUTS]);
+        if (r >= CONSTRAINTS) weights[r] += keep(~first_phase(s, s->missing), s->weights[r - CONSTRAINTS]);
     }
     point(y, weights, s->stored, form, jacobian, hessian);
     const vi missing = absent_of(s, form, jacobian, absent);

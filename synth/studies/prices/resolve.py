@@ -53,9 +53,9 @@ class Resolver:
         chosen = dict(front.frame.objectives)
         self.m = len(chosen)
         self.form = Formulation(instance, with_ties(instance.model, chosen), self.m)
-        self.logs = np.array(self.form.continuous.rows.log_cuts, dtype=bool)
+        self.logs = np.array(self.form.continuous.rows.log_constraints, dtype=bool)
         self.fixed = self.form.unmoved(gridded=True)
-        self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.cuts])
+        self.directions = np.array([-1.0 if c.sense == "at_least" else 1.0 for c in self.form.node_constraints])
         self.limit_names = [x.name for x in instance.constraints]
         self.ranges = self._ranges()
         self.positions = requirement_positions(self.form)
@@ -169,8 +169,8 @@ class Resolver:
             values = form.model.evaluate(nothing, data).values
             signed = np.stack([g.sign * values[n] for g, n in zip(form.goals, form.names, strict=True)], axis=1)
             reached = form.objectives.phi_of(signed)
-            over = np.max(np.where(np.isfinite(tasks.caps), reached - tasks.caps, 0.0), axis=1, initial=0.0)
-            none = np.zeros((count, len(form.cuts)))
+            over = np.max(np.where(np.isfinite(tasks.cutoffs), reached - tasks.cutoffs, 0.0), axis=1, initial=0.0)
+            none = np.zeros((count, len(form.node_constraints)))
             found = Solutions(nothing, reached, np.zeros(count), over, none, np.zeros(reached.shape), over <= missed)
         broken = self._broken(found.variables, moves, data)
         kept = (found.violation <= missed) & np.isfinite(found.phi[:, k]) & (broken < 0) & possible
@@ -179,7 +179,7 @@ class Resolver:
 
     def _shifts(self, moves: np.ndarray, start: np.ndarray, data: Sequence[InputValue]) -> np.ndarray:
         """Return by how much the rows of limits give way."""
-        shifts = np.zeros((len(moves), len(self.form.cuts)))
+        shifts = np.zeros((len(moves), len(self.form.node_constraints)))
         rows = np.flatnonzero((moves >= 0) & (self.limit_of[moves] >= 0))
         if len(rows):
             limits, factors = self.limit_of[moves[rows]], self.factors[moves[rows]]

@@ -322,11 +322,11 @@ class _Case:
         """Solve for the least by which limits and objectives would have to give way."""
         form, count = self.again.form, len(combinations)
         nothing = np.zeros((count, len(form.goals)))
-        caps, slopes = np.full(nothing.shape, np.inf), nothing.copy()
-        caps[:, : self.again.m] = self.phi[: self.again.m] + form.tuning.tolerances.tie
-        caps[:, self.k] = self.base + reach
+        cutoffs, slopes = np.full(nothing.shape, np.inf), nothing.copy()
+        cutoffs[:, : self.again.m] = self.phi[: self.again.m] + form.tuning.tolerances.tie
+        cutoffs[:, self.k] = self.base + reach
         slopes[:, : self.again.m] = np.where(form.objectives.log, 1.0, np.abs(self.phi))[: self.again.m]
-        tasks = Tasks(nothing, slopes, caps, form.objectives.scales, elastic=1.0)
+        tasks = Tasks(nothing, slopes, cutoffs, form.objectives.scales, elastic=1.0)
         return form.continuous.solve_many(tasks, combinations, start, skipped=self.again.fixed)
 
     # -- prices --------------------------------------------------------------------------------
@@ -466,7 +466,7 @@ class _Case:
 
     def _what_binds(self, found: Solutions, number: int) -> str:
         """Return which limits begin or end to bind on the way, as what explains a bend."""
-        before, after = self.best.multipliers[0], found.cut_multipliers[number]
+        before, after = self.best.multipliers[0], found.constraint_multipliers[number]
         names = self.again.limit_names
         binds = self.again.limits.binds
         begins = [names[j] for j in np.flatnonzero((np.abs(after) > binds) & (np.abs(before) <= binds))]
