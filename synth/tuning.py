@@ -615,6 +615,35 @@ class CompilingLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DominanceSettings:
+    """How designs are sorted to tell which of them cover boxes. The result is the same for any number.
+
+    Parameters
+    ----------
+    block : float
+        Of three objectives: designs of a block, as a multiple of the square root of their number.
+    shift : int
+        Blocks are powers of two, of this exponent at least, so that registers hold whole parts of them.
+    rows : int
+        Of more objectives: sets of designs that are kept for each order.
+    boxes : int
+        That are compared over arrays at a time: so few that arrays stay in the cache.
+    compiled_from : int
+        Boxes of a search that are asked about before it is worth compiling code that serves all questions; over arrays
+        they take about as long.
+    effort : CompilingEffort
+        For that code, which is short.
+    """
+
+    block: float = 0.35
+    shift: int = 3
+    rows: int = 512
+    boxes: int = 1024
+    compiled_from: int = 200_000
+    effort: CompilingEffort = field(default_factory=lambda: CompilingEffort(worthwhile=1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
 class ArraySizes:
     """How much arrays over boxes or points hold at a time. The result is the same for any number.
 
@@ -622,21 +651,15 @@ class ArraySizes:
     ----------
     boxes : int
         That are tightened over arrays at a time, and points that are evaluated.
-    capped : int
-        Boxes that are compared with all designs known at a time, for three objectives or more.
     compared : int
         Designs that are compared with all others at a time.
-    steps : int
-        Boxes that are compared with all steps of a front that is being proven at a time, for three objectives or more.
     pairs : int
         Of rows of two slots with a refusal between them, for which is known of all clusters which go together; beyond
         that the ends of the clusters tell less, and single combinations the rest.
     """
 
     boxes: int = 4096
-    capped: int = 512
     compared: int = 256
-    steps: int = 1024
     pairs: int = 4_000_000
 
 
@@ -827,6 +850,7 @@ class Tuning:
     nlp : NlpSettings
     compiling : CompilingLimits
     arrays : ArraySizes
+    dominance : DominanceSettings
     """
 
     tolerances: Tolerances = field(default_factory=Tolerances)
@@ -838,6 +862,7 @@ class Tuning:
     nlp: NlpSettings = field(default_factory=NlpSettings)
     compiling: CompilingLimits = field(default_factory=CompilingLimits)
     arrays: ArraySizes = field(default_factory=ArraySizes)
+    dominance: DominanceSettings = field(default_factory=DominanceSettings)
 
 
 TUNING = Tuning()

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.pareto import non_dominated
+from synth.search.dominance import SortedPoints, sorted_points
+from synth.search.dominance_code import DominanceCode, dominance_code
 from synth.tuning import TUNING, Tuning
 
 
@@ -48,6 +50,8 @@ class Archive:
         self.combination = np.empty(0, dtype=np.int64)
         self.variables = np.empty((0, variables))
         self.phi = np.empty((0, objectives))
+        self._sorted: tuple[np.ndarray, bytes, SortedPoints] | None = None  # phi, tolerance, and what was made of them
+        self._asked = 0
 
     def __len__(self) -> int:
         return len(self.combination)
@@ -86,14 +90,21 @@ class Archive:
                 place = np.searchsorted(at, lower[:, 1 - k], side="right")
                 result[:, k] = np.where(place > 0, least[place - 1], np.inf)
         else:
-            at_once = self.tuning.arrays.capped
-            for first in range(0, len(lower), at_once):
-                rows = slice(first, first + at_once)
-                under = known[None, :, :] <= lower[rows, None, :]
-                for k in range(m):
-                    others = under[:, :, [j for j in range(m) if j != k]].all(axis=2)
-                    result[rows, k] = np.where(others, known[None, :, k], np.inf).min(axis=1)
+            result = self._sorted_known(known, tolerance).least(lower, self.code(len(lower)))
         return result
+
+    def _sorted_known(self, known: np.ndarray, tolerance: np.ndarray) -> SortedPoints:
+        """Return the known designs, less a tolerance, sorted once for all boxes until there are others."""
+        kept = self._sorted
+        if kept is None or kept[0] is not self.phi or kept[1] != tolerance.tobytes():
+            kept = self.phi, tolerance.tobytes(), sorted_points(known, self.tuning.dominance)
+            self._sorted = kept
+        return kept[2]
+
+    def code(self, boxes: int) -> DominanceCode | None:
+        """Return compiled code for telling which designs cover some more boxes; None while they are too few for it."""
+        self._asked += boxes
+        return dominance_code(self._asked, self.tuning.dominance)
 
     def covering(self, tolerance: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return, for each of two objectives, values of the other in order and the least that is covered from there."""
@@ -111,12 +122,17 @@ def distinct(
     """
     phi = np.array([c.phi[:m] for c in candidates]).reshape(len(candidates), m)
     at_once = tuning.arrays.compared
-    margin = np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), equal)
-    number, gone = np.arange(len(phi)), np.zeros(len(phi), dtype=bool)
+    worse = phi + np.maximum(tuning.tolerances.rounded * np.maximum(np.abs(phi), 1.0), equal)
+    gone = np.zeros(len(phi), dtype=bool)
     for first in range(0, len(phi), at_once):
         own = slice(first, first + at_once)
-        beaten = np.all(phi[:, None, :] <= (phi + margin)[None, own, :], axis=2)
-        beats = np.all(phi[None, own, :] <= (phi + margin)[:, None, :], axis=2)
+        # Column by column: few rows beat each other, and only those are looked at closely.
+        beaten = np.ones((len(phi), len(phi[own])), dtype=bool)
+        for k in range(m):
+            beaten &= phi[:, None, k] <= worse[None, own, k]
+        by, which = np.nonzero(beaten)
+        which += first
+        beats = np.all(phi[which] <= worse[by], axis=1)
         # Of those that beat each other by rounding alone the first stays.
-        gone[own] = np.any(beaten & (~beats | (number[:, None] < number[None, own])), axis=0)
+        gone[which[~beats | (by < which)]] = True
     return [c for c, left_out in zip(candidates, gone, strict=True) if not left_out]

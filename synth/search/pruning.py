@@ -9,6 +9,7 @@ import numpy as np
 
 from synth.bounds.compiled_subtrees import CutoffTables
 from synth.search.archive import Archive, Candidate
+from synth.search.dominance import SortedPoints, sorted_points
 from synth.search.formulation import Formulation
 
 
@@ -171,6 +172,7 @@ class NonImprovement:
             row[0, k] = phi[:, k].min() - self.tolerance[k]
             steps.append(row)
         self.steps = np.concatenate(steps)
+        self._sorted_steps: SortedPoints | None = None
 
     def cutoffs(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
         """Return, per box with these lower bounds of phi, what a design must keep to beat one of the designs."""
@@ -190,13 +192,13 @@ class NonImprovement:
 
     def _below(self, own: np.ndarray) -> np.ndarray:
         """Return, per box, the largest step in each objective among those that the box could be below."""
-        result, at_once = np.full(own.shape, -np.inf), self.known.tuning.arrays.steps
-        for first in range(0, len(own), at_once):
-            part = own[first : first + at_once]
-            below = np.all(part[:, None, :] < self.steps[None, :, :], axis=2)
-            for k in range(own.shape[1]):
-                result[first : first + at_once, k] = np.where(below, self.steps[None, :, k], -np.inf).max(axis=1)
-        return result
+        if own.shape[1] == 1:
+            return np.where(own < self.steps.max(), self.steps.max(), -np.inf)
+        if self._sorted_steps is None:
+            self._sorted_steps = sorted_points(-self.steps, self.known.tuning.dominance, strict=True)
+        # The largest step above a box in all other objectives; where it is not above it in its own, none is in all.
+        largest = -self._sorted_steps.least(-own, self.known.code(len(own)))
+        return np.where(own < largest, largest, -np.inf)
 
     def _below_two(self, own: np.ndarray) -> np.ndarray:
         """Do the same for two objectives: steps in order of the first fall in the second."""

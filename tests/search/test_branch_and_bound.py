@@ -44,7 +44,7 @@ def cutoff_by_hand(known, tolerance, lower, k):
     return min(cutoffs, default=np.inf)
 
 
-@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("m", [1, 2, 3, 4])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
 def test_cutoffs_and_possible_gain_of_a_cover_against_brute_force(m, seed):
@@ -65,7 +65,7 @@ def test_cutoffs_and_possible_gain_of_a_cover_against_brute_force(m, seed):
         assert own_gain == (0.0 if np.any(own > fixed_cutoffs + TIE) else least)
 
 
-@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("m", [1, 2, 3, 4])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
 def test_a_box_without_possible_gain_is_covered_and_cutoffs_exclude_only_what_is_covered(m, seed):
@@ -112,7 +112,7 @@ def steps_by_hand(designs, tolerance, proven, m):
     return steps
 
 
-@pytest.mark.parametrize("m", [1, 2, 3])
+@pytest.mark.parametrize("m", [1, 2, 3, 4])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
 def test_cutoffs_and_possible_gain_of_non_improvement_against_brute_force(m, seed):

@@ -1,0 +1,93 @@
+"""Dominance in compiled code: one library for all questions, with the very numbers that arrays give."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from functools import cache
+
+import numpy as np
+
+from synth import deadline
+from synth.compiled.c_text import template
+from synth.compiled.compilation import meanwhile, switched_on
+from synth.compiled.compiler import library
+from synth.tuning import DominanceSettings
+
+TABLE = ("points", "shift", "blocks", "strict"), ("ordered", "place", "value", "corner")
+SETS = ("points", "objectives", "block", "rows", "words", "strict"), ("ordered", "place", "inside")
+
+
+class _Table(ctypes.Structure):
+    """The structure ``Table`` of the C source."""
+
+    _fields_ = (*((x, ctypes.c_longlong) for x in TABLE[0]), *((x, ctypes.c_void_p) for x in TABLE[1]))
+
+
+class _Sets(ctypes.Structure):
+    """The structure ``Sets`` of the C source."""
+
+    _fields_ = (*((x, ctypes.c_longlong) for x in SETS[0]), *((x, ctypes.c_void_p) for x in SETS[1]))
+
+
+class DominanceCode:
+    """Compiled answers about which points cover boxes.
+
+    Parameters
+    ----------
+    loaded : CDLL
+    """
+
+    def __init__(self, loaded: ctypes.CDLL) -> None:
+        self._loaded = loaded
+        for name, structure in (("from_table", _Table), ("from_sets", _Sets)):
+            function = getattr(loaded, name)
+            function.argtypes = [ctypes.POINTER(structure), ctypes.c_longlong, ctypes.c_void_p, ctypes.c_void_p]
+            function.restype = None
+
+    def from_table(self, numbers: Mapping[str, int], arrays: Mapping[str, np.ndarray], lower: np.ndarray) -> np.ndarray:
+        """Return what :class:`CornerTable` tells of boxes: its numbers and arrays by the names in the C source."""
+        return _answer(self._loaded.from_table, _record(_Table, numbers, arrays), lower)
+
+    def from_sets(self, numbers: Mapping[str, int], arrays: Mapping[str, np.ndarray], lower: np.ndarray) -> np.ndarray:
+        """Return what :class:`CoverSets` tells of boxes: its numbers and arrays by the names in the C source."""
+        return _answer(self._loaded.from_sets, _record(_Sets, numbers, arrays), lower)
+
+
+def _record(
+    kind: type[ctypes.Structure], numbers: Mapping[str, int], arrays: Mapping[str, np.ndarray]
+) -> ctypes.Structure:
+    return kind(**numbers, **{name: x.ctypes.data for name, x in arrays.items()})
+
+
+def _answer(function: Callable[..., None], record: ctypes.Structure, lower: np.ndarray) -> np.ndarray:
+    lower = np.ascontiguousarray(lower, dtype=float)
+    least = np.empty_like(lower)
+    function(ctypes.byref(record), len(lower), lower.ctypes.data, least.ctypes.data)
+    return least
+
+
+def dominance_code(asked: int, settings: DominanceSettings) -> DominanceCode | None:
+    """Return the compiled code; None where too few boxes are asked about, or it cannot be had.
+
+    The compiler takes a fraction of a second, once for all questions. Nothing else is done meanwhile: what a search
+    finds then must not depend on whether the code was there.
+
+    Parameters
+    ----------
+    asked : int
+        Boxes that were asked about by one search until now.
+    settings : DominanceSettings
+    """
+    if asked < settings.compiled_from or not switched_on():
+        return None
+    if deadline.current().given < settings.effort.worthwhile:
+        return None  # asking the compiler now would switch off all other compiled code as well
+    with meanwhile(lambda ready: None):
+        return _loaded(settings)
+
+
+@cache
+def _loaded(settings: DominanceSettings) -> DominanceCode | None:
+    loaded = library("dominance", template("search", "dominance"), settings.effort)
+    return None if loaded is None else DominanceCode(loaded)
