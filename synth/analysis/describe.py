@@ -18,7 +18,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
 from synth.question.ranges import declared_ranges
 from synth.tables.catalogs import Catalogs
-from synth.units import from_si
+from synth.units import finite_from_si, from_si
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -169,8 +169,8 @@ def _requirement(r: RequirementRecord, fixed_rows: Mapping[str, float]) -> dict[
         "requirement",
         r,
         default=default,
-        lower=_bound(r.lower, r.unit),
-        upper=_bound(r.upper, r.unit),
+        lower=finite_from_si(r.lower, r.unit, math.nan),
+        upper=finite_from_si(r.upper, r.unit, math.nan),
         optional=r.optional,
     )
 
@@ -196,11 +196,8 @@ def _closes_last(text: str) -> bool:
 
 def _variable(v: VariableRecord) -> dict[str, Any]:
     grid = np.asarray(from_si(v.grid, v.unit)) if len(v.grid) else v.grid
-    return _row("variable", v, lower=_bound(v.lower, v.unit), upper=_bound(v.upper, v.unit), choices=_values(grid))
-
-
-def _bound(si: float, unit: str) -> float:
-    return float(from_si(si, unit)) if math.isfinite(si) else math.nan
+    lower, upper = (finite_from_si(end, v.unit, math.nan) for end in (v.lower, v.upper))
+    return _row("variable", v, lower=lower, upper=upper, choices=_values(grid))
 
 
 def _values(values: np.ndarray) -> str:

@@ -17,7 +17,7 @@ from synth.question.instance import Instance
 from synth.question.names import as_mapping
 from synth.question.request import Request
 from synth.tables.catalogs import Catalogs
-from synth.units import from_si, parse_quantity, split_header
+from synth.units import finite_from_si, parse_quantity, split_header
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -136,14 +136,11 @@ def second_opinion(design: Design, frames: Mapping[str, pd.DataFrame]) -> pd.Dat
         for name, simulated in frame.attrs.get("quantities", {}).items():
             if name in design.values and not any(row[0] == name for row in rows):
                 unit = design.frame.units[name]
-                closed, second = _in_unit(design.values[name], unit), _in_unit(simulated, unit)
+                values = design.values[name], simulated
+                closed, second = (finite_from_si(value, unit, math.nan) for value in values)
                 relative = (second - closed) / closed if closed else math.nan
                 rows.append([name, unit, closed, second, second - closed, relative])
     return pd.DataFrame(rows, columns=OPINION)
-
-
-def _in_unit(si: float, unit: str) -> float:
-    return float(from_si(si, unit)) if math.isfinite(si) else math.nan
 
 
 def read_settings(problem: DesignProblem, settings: Mapping[str, Any] | None, catalogs: Catalogs) -> dict[str, Any]:

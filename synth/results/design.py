@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,7 +10,7 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import yaml_text
 from synth.results.ratings import DesignRating
-from synth.units import format_quantity, from_si, header
+from synth.units import finite_from_si, format_quantity, header
 
 
 class PartRow(Mapping[str, Any]):
@@ -150,4 +149,4 @@ def design_row(frame: Frame, design: Design) -> list[Any]:
 
 def shown_value(value: float, unit: str) -> float | None:
     """Return an SI value in the unit of its column; None where it does not exist."""
-    return float(from_si(value, unit)) if math.isfinite(value) else None
+    return finite_from_si(value, unit, None)

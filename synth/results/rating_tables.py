@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from synth.units import format_quantity, from_si, header
+from synth.units import finite_from_si, format_quantity, header
 
 if TYPE_CHECKING:
     from synth.results.design import Design
@@ -51,8 +50,8 @@ def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]
     for design in designs:
         for name, told in (design.robust.get("limits") or {}).items():
             unit = design.frame.limit_units[name]
-            sides = [None if told[k] is None else _shown(told[k], unit) for k in ("value", "limit")]
-            at = [_shown(told["at"][n], u) if n in told["at"] else None for n, u in units.items()]
+            sides = [finite_from_si(told[k], unit, None) for k in ("value", "limit")]
+            at = [finite_from_si(told["at"][n], u, None) if n in told["at"] else None for n, u in units.items()]
             rows.append(
                 [
                     design.rank,
@@ -67,7 +66,3 @@ def limits_table(designs: Sequence[Design]) -> tuple[list[str], list[list[Any]]]
                 ]
             )
     return columns, rows
-
-
-def _shown(value: float, unit: str) -> float | None:
-    return float(from_si(value, unit)) if math.isfinite(value) else None

@@ -4,6 +4,7 @@ from synth.units.grammar import Unit, parse_unit
 from synth.units.quantity import (
     Quantity,
     check_number,
+    finite_from_si,
     format_quantity,
     from_si,
     header,
@@ -18,6 +19,7 @@ __all__ = [
     "Quantity",
     "Unit",
     "check_number",
+    "finite_from_si",
     "format_quantity",
     "from_si",
     "header",

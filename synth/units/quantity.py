@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from typing import overload
+from typing import TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.units.grammar import ABSOLUTE_ZERO, SPACES, RefusedUnit, Unit, is_unit, parse_unit, resolve
 
 FloatArray = NDArray[np.float64]
+T = TypeVar("T")
 
 
 # ---- numbers --------------------------------------------------------------------------------------------------------
@@ -313,6 +314,26 @@ def from_si(value: float | FloatArray, unit: str | Unit) -> float | FloatArray:
         flat = [_from_si(x, unit) for x in np.asarray(value, dtype=np.float64).ravel().tolist()]
         return np.array(flat, dtype=np.float64).reshape(value.shape)
     return _from_si(float(value), unit)
+
+
+def finite_from_si(value: float | None, unit: str | Unit, otherwise: T) -> float | T:
+    """Convert a SI number that may be missing.
+
+    Parameters
+    ----------
+    value : float, optional
+        SI; None, nan and infinities are no value.
+    unit : str or Unit
+        Wanted unit.
+    otherwise
+        What is returned where there is no value.
+
+    Returns
+    -------
+    float
+        Number in `unit`, or ``otherwise``.
+    """
+    return otherwise if value is None or not math.isfinite(value) else float(from_si(value, unit))
 
 
 def _from_si(si: float, unit: Unit) -> float:

@@ -10,7 +10,7 @@ from synth.results import Design
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep, best_design
 from synth.studies.whatif.vary import Value
 from synth.study_limits import STUDY_TEXTS
-from synth.units import from_si, header
+from synth.units import finite_from_si, header
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -86,7 +86,7 @@ def _panels(
             for label, values in lines.items():
                 words = "" if single else f"{_words(study, k, group)}: "
                 column = header(f"{words}{label} {name}", unit)
-                data[column] = [_in_unit(v, unit) for v in values]
+                data[column] = [finite_from_si(v, unit, math.nan) for v in values]
                 columns.append(column)
         apart = study.along is None
         panels.append({"label": header(name, unit), "columns": columns, "points": True, "apart": apart})
@@ -148,8 +148,8 @@ def _front_curves(study: StudyAnswers) -> pd.DataFrame | None:
             if d is None:
                 data[x][-1] = data[x][-2]
             else:
-                data[x][-1] = _in_unit(d.values[first], unit)
-                data[label][-1] = _in_unit(d.values[second], other)
+                data[x][-1] = finite_from_si(d.values[first], unit, math.nan)
+                data[label][-1] = finite_from_si(d.values[second], other, math.nan)
     frame = pd.DataFrame(data)
     # Straight lines between few designs would promise what lies between: fronts would seem to cross better ones.
     assert steps[0].front is not None
@@ -232,10 +232,6 @@ def _brief(b: Break) -> str:
 
 def _value(design: Design | None, name: str) -> float:
     return math.nan if design is None else design.values[name]
-
-
-def _in_unit(value: float, unit: str) -> float:
-    return float(from_si(value, unit)) if math.isfinite(value) else math.nan
 
 
 def _left_out(drawn: int, count: int, what: str) -> list[str]:

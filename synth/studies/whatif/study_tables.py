@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +11,7 @@ from synth.results.rating_tables import COLUMNS, rating_row
 from synth.studies.whatif.study_answers import Break, StudyAnswers, StudyStep
 from synth.studies.whatif.vary import Value
 from synth.study_limits import STUDY_TEXTS
-from synth.units import from_si, header
+from synth.units import finite_from_si, header
 
 Rows = list[list[Any]]
 
@@ -64,11 +63,11 @@ class _Columns:
         """Return the cells of a design, from its status to what it is rated."""
         return [
             *(d.status.value, d.rank, d.note),
-            *(_shown(d.values.get(n), unit) for n, unit in self.objectives.items()),
+            *(finite_from_si(d.values.get(n), unit, None) for n, unit in self.objectives.items()),
             "; ".join(binding(d)),
             *(str(d.parts[s]) if s in d.parts else None for s in self.slots),
             *(d.choices.get(c) for c in self.choices),
-            *(_shown(d.values.get(n), unit) for n, unit in self.searched.items()),
+            *(finite_from_si(d.values.get(n), unit, None) for n, unit in self.searched.items()),
             *(d.elasticity.get(objective, {}).get(name) for objective, name in self.prices),
             *(rating_row(d) if self.rated else []),
         ]
@@ -116,7 +115,7 @@ def _sides(b: Break, units: dict[str, str]) -> list[Any]:
     """Return what is reached on both sides of a break, and what of."""
     sides = (b.before, b.after)
     unit = units.get(b.objective)
-    reached = [None if side is None or unit is None else _shown(side.value, unit) for side in sides]
+    reached = [None if side is None or unit is None else finite_from_si(side.value, unit, None) for side in sides]
     parts = ["" if side is None else ", ".join(f"{n} {w}" for n, w in side.named.items()) for side in sides]
     return [*reached, *parts]
 
@@ -128,10 +127,6 @@ def binding(design: Design) -> list[str]:
         for name, used in design.utilisation.items()
         if used is not None and used >= STUDY_TEXTS.binding and design.frame.limit_senses[name] != "equal"
     ]
-
-
-def _shown(value: float | None, unit: str) -> float | None:
-    return None if value is None or not math.isfinite(value) else float(from_si(value, unit))
 
 
 def _union(groups: Iterable[Iterable[str]]) -> list[str]:
