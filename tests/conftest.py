@@ -1,17 +1,36 @@
 """What all tests need."""
 
+import gc
 import signal
 
 import pytest
 
 
 def pytest_configure() -> None:
-    """Hear of Ctrl-C: a shell that runs the tests in the background has it ignored, in them and in what they start."""
+    """Hear of Ctrl-C and look for no garbage among the tests that are being collected.
+
+    A shell that runs the tests in the background has Ctrl-C ignored, in them and in what they start. Collecting makes
+    what lives to the end: looking for garbage in it would be a third of its time.
+    """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    gc.disable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Run files with slow tests first: a long one at the end would keep one process at work while others wait."""
     long = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in long)
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was imported and collected out of the search for garbage, and search more rarely.
+
+    A process that runs tests holds a gigabyte of modules, tests and declared families that live to its end. Each full
+    search walks through all of it and finds nothing: a tenth of the processor time of the suite. What tests themselves
+    throw away is still found.
+    """
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(100_000, 20, 50)
+    gc.enable()
