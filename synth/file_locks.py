@@ -53,6 +53,20 @@ def _taken(path: Path) -> int | None:
             return None  # otherwise whoever had it has just taken it away
 
 
+def is_taken(path: Path) -> bool:
+    """Tell whether another process has a file to itself."""
+    try:
+        handle = os.open(path, os.O_RDWR | SAFELY)
+    except OSError:
+        return False
+    try:
+        return not has_lock(handle, shared=True)
+    except OSError:
+        return False
+    finally:
+        os.close(handle)
+
+
 def has_lock(handle: int, shared: bool) -> bool:
     """Lock an open file if nobody else has it; tell whether it is locked, as it counts where there are no locks."""
     if fcntl is None:

@@ -600,6 +600,9 @@ class CompilingLimits:
         Of all questions of a kind, from which code is compiled at once.
     boxes : float
         Of a question, after which it is compiled all the same; NumPy does as many in about a tenth of a second.
+    own : float
+        Boxes of all questions of one shape, from which they get code of their own beside the search: what all share
+        takes 0.7 to 1 us longer for each. It gives the same bits, so that the time it takes decides nothing.
     work : float
         Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
     sizes : CodeSizes
@@ -609,6 +612,7 @@ class CompilingLimits:
 
     combinations: int = 5000
     boxes: float = 20_000
+    own: float = 500_000
     work: float = 150_000_000
     sizes: CodeSizes = field(default_factory=CodeSizes)
     effort: CompilingEffort = field(default_factory=CompilingEffort)

@@ -123,6 +123,7 @@ SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "box
 SOUND |= {"propagated_nodes", "root_propagation", "sweep_writer", "question_bounds", "propagation", "compiled_rules"}
 STEERING = {"influences", "branching"}
 BOTH = {"box_batches", "box_source", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
+BOTH |= {"box_instructions", "interpreted_boxes"}
 # What kind of function a formula is: not of the search.
 OF_FORMULAS = {"structure", "shapes", "composition", "log_terms", "feasible_intervals", "curvature", "elementary"}
 

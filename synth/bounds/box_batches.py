@@ -51,6 +51,7 @@ GIVEN = {
     "spreads": "float *const",
     "grids": "double *const",
     "grid_sizes": "long long",
+    "shape": "void",
 }
 TAKEN = {
     "out_cell": "int",

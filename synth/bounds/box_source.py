@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds import compiled_rules as rules
-from synth.bounds.box_batches import SCORE_WIDTH, structure_source
+from synth.bounds.box_batches import structure_source
 from synth.bounds.contractor import Code
 from synth.bounds.propagated_nodes import CONSTANT, PropagatedNodes
 from synth.bounds.statements import Assign, Enclose, EndOfFirstSweep, Hold, Kill, Narrow, Statement
@@ -27,7 +27,9 @@ def source(code: Code) -> str | None:
             template("compiled", "vectors"),
             template("bounds", "margins"),
             rules.common(),
+            structure_source(),
             _sizes(code),
+            template("bounds", "registers"),
             *_specials(statements, nodes.program),
             *_rules(statements, nodes),
             _loading(code),
@@ -48,10 +50,9 @@ def _sizes(code: Code) -> str:
         "GOALS": len(nodes.goals),
         "TABLES": len(nodes.tables),
         "NODES": len(nodes.program.nodes),
-        "SCORE_WIDTH": SCORE_WIDTH,
     }
-    lines = [f"#define {name} {value}" for name, value in sizes.items()]
-    return "\n".join([*lines, "#define ANY(n) ((n) + 1)", structure_source()])
+    lines = [f"#define {name} {value}\n#define MOST_{name} ({value} + 1)" for name, value in sizes.items()]
+    return "\n".join([*lines, "#define REGISTERS 1"])
 
 
 def _specials(statements: Sequence[Statement], program: Program) -> list[str]:
@@ -68,10 +69,22 @@ def _specials(statements: Sequence[Statement], program: Program) -> list[str]:
 
 
 def formula_source(name: str, function: SpecialFunction) -> str:
-    """Return the C function of a special function, traced with symbols."""
+    """Return the C function of a special function."""
+    steps, result = formula_steps(function)
+    arguments = ", ".join(f"vd a{k}" for k in range(len(function.elasticity)))
+    lines = [f"static __attribute__((noinline)) vd {name}({arguments}) {{"]
+    lines += [f"    const vd {step} = {value};" for step, value in steps]
+    return "\n".join([*lines, f"    return {result};", "}"])
+
+
+def formula_steps(function: SpecialFunction) -> tuple[list[tuple[str, str]], str]:
+    """Return the formula of a special function, traced with symbols, in C: names with their values, and the result.
+
+    Its arguments are a0, a1 and so on.
+    """
     symbols = [ca.SX.sym(f"a{k}") for k in range(len(function.elasticity))]
     program = Program(symbols, [function.formula(*symbols)])
-    lines = [f"static __attribute__((noinline)) vd {name}({', '.join(f'vd a{k}' for k in range(len(symbols)))}) {{"]
+    steps: list[tuple[str, str]] = []
     names: dict[int, str] = {}
     for k in program.needed(program.outputs):
         node = program.nodes[k]
@@ -95,12 +108,12 @@ def formula_source(name: str, function: SpecialFunction) -> str:
         else:
             value = EXPRESSIONS[node.op].format(*args)
         names[k] = f"x{k}"
-        lines.append(f"    const vd x{k} = {value};")
+        steps.append((names[k], value))
     result = names[program.outputs[0]]
     if function.above is not None:
         first, second = function.above
         result = f"choose(a{first} >= a{second}, {result}, all(NAN))"
-    return "\n".join([*lines, f"    return {result};", "}"])
+    return steps, result
 
 
 def _range_source(k: int, function: SpecialFunction) -> str:
@@ -166,8 +179,9 @@ def _tighten(code: Code) -> str:
     """Return the function that tightens a register of boxes."""
     sweeps, nodes = code.sweeps, code.nodes
     lines = [
-        "static vi tighten(const Batch *b, const vd *RL, const vd *RH, const vd *B, const vd *C,",
-        "                  vd V[][2], vd T[][2], vd *goals, vi *undecided) {",
+        "static vi tighten_one(const Batch *b, const Whole *whole, Registers *r) {",
+        "    const vd *const RL = whole->RL, *const RH = whole->RH, *const B = whole->B, *const C = r->C;",
+        "    vd(*const V)[2] = r->V, (*const T)[2] = r->T;",
     ]
     lines += [f"    const vd l{k} = all(b->constants[{i}]), h{k} = l{k};" for i, k in enumerate(sweeps.constants)]
     lines += [f"    vd l{k} = T[{i}][0], h{k} = T[{i}][1];" for i, k in enumerate(sweeps.tables)]
@@ -180,9 +194,10 @@ def _tighten(code: Code) -> str:
     lines += [f"        {line}" for statement in sweeps.later for line in _in_c(statement, nodes)]
     lines.append("    }")
     lines += [f"    V[{i}][0] = l{k}; V[{i}][1] = h{k};" for k, i in sweeps.variables]
-    lines += [f"    goals[{j}] = {end};" for j, end in enumerate(sweeps.goals)]
-    lines += [f"    undecided[{j}] = o{j};" for j in range(sweeps.limits)]
-    return "\n".join([*lines, "    return dead;", "}"])
+    lines += [f"    r->goals[{j}] = {end};" for j, end in enumerate(sweeps.goals)]
+    lines += [f"    r->undecided[{j}] = o{j};" for j in range(sweeps.limits)]
+    lines += ["    return dead;", "}", template("bounds", "own_sweeps")]
+    return "\n".join(lines)
 
 
 def _in_c(statement: Statement, nodes: PropagatedNodes) -> list[str]:

@@ -18,12 +18,15 @@ from synth.bounds.box_source import source
 from synth.bounds.boxes import Boxes
 from synth.bounds.compiled_subtrees import SubtreeCode
 from synth.bounds.contractor import Code
+from synth.bounds.interpreted_boxes import ListedCode, listed_code
+from synth.bounds.interpreted_boxes import source as interpreter_source
 from synth.compiled.compilation import NotCompiled, switched_on
-from synth.compiled.compiler import FLAGS, library
-from synth.tuning import CompilingEffort
+from synth.compiled.compiler import FLAGS, QUICK, LibraryBeside, library
+from synth.tuning import CompilingEffort, CompilingLimits
 
 # No contraction of products and sums: the ends of an interval must round as they do in NumPy.
 BOX_FLAGS = (*FLAGS, "-O2", "-ffp-contract=off")
+GENERAL_FLAGS = (*QUICK, "-ffp-contract=off")
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,8 @@ class BoxCode:
     Parameters
     ----------
     loaded : CDLL
+    listed : ListedCode, optional
+        The list that the code goes by, if it is not the question's own.
 
     Attributes
     ----------
@@ -58,8 +63,10 @@ class BoxCode:
         The same, with splitting.
     """
 
-    def __init__(self, loaded: ctypes.CDLL) -> None:
-        self.subtrees = SubtreeCode(loaded)
+    def __init__(self, loaded: ctypes.CDLL, listed: ListedCode | None = None) -> None:
+        self._listed = listed  # addresses of its arrays are in its record
+        self._read: dict[str, np.ndarray] = {} if listed is None else {"shape": listed.record}
+        self.subtrees = SubtreeCode(loaded, self._read)
         self._contract = loaded.contract
         self._contract.argtypes = [ctypes.POINTER(BatchStructure)]
         self._contract.restype = ctypes.c_longlong
@@ -92,7 +99,7 @@ class BoxCode:
         most = np.ascontiguousarray(np.full(boxes.bounds.shape[1], np.inf) if cutoffs is None else cutoffs, dtype=float)
         step = most.shape[1] if most.ndim == 2 else 0
         taken = _places(prepared, boxes)
-        moving, still = dict(taken), dict[str, np.ndarray]()
+        moving, still = dict(taken), dict(self._read)
         (moving if step else still)["cutoffs"] = most
         batches = Batches(prepared, boxes, weights, passes, moving, still, cutoffs_step=step)
         parts = max(1, count // prepared.sizes.part) if workers > 1 else 1
@@ -130,18 +137,75 @@ def _places(prepared: Prepared, boxes: Boxes) -> dict[str, np.ndarray]:
     }
 
 
-def compiled(code: Code, effort: CompilingEffort) -> BoxCode | None:
-    """Return the compiled form of generated code; None where it cannot be had."""
+class CompiledForms:
+    """What is compiled of generated code: one library for all formulas, then one of its own. Both give the same bits.
+
+    Parameters
+    ----------
+    code : Code
+    limits : CompilingLimits
+    """
+
+    def __init__(self, code: Code, limits: CompilingLimits) -> None:
+        self._code, self._limits = code, limits
+        self._listed = listed_code(code)
+        self._shared: BoxCode | None = None
+        self._own: BoxCode | None = None
+        self._beside: LibraryBeside | None = None
+        self._boxes = 0.0
+        self._hopeless = False
+
+    def take(self, boxes: int) -> BoxCode | None:
+        """Return the code for so many boxes more; None where it cannot be had.
+
+        Raises
+        ------
+        NotCompiled
+            The time limit is too short for compiling it.
+        """
+        self._boxes += boxes
+        if self._own is None and self._listed is None and not self._hopeless:
+            self._own = self._made_now()
+        if self._own is None and self._listed is not None and self._boxes > self._limits.own:
+            self._own = self._made_beside()
+        return self._own or self._shared_code()
+
+    def _shared_code(self) -> BoxCode | None:
+        if self._shared is None and self._listed is not None and not self._hopeless:
+            loaded = library("boxes_general", interpreter_source(), self._limits.effort, GENERAL_FLAGS)
+            self._shared = None if loaded is None else BoxCode(loaded, self._listed)
+            self._hopeless = loaded is None
+        return self._shared
+
+    def _made_now(self) -> BoxCode | None:
+        text = source(self._code)
+        loaded = None if text is None else library("boxes", text, self._limits.effort, BOX_FLAGS)
+        self._hopeless = loaded is None
+        return None if loaded is None else BoxCode(loaded)
+
+    def _made_beside(self) -> BoxCode | None:
+        if self._beside is None:
+            text = source(self._code)
+            if text is None:
+                return None
+            self._beside = LibraryBeside("boxes", text, self._limits.effort, BOX_FLAGS)
+        loaded = self._beside.loaded()
+        return None if loaded is None else BoxCode(loaded)
+
+
+def compiled(code: Code, boxes: int, limits: CompilingLimits) -> BoxCode | None:
+    """Return the compiled form of generated code for so many boxes more; None where it cannot be had."""
     if not switched_on():
         return None
-    if code.compiled is None and not code.hopeless:
-        text = source(code)
-        try:
-            loaded = None if text is None else library("boxes", text, effort, BOX_FLAGS)
-        except NotCompiled:
-            return None
-        if loaded is not None:
-            code.compiled = BoxCode(loaded)
-        code.hopeless = loaded is None
-    found: BoxCode | None = code.compiled
-    return found
+    if code.compiled is None:
+        code.compiled = CompiledForms(code, limits)
+    forms: CompiledForms = code.compiled
+    try:
+        return forms.take(boxes)
+    except NotCompiled:
+        return None
+
+
+def begin(effort: CompilingEffort) -> None:
+    """Let what serves all formulas be compiled beside other work, where it is not there yet."""
+    LibraryBeside("boxes_general", interpreter_source(), effort, GENERAL_FLAGS).loaded()

@@ -53,6 +53,7 @@ class CompiledPropagation:
         self._contracted: Counter[tuple[bool, bool]] = Counter()
         self._prepared: dict[bool, tuple[ScoreTables, Prepared]] = {}
         self._halved: Halves | None = None
+        self._grown = 0
 
     def contract(self, boxes: Boxes, cutoffs: np.ndarray | None, passes: int, every: bool) -> Boxes | None:
         """Tighten, snap and score boxes; return what is alive, and None where no code is compiled.
@@ -86,12 +87,15 @@ class CompiledPropagation:
         levels : int
             Generations.
         """
-        code = self._code(False, True, 0)
+        # What one call looks into is known afterwards; the next one counts it.
+        counted, self._grown = self._grown, 0
+        code = self._code(False, True, 0, counted)
         if code is None:
             return None
         prepared, weights, workers = self._read(False), self._branching.weights, self._execution.workers
         found = code.subtrees.grow(prepared, self._halves(), boxes, cutoffs, weights, passes, levels, workers)
         self._contracted[False, True] += found.looked
+        self._grown = found.looked
         return found
 
     def to_compile(self, every: bool, capped: bool, boxes: int) -> bool:
@@ -100,10 +104,10 @@ class CompiledPropagation:
         many = self._execution.compiled and self._contracted[every, capped] > self._limits.boxes
         return many or (self.at_once and capped and not every)
 
-    def _code(self, every: bool, capped: bool, boxes: int) -> BoxCode | None:
+    def _code(self, every: bool, capped: bool, boxes: int, grown: int = 0) -> BoxCode | None:
         if not self.to_compile(every, capped, boxes):
             return None
-        return compiled(self._propagation.code(every, capped), self._limits.effort)
+        return compiled(self._propagation.code(every, capped), boxes + grown, self._limits)
 
     def _read(self, every: bool) -> Prepared:
         """Return the arrays that the code reads, made anew where boxes are scored by other tables."""

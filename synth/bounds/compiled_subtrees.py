@@ -8,7 +8,7 @@ back, and those that are too small to be split.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -124,9 +124,12 @@ class SubtreeCode:
     Parameters
     ----------
     loaded : CDLL
+    read : mapping
+        Arrays that it reads beside those of a question.
     """
 
-    def __init__(self, loaded: ctypes.CDLL) -> None:
+    def __init__(self, loaded: ctypes.CDLL, read: Mapping[str, np.ndarray]) -> None:
+        self._read = read
         self._grow = loaded.grow
         self._grow.argtypes = [ctypes.POINTER(BatchStructure), ctypes.POINTER(_TreeStructure)]
         self._grow.restype = ctypes.c_longlong
@@ -164,7 +167,7 @@ class SubtreeCode:
         MemoryError
             Where the code found no room to work in.
         """
-        batches, sizes = Batches(prepared, boxes, weights, passes), prepared.sizes
+        batches, sizes = Batches(prepared, boxes, weights, passes, still=self._read), prepared.sizes
         fixed, numbers = halves.kept | cutoffs.arrays(), {"levels": levels, **cutoffs.numbers()}
         # Boxes are taken by so many, whatever the number of threads: what comes back when there is no room for more
         # must not depend on it.

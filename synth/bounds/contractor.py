@@ -27,13 +27,12 @@ from synth.bounds.sweep_writer import SweepWriter
 class Code:
     """The generated code of one sign pattern.
 
-    ``compiled`` is machine code, if there is any; ``hopeless``: there will be none.
+    ``compiled`` is what is compiled of it, kept here by who compiles.
     """
 
     nodes: PropagatedNodes
     sweeps: SweepStatements
     compiled: Any = None
-    hopeless: bool = False
     _functions: dict[bytes, Callable[..., Any]] = field(default_factory=dict)
 
     def function(self, root: Root) -> Callable[..., Any]:

@@ -11,11 +11,12 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from synth.compiled.compilation import compile_shared, switched_on
+from synth.compiled.compilation import compile_beside, compile_shared, switched_on
 from synth.native_switch import c_compiler
 from synth.tuning import CompilingEffort
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-std=gnu11", "-shared", "-fPIC")
+QUICK = (*FLAGS, "-O1")  # for what the first answer waits for: half the time, a tenth slower
 
 
 def library(name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = FLAGS) -> ctypes.CDLL | None:
@@ -38,17 +39,51 @@ def library(name: str, text: str, effort: CompilingEffort, flags: Sequence[str] 
     NotCompiled
         The time limit is too short for compiling it.
     """
+    place = _place(name, text, flags)
+    if place is None:
+        return None
+    compiler, path = place
+    try:
+        if not path.exists():
+            compile_shared(compiler, text, path, flags, effort)
+        return ctypes.CDLL(str(path))
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+class LibraryBeside:
+    """A C source that is compiled while other work goes on, and loaded once it is there.
+
+    Parameters
+    ----------
+    name, text, effort, flags
+        As for :func:`library`.
+    """
+
+    def __init__(self, name: str, text: str, effort: CompilingEffort, flags: Sequence[str] = FLAGS) -> None:
+        self._text, self._effort, self._flags = text, effort, flags
+        self._place = _place(name, text, flags)
+        self._loaded: ctypes.CDLL | None = None
+
+    def loaded(self) -> ctypes.CDLL | None:
+        """Return the loaded code; None as long as it is not there, which may be for good."""
+        if self._loaded is None and self._place is not None and switched_on():
+            compiler, path = self._place
+            try:
+                if compile_beside(compiler, self._text, path, self._flags, self._effort):
+                    self._loaded = ctypes.CDLL(str(path))
+            except (OSError, subprocess.SubprocessError):
+                self._place = None
+        return self._loaded
+
+
+def _place(name: str, text: str, flags: Sequence[str]) -> tuple[str, Path] | None:
+    """Return the compiler and the place of what it makes of a source; None where nothing can be compiled or kept."""
     compiler, folder = (_compiler(), cache_folder()) if switched_on() else (None, None)
     if compiler is None or folder is None:
         return None
     key = hashlib.sha256("\0".join([text, *flags, *compiler, _machine()]).encode()).hexdigest()[:32]
-    path = folder / f"{name}_{key}.so"
-    try:
-        if not path.exists():
-            compile_shared(compiler[0], text, path, flags, effort)
-        return ctypes.CDLL(str(path))
-    except (OSError, subprocess.SubprocessError):
-        return None
+    return compiler[0], folder / f"{name}_{key}.so"
 
 
 def cache_folder() -> Path | None:

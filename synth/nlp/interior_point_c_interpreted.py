@@ -15,7 +15,7 @@ import numpy as np
 
 from synth.compiled.c_text import EXPRESSIONS, bodies, filled, template
 from synth.compiled.compilation import switched_on
-from synth.compiled.compiler import library
+from synth.compiled.compiler import QUICK, LibraryBeside, library
 from synth.model.program import COMPARISONS, OP_SELECT
 from synth.nlp.interior_point import Ends, Problems, SparsityPattern
 from synth.nlp.interior_point_c import Solver
@@ -195,8 +195,13 @@ def general(functions: RowFunctions, settings: NlpSettings) -> General | None:
     """Return the solver; None where row functions are too large, or code cannot be compiled, kept or loaded."""
     if not switched_on() or not fits(functions):
         return None
-    loaded = library("nlp", _text(settings.method), settings.effort)
+    loaded = library("nlp_general", _text(settings.method), settings.effort, QUICK)
     return None if loaded is None else General(functions, loaded)
+
+
+def begin(settings: NlpSettings) -> None:
+    """Let the code be compiled beside other work, where it is not there yet."""
+    LibraryBeside("nlp_general", _text(settings.method), settings.effort, QUICK).loaded()
 
 
 @cache

@@ -194,8 +194,10 @@ class ContinuousProblems:
         if not switched_on():
             return "arrays"
         compiling, execution = self.tuning.compiling, self.execution
+        # A single question begins with what is compiled for all: its first answer shall not wait for more.
         large = self.instance.combinations.count * execution.similar_questions >= compiling.combinations
-        worthwhile = large or self.counters.work > compiling.work
+        many = large and execution.similar_questions > 1
+        worthwhile = many or self.counters.work > compiling.work
         return "own" if execution.compiled and worthwhile else "general"
 
     def _positive(self, node: int | None) -> bool:

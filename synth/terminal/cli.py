@@ -207,6 +207,9 @@ def run(
     )
     must_be_a_question(asked)
     claim_output(folder, FRONT)
+    from synth.search.shared_code import begin_shared_code
+
+    begin_shared_code(asked.time_limit)  # a compiler works while all else is imported
     if asked.compares:
         if more is not None:
             raise InputError("--more", str(more), "a spec of one family")

@@ -16,6 +16,7 @@ from synth.bounds.box_batches import CompiledQuestion, Prepared
 from synth.bounds.boxes import Boxes
 from synth.bounds.branching import ScoreTables
 from synth.bounds.contractor import Contractor
+from synth.bounds.interpreted_boxes import MOST
 from synth.bounds.intervals import BACKWARD, FORWARD
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.bounds.root_propagation import Leaves, propagated_root
@@ -28,7 +29,7 @@ from synth.nlp import interior_point_c as native
 from synth.question.catalogs import as_catalogs
 from synth.search.formulation import Formulation
 from synth.special import TABLE, recorded
-from synth.tuning import TUNING, CodeSizes, CompilingEffort
+from synth.tuning import TUNING, CodeSizes, CompilingEffort, CompilingLimits
 from tests.asking import instance_of
 from tests.tuned import tuned
 
@@ -133,7 +134,7 @@ class Case:
         alive &= ~np.any(low > above(high, *TUNING.tolerances.margins), axis=1)
         return alive, low, np.maximum(low, high), goals, opens
 
-    def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes()):  # noqa: B008 - it is frozen
+    def compiled(self, code, capped, passes, workers=1, sizes=CodeSizes(), made=loaded):  # noqa: B008 - it is frozen
         unbounded = np.full(self.n, np.inf)
         question = CompiledQuestion(
             self.tables,
@@ -157,7 +158,7 @@ class Case:
             np.ones((self.boxes, self.n + 2), dtype=np.float32),
             np.arange(self.boxes),
         )
-        return loaded(code).contract(
+        return made(code).contract(
             prepared,
             boxes,
             self.cutoffs if capped else None,
@@ -446,8 +447,8 @@ def test_what_cannot_be_compiled_is_asked_for_once(monkeypatch):
     monkeypatch.setattr(compiled_boxes, "library", lambda *given: asked.append(given))
     case = random_case(5, ARITHMETIC, boxes=8)
     code = case.contractor.code(case.root, False)
-    assert compiled_boxes.compiled(code, CompilingEffort()) is None
-    assert compiled_boxes.compiled(code, CompilingEffort()) is None
+    assert compiled_boxes.compiled(code, 8, CompilingLimits()) is None
+    assert compiled_boxes.compiled(code, 8, CompilingLimits()) is None
     assert len(asked) == 1
 
 
@@ -480,11 +481,11 @@ def test_requirements_do_not_enter_the_source():
 
 def test_an_operation_without_c_leaves_the_code_to_numpy(monkeypatch):
     monkeypatch.delitem(box_source.rules.FORWARD, ca.OP_FLOOR)
-    x, data = ca.SX.sym("x"), [ca.SX.sym(f"c{k}") for k in range(4)]
-    program = Program([x, *data], [np.floor(x) * data[0], x * data[2]])
+    n = MOST["N"] + 1  # too many for the code that serves all formulas
+    x, data = [ca.SX.sym(f"x{k}") for k in range(n)], [ca.SX.sym(f"c{k}") for k in range(4)]
+    program = Program([*x, *data], [np.floor(x[0]) * data[0], x[0] * data[2]])
     constraints = [NodeConstraint("at_most", program.outputs[0], None, 1e-9, 1.0)]
-    case = Case(program, 1, constraints, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
+    case = Case(program, n, constraints, [Goal(program.outputs[1], 1)], (0.5, 3.0), np.random.default_rng(1), 4)
     code = case.contractor.code(case.root, False)
     assert box_source.source(code) is None
-    assert compiled_boxes.compiled(code, CompilingEffort()) is None
-    assert code.hopeless
+    assert compiled_boxes.compiled(code, 8, CompilingLimits()) is None

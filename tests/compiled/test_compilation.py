@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -12,8 +14,9 @@ import pytest
 
 from synth import deadline
 from synth.compiled import compilation, compiler
-from synth.compiled.compilation import compile_shared, meanwhile, switched_off, switched_on
+from synth.compiled.compilation import compile_beside, compile_shared, meanwhile, switched_off, switched_on
 from synth.deadline import Stopped
+from synth.file_locks import alone
 from synth.nlp import interior_point_c as native
 from synth.nlp.batch import BatchNlp, Tasks
 from synth.search.front_search import FrontSearch
@@ -274,3 +277,121 @@ def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatc
 def test_a_compiler_that_takes_too_long_is_given_up(tmp_path):
     with pytest.raises(subprocess.TimeoutExpired):
         compile_shared(slow_compiler(tmp_path, 600), SOURCE, tmp_path / "code.so", [], CompilingEffort(most=0.2))
+
+
+# -- beside all other work -------------------------------------------------------------------------
+
+
+def beside(cc: str, place: Path, effort: CompilingEffort = USUAL) -> bool:
+    return compile_beside(cc, SOURCE, place, [], effort)
+
+
+def test_what_is_compiled_beside_is_there_some_time(tmp_path):
+    folder, cc = tmp_path / "cache", slow_compiler(tmp_path, 0.3)
+    folder.mkdir()
+    place = folder / "code.so"
+    assert not beside(cc, place)
+    assert not place.exists()
+    while not beside(cc, place):
+        time.sleep(0.01)
+    assert place.read_text() == "compiled"
+    assert list(folder.iterdir()) == [place]
+
+
+def test_what_is_needed_at_once_is_waited_for_where_it_is_begun_already(tmp_path):
+    folder, cc = tmp_path / "cache", slow_compiler(tmp_path, 0.3)
+    folder.mkdir()
+    place = folder / "code.so"
+    beside(cc, place)
+    child = begun(tmp_path)
+    compile_shared("/bin/false", SOURCE, place, [], USUAL)  # no other compiler is begun
+    assert place.read_text() == "compiled"
+    assert ended(child)
+    assert list(folder.iterdir()) == [place]
+
+
+def test_what_two_processes_want_is_compiled_by_one(tmp_path):
+    folder, cc = tmp_path / "cache", slow_compiler(tmp_path, 0.5)
+    folder.mkdir()
+    place = folder / "code.so"
+    with alone(place.with_suffix(".lock")):
+        assert not beside(cc, place)
+        time.sleep(0.1)
+        assert not beside(cc, place)
+        assert not (tmp_path / "child").exists()
+    compile_shared(cc, SOURCE, place, [], USUAL)
+    assert list(folder.iterdir()) == [place]
+
+
+def test_who_needs_what_another_process_makes_waits_for_it(tmp_path):
+    place = tmp_path / "code.so"
+
+    def other(ready):
+        place.write_text("made elsewhere")
+
+    with alone(place.with_suffix(".lock")), meanwhile(other):
+        compile_shared("/bin/false", SOURCE, place, [], USUAL)
+    assert place.read_text() == "made elsewhere"
+
+
+def test_what_cannot_be_compiled_beside_is_told_once(tmp_path):
+    place = tmp_path / "code.so"
+    beside("/bin/false", place)
+    time.sleep(0.5)
+    with pytest.raises(subprocess.CalledProcessError):
+        beside("/bin/false", place)
+    assert not list(tmp_path.iterdir())
+
+
+def test_under_a_short_time_limit_nothing_is_begun_beside(tmp_path):
+    with deadline.until(time.monotonic() + 1e6):
+        assert not beside(slow_compiler(tmp_path, 0), tmp_path / "code.so", NOT_WITHIN_A_YEAR)
+    assert not list(tmp_path.glob("*.lock"))
+    assert not list(tmp_path.glob("code.so"))
+
+
+PROGRAM = """
+import sys, time
+from pathlib import Path
+from synth.compiled.compilation import compile_beside
+from synth.tuning import CompilingEffort
+cc, place = sys.argv[1], Path(sys.argv[2])
+compile_beside(cc, "int one(void) { return 1; }", place, [], CompilingEffort())
+while not Path(sys.argv[3]).exists():
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.parametrize("end", ["", "raise KeyboardInterrupt", "sys.exit(3)"])
+def test_a_program_that_ends_leaves_no_compiler_and_nothing_of_it(tmp_path, end):
+    folder = tmp_path / "cache"
+    folder.mkdir()
+    given = [slow_compiler(tmp_path, 600), str(folder / "code.so"), str(tmp_path / "child")]
+    subprocess.run([sys.executable, "-c", PROGRAM + end, *given], check=False, stderr=subprocess.DEVNULL)
+    assert ended(begun(tmp_path))
+    assert not list(folder.iterdir())
+
+
+def test_a_process_of_a_pool_ends_its_compiler(tmp_path):
+    folder = tmp_path / "cache"
+    folder.mkdir()
+    process = multiprocessing.get_context("fork").Process(
+        target=beside, args=(slow_compiler(tmp_path, 600), folder / "code.so")
+    )
+    process.start()
+    process.join()
+    assert not list(folder.iterdir())
+
+
+def test_a_process_that_is_forked_off_leaves_the_compiler_to_its_parent(tmp_path):
+    folder, cc = tmp_path / "cache", slow_compiler(tmp_path, 0.5)
+    folder.mkdir()
+    place = folder / "code.so"
+    beside(cc, place)
+    begun(tmp_path)
+    process = multiprocessing.get_context("fork").Process(target=beside, args=(cc, place))
+    process.start()
+    process.join()
+    compile_shared("/bin/false", SOURCE, place, [], USUAL)
+    assert place.read_text() == "compiled"
+    assert list(folder.iterdir()) == [place]

@@ -1,5 +1,6 @@
 /* The contraction of many boxes, a register of them at a time: load, tighten, snap to the grid, score, pack.
-   Sizes, the record of a batch, and tighten and load_tables, which know the formulas, are generated before it. */
+   Sizes, the record of a batch, and begin_file, tighten and load_tables, which know the formulas, stand before it.
+   What comes of a box depends on nothing but the box. */
 
 typedef float vf __attribute__((vector_size(8 * LANES)));
 
@@ -64,16 +65,11 @@ static float dot(const float *a, const float *b, long long width) {
     return parts[0];
 }
 
-typedef struct {
-    vd RL[NODES], RH[NODES], B[ANY(LIMITS)], C[ANY(GOALS)], V[ANY(N)][2], T[ANY(TABLES)][2];
-    vd goals[ANY(GOALS)], scores[ANY(N)];
-    vi undecided[ANY(LIMITS)];
-} Registers;
-
-static void begin(const Batch *b, Registers *r, float counted[LANES][b->score_width]) {
-    for (int k = 0; k < NODES; k++) { r->RL[k] = all(b->root_low[k]); r->RH[k] = all(b->root_high[k]); }
-    for (int j = 0; j < LIMITS; j++) { r->B[j] = all(b->right_sides[j]); r->undecided[j] = all_i(0); }
+static void begin(const Batch *b, Whole *whole, vd *file, float counted[LANES][b->score_width]) {
+    for (int k = 0; k < NODES; k++) { whole->RL[k] = all(b->root_low[k]); whole->RH[k] = all(b->root_high[k]); }
+    for (int j = 0; j < LIMITS; j++) whole->B[j] = all(b->right_sides[j]);
     memset(counted, 0, LANES * sizeof counted[0]);
+    begin_file(b, file);
 }
 
 /* How much each variable blurs what is left of boxes, and how much each limit and objective counts. */
@@ -98,47 +94,58 @@ static void score(const Batch *b, Registers *r, float counted[LANES][b->score_wi
 }
 
 long long contract(const Batch *b) {
-    Registers r;
+    vd file[REGISTERS];
+    Whole whole;
+    Registers block[WIDE];
+    vi dead_of[WIDE];
     float counted[LANES][b->score_width];
     const long long columns = N + b->factors;
     long long kept = 0;
-    begin(b, &r, counted);
-    for (long long first = 0; first < b->count; first += LANES) {
-        const long long left = b->count - first;
-        for (int l = 0; l < LANES; l++) {
-            const long long box = first + (l < left ? l : left - 1);
-            for (int i = 0; i < N; i++) { r.V[i][0][l] = b->low[box * N + i]; r.V[i][1][l] = b->high[box * N + i]; }
-            for (int j = 0; j < GOALS; j++) r.C[j][l] = b->cutoffs[box * b->cutoffs_step + j];
-            load_tables(b, b->cell + box * b->factors, r.T, l);
+    begin(b, &whole, file, counted);
+    for (long long start = 0; start < b->count; start += BLOCK) {
+        const long long rest = b->count - start;
+        const int wide = rest < BLOCK ? (int)((rest + LANES - 1) / LANES) : WIDE;
+        for (int l = 0; l < wide * LANES; l++) {
+            const long long box = start + (l < rest ? l : rest - 1);
+            Registers *const r = block + l / LANES;
+            const int lane = l % LANES;
+            for (int i = 0; i < N; i++) { r->V[i][0][lane] = b->low[box * N + i]; r->V[i][1][lane] = b->high[box * N + i]; }
+            for (int j = 0; j < GOALS; j++) r->C[j][lane] = b->cutoffs[box * b->cutoffs_step + j];
+            load_tables(b, b->cell + box * b->factors, r->T, lane);
         }
-        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.undecided);
-        dead |= snap(b, r.V);
-        for (int l = 0; l < LANES && l < left; l++) {
-            b->alive[first + l] = !dead[l];
-            for (int j = 0; j < LIMITS; j++) b->undecided[(first + l) * LIMITS + j] = r.undecided[j][l] != 0;
-        }
-        if (!any(~dead)) continue;
-        score(b, &r, counted);
-        for (int l = 0; l < LANES && l < left; l++) {
-            if (dead[l]) continue;
-            const long long box = first + l;
-            const int *cell = b->cell + box * b->factors;
-            for (int i = 0; i < N; i++) {
-                b->out_low[kept * N + i] = r.V[i][0][l];
-                b->out_high[kept * N + i] = r.V[i][1][l];
-                b->out_scores[kept * columns + i] = (float)r.scores[i][l];
+        tighten(b, &whole, file, block, wide, dead_of);
+        for (int w = 0; w < wide; w++) {
+            const long long first = start + w * LANES, left = b->count - first;
+            Registers *const r = block + w;
+            const vi dead = dead_of[w] | snap(b, r->V);
+            for (int l = 0; l < LANES && l < left; l++) {
+                b->alive[first + l] = !dead[l];
+                for (int j = 0; j < LIMITS; j++)
+                    b->undecided[(first + l) * LIMITS + j] = !dead[l] && r->undecided[j][l] != 0;
             }
-            for (long long j = 0; j < b->goals; j++) {
-                const double bound = b->bounds[box * b->goals + j];
-                const double least = j < GOALS ? r.goals[j][l] : NAN;
-                b->out_bounds[kept * b->goals + j] = bound >= least || least != least ? bound : least;
+            if (!any(~dead)) continue;
+            score(b, r, counted);
+            for (int l = 0; l < LANES && l < left; l++) {
+                if (dead[l]) continue;
+                const long long box = first + l;
+                const int *cell = b->cell + box * b->factors;
+                for (int i = 0; i < N; i++) {
+                    b->out_low[kept * N + i] = r->V[i][0][l];
+                    b->out_high[kept * N + i] = r->V[i][1][l];
+                    b->out_scores[kept * columns + i] = (float)r->scores[i][l];
+                }
+                for (long long j = 0; j < b->goals; j++) {
+                    const double bound = b->bounds[box * b->goals + j];
+                    const double least = j < GOALS ? r->goals[j][l] : NAN;
+                    b->out_bounds[kept * b->goals + j] = bound >= least || least != least ? bound : least;
+                }
+                for (long long f = 0; f < b->factors; f++) {
+                    const float *spread = b->spreads[f] + cell[f] * b->score_width;
+                    b->out_cell[kept * b->factors + f] = cell[f];
+                    b->out_scores[kept * columns + N + f] = dot(counted[l], spread, b->score_width);
+                }
+                b->out_tag[kept++] = b->tag[box];
             }
-            for (long long f = 0; f < b->factors; f++) {
-                const float *spread = b->spreads[f] + cell[f] * b->score_width;
-                b->out_cell[kept * b->factors + f] = cell[f];
-                b->out_scores[kept * columns + N + f] = dot(counted[l], spread, b->score_width);
-            }
-            b->out_tag[kept++] = b->tag[box];
         }
     }
     return kept;

@@ -15,7 +15,7 @@ typedef struct {
 } Tree;
 
 /* What a design of a box must keep to be of use; whether the box may hold any. */
-static int cutoffs_of(const Tree *t, const double *lower, const int *cell, double *cutoffs) {
+static int cutoffs_of(const Batch *b, const Tree *t, const double *lower, const int *cell, double *cutoffs) {
     for (int j = 0; j < GOALS; j++) {
         cutoffs[j] = t->fixed[j];
         if (t->of_cluster) cutoffs[j] = fmin(cutoffs[j], t->of_cluster[cell[0] * GOALS + j]);
@@ -59,7 +59,7 @@ static void middle_of(const Batch *b, int i, double low, double high, double *en
     }
 }
 
-typedef struct { double low[ANY(N)], high[ANY(N)], bounds[ANY(GOALS)]; int tag, level; } Box;
+typedef struct { double low[MOST_N], high[MOST_N], bounds[MOST_GOALS]; long long place; int tag, level; } Box;
 
 INLINE void put(const Batch *b, Tree *t, long long place, const Box *box, const int *cell, int too_small) {
     memcpy(t->out_cell + place * b->factors, cell, b->factors * sizeof *cell);
@@ -73,7 +73,7 @@ INLINE void put(const Batch *b, Tree *t, long long place, const Box *box, const 
 /* What is splittable of a box is split where the scores say; 0 where nothing is. */
 static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell, const float *scores,
                   Box *second, int *second_cell, Box *first, int *first_cell) {
-    double width[ANY(N)], best = -1.0;
+    double width[MOST_N], best = -1.0;
     int choice = -1, flat = 1;
     for (int i = 0; i < N; i++) {
         const double low = box->low[i], high = box->high[i], size = fmax(fabs(low), fabs(high));
@@ -110,16 +110,54 @@ static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell
     return 1;
 }
 
+/* Where a box comes among those that come back: first those of the first box, and first its first half. */
+static int by_place(const void *a, const void *b) {
+    const long long first = ((const long long *)a)[0], second = ((const long long *)b)[0];
+    return (first > second) - (first < second);
+}
+
+/* Puts what comes back into the order of where it comes from, so that it does not depend on what was done together. */
+static int in_order(const Batch *b, Tree *t, const long long *places, long long kept) {
+    const long long factors = b->factors;
+    long long *order = malloc((kept + 1) * 2 * sizeof *order);
+    double *ends = malloc((kept + 1) * sizeof *ends);
+    int *cells = malloc((kept + 1) * (factors + 1) * sizeof *cells);
+    const int room = order && ends && cells;
+    if (room) {
+        for (long long k = 0; k < kept; k++) { order[2 * k] = places[k]; order[2 * k + 1] = k; }
+        qsort(order, kept, 2 * sizeof *order, by_place);
+#define SORTED(array, width, buffer) \
+        for (long long i = 0; i < (width); i++) { \
+            for (long long k = 0; k < kept; k++) buffer[k] = array[order[2 * k + 1] * (width) + i]; \
+            for (long long k = 0; k < kept; k++) array[k * (width) + i] = buffer[k]; \
+        }
+        SORTED(t->out_cell, factors, cells)
+        SORTED(t->out_low, N, ends)
+        SORTED(t->out_high, N, ends)
+        SORTED(t->out_bounds, GOALS, ends)
+        SORTED(t->out_tag, 1, cells)
+        SORTED(t->too_small, 1, cells)
+    }
+    free(order);
+    free(ends);
+    free(cells);
+    return room;
+}
+
 /* Returns how many boxes come back, -1 where there is no memory. */
 long long grow(const Batch *b, Tree *t) {
-    Registers r;
+    vd file[REGISTERS];
+    Whole whole;
+    Registers block[WIDE];
+    vi dead_of[WIDE];
     const int factors = (int)b->factors;
-    const long long most = b->count + (t->levels + 2) * 2 * LANES;
+    const long long most = b->count + (t->levels + 2) * 2 * BLOCK;
     Box *stack = malloc(most * sizeof *stack);
-    int *cells = malloc(most * ANY(factors) * sizeof *cells);
-    float counted[LANES][b->score_width], scores[N + ANY(factors)];
+    int *cells = malloc(most * (factors + 1) * sizeof *cells);
+    long long *places = malloc((t->capacity + 1) * sizeof *places);
+    float counted[LANES][b->score_width], scores[N + factors + 1];
     long long waiting = b->count, kept = 0;
-    if (!stack || !cells) { free(stack); free(cells); return -1; }
+    if (!stack || !cells || !places) { free(stack); free(cells); free(places); return -1; }
     for (long long k = 0; k < b->count; k++) {
         Box *box = stack + k;
         memcpy(box->low, b->low + k * N, N * sizeof(double));
@@ -128,71 +166,91 @@ long long grow(const Batch *b, Tree *t) {
         memcpy(cells + k * factors, b->cell + k * factors, factors * sizeof *cells);
         box->tag = b->tag[k];
         box->level = 0;
+        box->place = k << t->levels;
     }
-    begin(b, &r, counted);
-    while (waiting && kept + waiting + 2 * LANES < t->capacity && waiting + 2 * LANES <= most) {
-        Box taken[LANES];
-        int own_cells[LANES][ANY(factors)];
+    begin(b, &whole, file, counted);
+    while (waiting && kept + waiting + 2 * BLOCK < t->capacity && waiting + 2 * BLOCK <= most) {
+        Box taken[BLOCK];
+        int own_cells[BLOCK][factors + 1];
         int number = 0;
-        while (number < LANES && waiting) {
-            double cutoffs[ANY(GOALS)];
+        while (number < BLOCK && waiting) {
+            double cutoffs[MOST_GOALS];
             const Box *box = stack + --waiting;
             const int *cell = cells + waiting * factors;
-            if (!cutoffs_of(t, box->bounds, cell, cutoffs)) continue;
+            if (!cutoffs_of(b, t, box->bounds, cell, cutoffs)) continue;
+            Registers *const r = block + number / LANES;
+            const int lane = number % LANES;
             taken[number] = *box;
             memcpy(own_cells[number], cell, factors * sizeof *cell);
-            for (int i = 0; i < N; i++) { r.V[i][0][number] = box->low[i]; r.V[i][1][number] = box->high[i]; }
-            for (int j = 0; j < GOALS; j++) r.C[j][number] = cutoffs[j];
-            load_tables(b, cell, r.T, number++);
+            for (int i = 0; i < N; i++) { r->V[i][0][lane] = box->low[i]; r->V[i][1][lane] = box->high[i]; }
+            for (int j = 0; j < GOALS; j++) r->C[j][lane] = cutoffs[j];
+            load_tables(b, cell, r->T, lane);
+            number++;
         }
         if (!number) break;
-        for (int l = number; l < LANES; l++) {
-            for (int i = 0; i < N; i++) { r.V[i][0][l] = r.V[i][0][0]; r.V[i][1][l] = r.V[i][1][0]; }
-            for (int j = 0; j < GOALS; j++) r.C[j][l] = r.C[j][0];
-            for (int i = 0; i < TABLES; i++) { r.T[i][0][l] = r.T[i][0][0]; r.T[i][1][l] = r.T[i][1][0]; }
+        const int wide = (number + LANES - 1) / LANES;
+        for (int l = number; l < wide * LANES; l++) {
+            Registers *const r = block + l / LANES;
+            const int lane = l % LANES;
+            for (int i = 0; i < N; i++) { r->V[i][0][lane] = r->V[i][0][0]; r->V[i][1][lane] = r->V[i][1][0]; }
+            for (int j = 0; j < GOALS; j++) r->C[j][lane] = r->C[j][0];
+            for (int i = 0; i < TABLES; i++) { r->T[i][0][lane] = r->T[i][0][0]; r->T[i][1][lane] = r->T[i][1][0]; }
         }
         t->contracted += number;
-        vi dead = tighten(b, r.RL, r.RH, r.B, r.C, r.V, r.T, r.goals, r.undecided);
-        dead |= snap(b, r.V);
-        if (!any(~dead)) continue;
-        score(b, &r, counted);
-        for (int l = 0; l < number; l++) {
-            if (dead[l]) continue;
-            double cutoffs[ANY(GOALS)];
-            Box *box = taken + l;
-            for (int i = 0; i < N; i++) {
-                box->low[i] = r.V[i][0][l];
-                box->high[i] = r.V[i][1][l];
-                scores[i] = (float)r.scores[i][l];
-            }
-            for (int j = 0; j < GOALS; j++) {
-                const double least = r.goals[j][l];
-                box->bounds[j] = box->bounds[j] >= least || least != least ? box->bounds[j] : least;
-            }
-            if (!cutoffs_of(t, box->bounds, own_cells[l], cutoffs)) continue;
-            for (int f = 0; f < factors; f++)
-                scores[N + f] = dot(counted[l], b->spreads[f] + own_cells[l][f] * b->score_width, b->score_width);
-            box->level++;
-            Box first, second;
-            int first_cell[ANY(factors)], second_cell[ANY(factors)];
-            if (!halved(b, t, box, own_cells[l], scores, &second, second_cell, &first, first_cell)) {
-                put(b, t, kept++, box, own_cells[l], 1);
-            } else if (box->level >= t->levels) {
-                put(b, t, kept++, &first, first_cell, 0);
-                put(b, t, kept++, &second, second_cell, 0);
-            } else {
-                stack[waiting] = second;
-                memcpy(cells + waiting++ * factors, second_cell, factors * sizeof *cells);
-                stack[waiting] = first;
-                memcpy(cells + waiting++ * factors, first_cell, factors * sizeof *cells);
+        tighten(b, &whole, file, block, wide, dead_of);
+        for (int w = 0; w < wide; w++) {
+            Registers *const r = block + w;
+            dead_of[w] |= snap(b, r->V);
+            if (!any(~dead_of[w])) continue;
+            score(b, r, counted);
+            for (int l = 0; l < LANES && w * LANES + l < number; l++) {
+                if (dead_of[w][l]) continue;
+                double cutoffs[MOST_GOALS];
+                Box *box = taken + w * LANES + l;
+                const int *own = own_cells[w * LANES + l];
+                for (int i = 0; i < N; i++) {
+                    box->low[i] = r->V[i][0][l];
+                    box->high[i] = r->V[i][1][l];
+                    scores[i] = (float)r->scores[i][l];
+                }
+                for (int j = 0; j < GOALS; j++) {
+                    const double least = r->goals[j][l];
+                    box->bounds[j] = box->bounds[j] >= least || least != least ? box->bounds[j] : least;
+                }
+                if (!cutoffs_of(b, t, box->bounds, own, cutoffs)) continue;
+                for (int f = 0; f < factors; f++)
+                    scores[N + f] = dot(counted[l], b->spreads[f] + own[f] * b->score_width, b->score_width);
+                box->level++;
+                Box first, second;
+                int first_cell[factors + 1], second_cell[factors + 1];
+                if (!halved(b, t, box, own, scores, &second, second_cell, &first, first_cell)) {
+                    places[kept] = box->place;
+                    put(b, t, kept++, box, own, 1);
+                    continue;
+                }
+                second.place += 1LL << (t->levels - box->level);
+                if (box->level >= t->levels) {
+                    places[kept] = first.place;
+                    put(b, t, kept++, &first, first_cell, 0);
+                    places[kept] = second.place;
+                    put(b, t, kept++, &second, second_cell, 0);
+                } else {
+                    stack[waiting] = second;
+                    memcpy(cells + waiting++ * factors, second_cell, factors * sizeof *cells);
+                    stack[waiting] = first;
+                    memcpy(cells + waiting++ * factors, first_cell, factors * sizeof *cells);
+                }
             }
         }
     }
     while (waiting) {
         waiting--;
+        places[kept] = stack[waiting].place;
         put(b, t, kept++, stack + waiting, cells + waiting * factors, 0);
     }
+    if (!in_order(b, t, places, kept)) kept = -1;
     free(stack);
     free(cells);
+    free(places);
     return kept;
 }
