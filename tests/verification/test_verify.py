@@ -457,21 +457,31 @@ def test_nonsense_is_found_or_refused_but_never_a_fault_of_the_program(saved, tm
 
 
 def places(content, above=()):
-    """Yield the keys that lead to everything in a record, of lists to their first entry alone."""
-    for key in content if isinstance(content, dict) else range(min(1, len(content))):
+    """Yield the keys that lead to everything in a record; of what is alike (entries, rows, texts) to few."""
+    keys = list(content) if isinstance(content, dict) else list(range(min(1, len(content))))
+    if above == ("parts",):
+        keys = list({content[key]["table"]: key for key in keys}.values())  # one row of each table
+    elif len(above) == 1 and all(isinstance(content[key], str) for key in keys):
+        keys = keys[:2]
+    for key in keys:
         yield (*above, key)
         if isinstance(content[key], (dict, list)):
             yield from places(content[key], (*above, key))
 
 
-MORE_NONSENSE = [pytest.param(x, marks=pytest.mark.slow) for x in (-7, [1], {"a": [None]}, 1e30, True, "\ud800")]
+EVERYWHERE = ("x", None)
+IN_TURNS = (-7, [1], {"a": [None]}, 1e30, True, "\ud800")  # every second of these at a place, the others at the next
 
 
-@pytest.mark.parametrize("nonsense", ["x", None, *MORE_NONSENSE], ids=repr)
+@pytest.mark.slow
+@pytest.mark.parametrize("nonsense", [*EVERYWHERE, *IN_TURNS], ids=repr)
 def test_nonsense_anywhere_is_told_and_never_a_fault_of_the_program(nonsense, saved, tmp_path):
     original = json.loads((saved / "front.json").read_text(encoding="utf-8"))
     del original["digest"]
-    for *above, last in places(original):
+    offset = next((k for k, x in enumerate(IN_TURNS) if x is nonsense), None)
+    for number, (*above, last) in enumerate(places(original)):
+        if offset is not None and (number + offset) % 2:
+            continue
         content = copy.deepcopy(original)
         place = content
         for key in above:
