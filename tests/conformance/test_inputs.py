@@ -17,7 +17,12 @@ from synth.results import Design
 from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
 from tests.conformance.cases import CASES, question
 
-STRUCTURES = [(f, s, optional) for f, data in CASES.items() for s in data.option_sets for optional in (False, True)]
+STRUCTURES = [  # of each family one that is fast to run
+    pytest.param(f, s, optional, marks=[] if number == 0 and optional else pytest.mark.slow)
+    for f, data in CASES.items()
+    for number, s in enumerate(data.option_sets)
+    for optional in (False, True)
+]
 
 
 def by_hand(instance: Instance, parts: Any, counts: Any, choices: Any) -> list[float]:

@@ -40,7 +40,11 @@ def structures(family, option):
     return kept
 
 
-@pytest.fixture(scope="module", params=TABLES, ids=lambda p: p.stem.removeprefix("names_"))
+LARGE = ("names_multi_plate_clutch",)  # of many structures
+PARAMS = [pytest.param(p, marks=pytest.mark.slow if p.stem in LARGE else []) for p in TABLES]
+
+
+@pytest.fixture(scope="module", params=PARAMS, ids=lambda p: p.stem.removeprefix("names_"))
 def named(request):
     family, option = family_and_option(request.param)
     models = [question(family, options, optional=True).model for options in structures(family, option)]

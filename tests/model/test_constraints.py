@@ -145,7 +145,12 @@ def of_family(family):
     return question(problem, dict(case.requirements), as_catalogs(None), None, sound, rng, **restricted)
 
 
-@pytest.fixture(scope="module", params=[*RANDOM, *CASES], ids=lambda p: p if isinstance(p, str) else f"{p[0]}-{p[1]}")
+FAMILIES = [pytest.param(f, marks=[] if f == "wrap_spring" else pytest.mark.slow) for f in CASES]
+
+
+@pytest.fixture(
+    scope="module", params=[*RANDOM, *FAMILIES], ids=lambda p: p if isinstance(p, str) else f"{p[0]}-{p[1]}"
+)
 def asked(request):
     return of_family(request.param) if isinstance(request.param, str) else of_structure(*request.param)
 

@@ -156,6 +156,7 @@ def test_numbers_against_an_independent_calculation(options, values, parts, how,
         assert found.values[name] == pytest.approx(value, rel=3e-5 if name in STEPPED else 1e-8), name
 
 
+@pytest.mark.slow
 def test_limits_are_built_when_they_are_asked_for():
     assert set(design().limits) == ALWAYS
     for limit, requirement in ASKED.items():

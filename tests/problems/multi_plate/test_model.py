@@ -216,6 +216,7 @@ def test_the_lecture_as_a_design():
     assert "surface_pressure" not in found.violated
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("guide_model", ["series", "cz"])
 def test_limits_are_built_when_they_are_asked_for(guide_model):
     always = ALWAYS | ({"plate_count_worthwhile"} if guide_model == "series" else set())

@@ -344,6 +344,7 @@ def test_rim_of_the_lightest_coupling_is_the_root_of_the_ligament_quadratic():
     assert best.values["rim"] == pytest.approx(rim, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_front_of_a_whole_catalogue_is_proven():
     front = synth.synthesize(family(), BASE, objectives=["pin_force", "mass"], points=30)
     assert len(front.designs) == 30
