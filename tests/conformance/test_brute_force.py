@@ -46,7 +46,7 @@ FAMILY = synth.load("multi_plate_clutch")
 class Enumeration:
     """All makeable designs of an instance that are feasible, with what is needed to compare them."""
 
-    def __init__(self, requirements, limits, ramps=9, forces=(1.0, 1.03, 1.1, 1.25, 1.6, 2.2)):
+    def __init__(self, requirements, limits, ramps=6, forces=(1.0, 1.03, 1.1, 1.25, 1.6, 2.2)):
         self.instance = instance = instance_of(
             FAMILY, requirements, as_catalogs(None), parts=SETTINGS["parts"], limits=limits
         )

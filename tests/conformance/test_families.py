@@ -14,6 +14,8 @@ from synth.files import read_bytes
 from synth.input_limits import INPUT_LIMITS
 from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
+from synth.results.front import front_record
+from synth.results.front_record import record_text
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
@@ -302,8 +304,8 @@ MORE = 20_000  # bytes per design, for what scatters (12 000 where six things do
 
 def test_the_largest_front_can_be_read_back(example, tmp_path):
     front = example[2]
-    longest = max(front.designs, key=lambda d: len(replace(front, designs=[d]).files()["front.json"]))
-    text = replace(front, designs=[longest] * INPUT_LIMITS.points).files()["front.json"]
+    longest = max(front.designs, key=lambda d: len(record_text(front_record(replace(front, designs=[d])))))
+    text = record_text(front_record(replace(front, designs=[longest] * INPUT_LIMITS.points)))
     path = tmp_path / "front.json"
     path.write_text(text)
     assert len(read_bytes(path, "front")) == len(text.encode())
@@ -316,6 +318,7 @@ def best(family, case, objective, **more):
     return front.designs[0] if front.designs else None
 
 
+@cache
 def first_objective(family):
     declared = question(family, {}, optional=False).model.declaration.objectives.values()
     return next(o for o in declared if o.default)
@@ -329,11 +332,10 @@ def optimum(example):
     return best(family, case, objective).values[objective]
 
 
-def test_other_seeds_reach_the_same_optimum(example, optimum):
+def test_another_seed_reaches_the_same_optimum(example, optimum):
     family, case, front = example
     objective = first_objective(family).name
-    found = [best(family, case, objective, seed=seed).values[objective] for seed in (1, 2)]
-    assert found == pytest.approx([optimum] * 2, rel=1e-3)
+    assert best(family, case, objective, seed=1).values[objective] == pytest.approx(optimum, rel=1e-3)
     extreme = min(d.values[objective] for d in front.designs)
     assert optimum == pytest.approx(extreme, rel=1e-3)
 

@@ -83,7 +83,7 @@ def posed(request: Request) -> Question | str:
 
 
 @pytest.mark.parametrize("family", CASES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.data())
 def test_a_request_is_read_again_as_it_was(family: str, data: st.DataObject) -> None:
     request = data.draw(requests(family))

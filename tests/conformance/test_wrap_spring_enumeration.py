@@ -174,14 +174,14 @@ def test_no_interference_fit_of_the_whole_catalogue_beats_the_front(name):
         "overload": "slip_limited" if ask.slip_limited else "torque_limited",
     }
     problem = synth.load("wrap_spring", **options)
-    front = synth.synthesize(problem, ask.requirements(**more), points=12, gap=GAP, time_limit=60)
+    front = synth.synthesize(problem, ask.requirements(**more), points=6, gap=GAP, time_limit=60)
     compare(front, interference_fit(ask), ("mass", "drag_torque"))
 
 
 def test_no_clearance_fit_of_the_whole_catalogue_beats_the_front():
     ask = Ask(50, 0.020, 125, speed=100.0, belt_limit=8)
     asked = ask.requirements(relative_speed="500 1/min")
-    front = synth.synthesize("wrap_spring_actuated", asked, points=12, gap=GAP, time_limit=60)
+    front = synth.synthesize("wrap_spring_actuated", asked, points=6, gap=GAP, time_limit=60)
     compare(front, clearance_fit(ask), ("mass", "actuator_torque"))
 
 
@@ -260,7 +260,7 @@ def fronts(peak):
     found = []
     for overload in ("slip_limited", "torque_limited"):
         requirements = {"required_torque": "50 N*m", "bore_diameter": "20 mm", "peak_torque": peak}
-        front = synth.synthesize(synth.load("wrap_spring", overload=overload), requirements, points=6)
+        front = synth.synthesize(synth.load("wrap_spring", overload=overload), requirements, points=4)
         assert front.certificate.kind == "global"
         found.append(front)
     return found
