@@ -7,11 +7,11 @@ import pickle
 import shutil
 import tempfile
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from sqlalchemy import URL
 
@@ -20,6 +20,7 @@ from synth.input_limits import INPUT_LIMITS
 from synth.jobs.executors import Cluster, Inline, Processes
 from synth.jobs.job_settings import JOBS, JobSettings
 from synth.jobs.outputs import write_outputs
+from synth.jobs.row_groups import RowGroups
 from synth.jobs.row_questions import Questioner, ReadRow, canonical_position, read_mapping
 from synth.jobs.row_table import read_table
 from synth.jobs.runner import Runner, Shares
@@ -128,7 +129,7 @@ def batch(
     database : str, optional
         ``sqlite:///file`` or ``postgresql://...``, instead of a file in the folder.
     progress : callable, optional
-        Called with a mapping: rows, done, failed, infeasible, bad, rate, left.
+        Called with a mapping: rows, done, failed, infeasible, bad, rate, left, found (rows not done that have designs).
     time_limit : float, optional
         Seconds per row. What is found within a time is not the same on every machine.
 
@@ -295,17 +296,20 @@ class BatchJob:
             return True
         # Rows wait in a file until all are checked: nothing is written before, and the database is not held up.
         with tempfile.TemporaryFile(prefix="clutchsynth-") as checked:
-            asked, first, school = 0, list[ReadRow](), WarmStarts(self.numbers.warm_starts)
+            asked, first, groups = 0, list[ReadRow](), RowGroups(self.numbers.groups)
             for count, row in enumerate(self.questioner.rows(), start=1):
                 if row.key is not None and row.question is not None:
                     asked += 1
-                    school.show(row.structure, row.key, row.place, row.question)
+                    if self._has_one_objective():
+                        groups.show(row.key, row.place, row.question)
                 if count <= self.numbers.shown_faults and not asked:
                     first.append(row)
                 pickle.dump((self._recorded(row), row.place), checked)
             if not asked:
                 self._refuse(first, count if first else 0)
-            checked.seek(0)
+            company = _Company(groups, WarmStarts(self.numbers.warm_starts))
+            for record, where in _read_again(checked, count):
+                company.show(record, where)
             return not self.store.create(
                 {
                     "id": self.id,
@@ -314,7 +318,7 @@ class BatchJob:
                     "folder": str(self.folder.resolve()),
                     "content": self._content(),
                 },
-                (_taught(school, *pickle.load(checked)) for _ in range(count)),
+                (company.placed(record, where) for record, where in _read_again(checked, count)),
                 self.numbers.rows_per_unit if self._is_single() else self.numbers.fronts_per_unit,
             )
 
@@ -326,7 +330,10 @@ class BatchJob:
 
     def _is_single(self) -> bool:
         """Tell whether each row asks for one best design only."""
-        return self.settings["points"] == 1 or len(self.settings["objectives"] or ()) == 1
+        return self.settings["points"] == 1 or self._has_one_objective()
+
+    def _has_one_objective(self) -> bool:
+        return len(self.settings["objectives"] or ()) == 1
 
     def _reopen(self) -> None:
         job = self.store.job(self.id)
@@ -482,19 +489,50 @@ def work_off(
     return stopped
 
 
-def _taught(school: WarmStarts, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
-    """Return a row as it is kept: with the question whose experience helps it."""
-    question = record["question"]
-    if question is None:
-        return record
-    key, asked, teacher = school.taught(question["structure"], question["key"], where, question["content"])
-    # Questions with one teacher stand together, so that few processes need its experience.
-    position = canonical_position((encoded(question["content"]),))
-    return {
-        **record,
-        "key": key,
-        "question": {**question, "key": key, "content": asked, "position": teacher.encode() + b"\0" + position},
-    }
+def _read_again(file: IO[bytes], count: int) -> Iterator[tuple[dict[str, Any], tuple[float, ...]]]:
+    """Yield the rows that wait in a file, from the first."""
+    file.seek(0)
+    for _ in range(count):
+        yield pickle.load(file)
+
+
+class _Company:
+    """What helps the rows of a job: a group to be answered with, or else a teacher.
+
+    Parameters
+    ----------
+    groups : RowGroups
+        All rows were shown to them.
+    school : WarmStarts
+        No row was.
+    """
+
+    def __init__(self, groups: RowGroups, school: WarmStarts) -> None:
+        self._groups, self._school = groups, school
+
+    def show(self, record: Mapping[str, Any], where: tuple[float, ...]) -> None:
+        """Show a row: whoever is in no group may teach."""
+        question = record["question"]
+        if question is not None and self._groups.member(question["key"]) is None:
+            self._school.show(question["structure"], question["key"], where, question["content"])
+
+    def placed(self, record: dict[str, Any], where: tuple[float, ...]) -> dict[str, Any]:
+        """Return a row as it is kept: with the group that it is in, or the question whose experience helps it."""
+        question = record["question"]
+        if question is None:
+            return record
+        member = self._groups.member(question["key"])
+        asked: Mapping[str, Any]
+        if member is not None:
+            position, asked = member.position(), member.asked(question["content"])
+            key = digest(asked)
+        else:
+            key, asked, teacher = self._school.taught(
+                question["structure"], question["key"], where, question["content"]
+            )
+            # Questions with one teacher stand together, so that few processes need its experience.
+            position = teacher.encode() + b"\0" + canonical_position((encoded(question["content"]),))
+        return {**record, "key": key, "question": {**question, "key": key, "content": asked, "position": position}}
 
 
 def resume(

@@ -19,6 +19,7 @@ from typing import Any
 
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, ClusterSettings
+from synth.jobs.signs import share
 
 LOST = (OSError, RuntimeError, AttributeError, CancelledError, TimeoutError)  # what a client without scheduler raises
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -78,6 +79,10 @@ class Processes(Executor):
         self._all[self._all.index(worker)] = fresh
         return fresh
 
+    def found(self) -> int:
+        """Return how many rows of the groups that are under way have designs by now."""
+        return sum(int(worker.found.value) for worker in self._all)
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the processes at once, whatever they do."""
         for worker in self._all:
@@ -89,7 +94,8 @@ class _Worker:
 
     def __init__(self, context: Any) -> None:
         far, self._near = context.Pipe(duplex=False)
-        self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far,))
+        self.found = context.RawValue("q", 0)
+        self.pool = ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(far, self.found))
         self._far = far
 
     def end(self) -> None:
@@ -98,8 +104,12 @@ class _Worker:
         self.pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _begin(lifeline: Connection) -> None:
-    """Prepare a worker process: one thread, deaf to Ctrl-C and SIGTERM, and gone when its master is."""
+def _begin(lifeline: Connection, found: Any) -> None:
+    """Prepare a worker process: one thread, deaf to Ctrl-C and SIGTERM, and gone when its master is.
+
+    ``found``: where it shows how many rows of a group have designs.
+    """
+    share(found)
     for name in ONE_THREAD:
         os.environ.setdefault(name, "1")
     for number in (signal.SIGINT, signal.SIGTERM):  # whole groups of processes get them; the master decides

@@ -13,10 +13,11 @@ from typing import Any, TypeVar
 from sqlalchemy.exc import OperationalError
 
 from synth.errors import InputError
-from synth.jobs.executors import Cluster, is_lost
+from synth.jobs.executors import Cluster, Inline, Processes, is_lost
 from synth.jobs.job_settings import JOBS, RunnerSettings
-from synth.jobs.solve import OtherCodeError, solve_unit
-from synth.jobs.store import CANCELLED, Account, Claim, Outcome, Store, new_owner
+from synth.jobs.signs import show
+from synth.jobs.solve import ALONE, OtherCodeError, is_group, solve_unit
+from synth.jobs.store import CANCELLED, NONE_ALONE, Account, Claim, Outcome, Store, new_owner
 from synth.results.provenance import code_digest
 
 T = TypeVar("T")
@@ -42,7 +43,8 @@ class Runner:
     executor : Executor
         With ``slots``.
     progress : callable, optional
-        Called with a mapping: rows, done, failed, infeasible, rate (rows per second), left (seconds; None = unknown).
+        Called with a mapping: rows, done, failed, infeasible, rate (rows per second), left (seconds; None = unknown),
+        found (rows of groups under way that have designs by now).
     settings : RunnerSettings, optional
     """
 
@@ -66,6 +68,7 @@ class Runner:
         self.over = threading.Event()
         self.waiting: deque[Claim] = deque()
         self.under_way: dict[Future[Any], Claim] = {}
+        self.found = 0
 
     def run(self) -> str:
         """Work until nothing is left.
@@ -127,6 +130,7 @@ class Runner:
                 "catalogs": self.shares.catalogs,
                 "own": self.shares.own,
                 "code": code_digest(),
+                "tell": self._hear if isinstance(self.executor, Inline) else show,
             }
             self.under_way[self.executor.submit(solve_unit, work)] = claim
             free -= 1
@@ -137,21 +141,39 @@ class Runner:
             self.waiting.append(claim)
             return
         error = future.exception()
-        outcomes: dict[str, Outcome] = {}
-        errors: dict[str, str] = {}
         if isinstance(error, OtherCodeError):
             raise InputError("--scheduler", "workers with other code", "the same clutchsynth on all machines")
         if error is not None:
-            errors = dict.fromkeys(claim.questions, f"{type(error).__name__}: {error}")
+            self._failed(claim, f"{type(error).__name__}: {error}")
+            return
+        outcomes: dict[str, Outcome] = {}
+        errors: dict[str, str] = {}
+        alone: dict[str, str] = {}
+        for key, found in future.result().items():
+            if "error" in found:
+                errors[key] = found["error"]
+            elif ALONE in found:
+                alone[key] = found[ALONE]
+            else:
+                outcomes[key] = Outcome(found["status"], found["seconds"], found["layout"], found["content"])
+        self._finish(claim, outcomes, errors, alone)
+
+    def _failed(self, claim: Claim, error: str) -> None:
+        """Write that a unit has failed as a whole: a group is tried once more, then, as all others, row by row."""
+        if is_group(claim.questions) and claim.attempts + 2 < self.settings.attempts:
+            self._patiently(lambda: self.store.put_back(self.job, claim, self.owner, error))
         else:
-            for key, found in future.result().items():
-                if "error" in found:
-                    errors[key] = found["error"]
-                else:
-                    outcomes[key] = Outcome(found["status"], found["seconds"], found["layout"], found["content"])
-        self._patiently(
-            lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, self.settings.attempts)
-        )
+            self._finish(claim, {}, dict.fromkeys(claim.questions, error))
+
+    def _finish(
+        self,
+        claim: Claim,
+        outcomes: Mapping[str, Outcome],
+        errors: Mapping[str, str],
+        alone: Mapping[str, str] = NONE_ALONE,
+    ) -> None:
+        most = self.settings.attempts
+        self._patiently(lambda: self.store.finish(self.job, claim, self.owner, outcomes, errors, most, alone))
 
     def _others_work(self) -> bool:
         """Tell whether units are left that other processes have; wait a little for them."""
@@ -188,6 +210,14 @@ class Runner:
             except (OperationalError, OSError, InputError):
                 continue  # the database may be back at the next beat, long before a lease ends
 
+    def _hear(self, state: Mapping[str, Any]) -> None:
+        """Take note of how far the group is that this process searches."""
+        self.found = int(state["incumbents"])
+        try:
+            self._tell()
+        except (OperationalError, OSError, InputError):
+            return  # no matter of the search: whatever comes of it is written patiently
+
     def _tell(self, always: bool = False) -> None:
         """Report how far the job is, now and then."""
         if self.progress is None or (not always and time.monotonic() - self.said < self.pause):
@@ -210,6 +240,7 @@ class Runner:
                 "infeasible": account.status.get("infeasible", 0),
                 "bad": account.bad,
                 "rate": rate,
+                "found": self.executor.found() if isinstance(self.executor, Processes) else self.found,
                 "left": (account.rows - account.done) / rate if rate > 0 else None,
             }
         )

@@ -1,12 +1,13 @@
 """One unit of work: questions in, answers out. Nothing here knows of the database, of other units or of the time.
 
-The answer to a question depends on the question alone (a teacher that it names is part of it), not on what it is
-solved together with, where or when: that is why a batch gives the same bytes however it is spread and interrupted.
+The answer to a question depends on the question alone (a teacher or a group that it names is part of it), not on what
+else is solved, where or when: that is why a batch gives the same bytes however it is spread and interrupted.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import time
 import traceback
 from collections.abc import Mapping, Sequence
@@ -18,11 +19,14 @@ from synth.errors import InputError
 if TYPE_CHECKING:
     from synth.bounds.branching import BranchingStatistics
     from synth.model.problem import DesignProblem
+    from synth.question.settings import Progress
     from synth.results import Design, ParetoFront
     from synth.search.question import Question
     from synth.tables.catalogs import Catalogs
 
 LIKE = "like"  # where a question names the one whose experience helps
+GROUP = "group"  # where it names those that it is answered together with
+ALONE = "alone"  # in place of an answer: why the question must be asked alone; empty where nothing was proven of it
 LONGEST_ERROR = 2000
 
 
@@ -37,12 +41,13 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     ----------
     work : mapping
         ``job``, ``questions`` by key, ``settings`` of the search, ``catalogs``, ``own`` (the class of a problem that is
-        not registered, or None) and ``code``, the hash of the program that asks.
+        not registered, or None) and ``code``, the hash of the program that asks; ``tell``, where progress is wanted.
 
     Returns
     -------
     dict
-        Per key what :func:`answer` returns, or ``{"error": text}`` where the search failed.
+        Per key what :func:`answer` returns, or ``{"error": text}`` where the search failed, or ``{ALONE: text}`` where
+        the questions are a group that left this one to be asked alone.
 
     Raises
     ------
@@ -54,15 +59,89 @@ def solve_unit(work: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     if work["code"] != code_digest():
         raise OtherCodeError("the worker has another version of clutchsynth, or of a package that decides its numbers")
     shared = Shared(work["job"], work["catalogs"], work["own"])
+    if is_group(work["questions"]):
+        return answered_together(work["questions"], work["settings"], shared, work.get("tell"))
     found: dict[str, dict[str, Any]] = {}
     for key, question in work["questions"].items():
         try:
             found[key] = answer(question, work["settings"], shared)
         except (Exception, SystemExit) as error:
-            last = traceback.extract_tb(error.__traceback__)[-1:]
-            place = f" ({last[0].filename.rsplit('/', 1)[-1]}, line {last[0].lineno})" if last else ""
-            found[key] = {"error": f"{type(error).__name__}: {error}{place}"[:LONGEST_ERROR]}
+            found[key] = {"error": _told(error)}
     return found
+
+
+def is_group(questions: Mapping[str, Mapping[str, Any]]) -> bool:
+    """Tell whether questions are a group, and all of it; what is left of one is answered alone."""
+    groups = [question.get(GROUP) for question in questions.values()]
+    return bool(groups) and groups[0] is not None and groups.count(groups[0]) == len(groups) == groups[0]["rows"]
+
+
+def _told(error: BaseException) -> str:
+    """Return an error in words, with the place where it came up."""
+    last = traceback.extract_tb(error.__traceback__)[-1:]
+    place = f" ({last[0].filename.rsplit('/', 1)[-1]}, line {last[0].lineno})" if last else ""
+    return f"{type(error).__name__}: {error}{place}"[:LONGEST_ERROR]
+
+
+def answered_together(
+    questions: Mapping[str, Mapping[str, Any]], settings: Mapping[str, Any], shared: Shared, tell: Progress | None
+) -> dict[str, dict[str, Any]]:
+    """Search the designs for the questions of a group at once.
+
+    What cannot be posed, what is not like the others after all, and what is not proven has to be asked alone: there it
+    is refused, fails, or is searched for longer, in words of its own.
+
+    Parameters
+    ----------
+    questions : mapping
+        By key, in the order of the group.
+    settings, shared
+        As for :func:`answer`. The time limit of each question counts for all of them together.
+    tell : callable, optional
+        Told how far the search is.
+
+    Returns
+    -------
+    dict
+        Per key what :func:`answer` returns, or ``{ALONE: text}``.
+    """
+    from synth.parametric.joint_groups import groups_of
+
+    found: dict[str, dict[str, Any]] = {key: {ALONE: ""} for key in questions}
+    posed: dict[str, Question] = {}
+    for key, question in questions.items():
+        try:
+            posed[key] = _posed(question, settings, shared)
+        except (Exception, SystemExit) as error:
+            found[key] = {ALONE: "" if isinstance(error, InputError) else _told(error)}
+    keys = list(posed)
+    for group in groups_of(list(posed.values())):
+        some = {keys[k]: posed[keys[k]] for k in group}
+        try:
+            found |= _settled(some, tell)
+        except (Exception, SystemExit) as error:
+            found |= {key: {ALONE: _told(error)} for key in some}
+    if tell is not None:
+        tell({"incumbents": 0})  # no group is under way any more
+    return found
+
+
+def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[str, dict[str, Any]]:
+    """Search the designs for questions that are alike; what is not settled is left out, all of it if time is over."""
+    from synth.deadline import Stopped, until
+    from synth.parametric.joint_search import JointSearch
+
+    begin, each = time.monotonic(), list(questions.values())
+    limit = each[0].settings.time_limit
+    budget = None if limit is None else limit * len(each)
+    try:
+        with until(math.inf if budget is None else begin + budget):
+            fronts = JointSearch(each, tell, budget).settled()
+    except Stopped:
+        return {}
+    settled = {key: front for key, front in zip(questions, fronts, strict=True) if front is not None}
+    share = (time.monotonic() - begin) / max(len(settled), 1)
+    return {key: record(front, share) for key, front in settled.items()}
 
 
 def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Shared) -> dict[str, Any]:
@@ -72,7 +151,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     ----------
     question : mapping
         ``family``, ``options``, ``requirements``, ``limits``, ``fix``, ``parts``, and ``like`` where the experience
-        with a similar question helps: that question.
+        with a similar question helps: that question. A ``group`` is of no use to a question that is asked alone.
     settings : mapping
         ``objectives``, ``points``, ``gap``, ``grid``, ``seed``, ``time_limit``.
     shared : Shared
@@ -107,7 +186,7 @@ def _posed(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
     from synth.search.question import pose
 
     problem = _problem(shared, question["family"], tuple(sorted(question["options"].items())))
-    content = {**{key: value for key, value in question.items() if key != LIKE}, **settings}
+    content = {**{key: value for key, value in question.items() if key not in (LIKE, GROUP)}, **settings}
     request = Request.from_json(content, problem=problem, catalogs=_catalogs(shared))
     return pose(request, SearchSettings.from_json(content))
 
@@ -125,16 +204,16 @@ def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[
 
 
 def record(front: ParetoFront, seconds: float) -> dict[str, Any]:
-    """Return what is kept of a front."""
-    certificate = front.certificate
+    """Return what is kept of a front; of what a search for several questions has cost, the share of one."""
+    certificate, figures = front.certificate, front.statistics
+    together = figures.get("searched_together") or 1
     content: dict[str, Any] = {
         "certificate": certificate.kind,
         "gap": certificate.gap,
         "combinations": certificate.combinations,
         "complete": front.complete,
         "interrupted": front.interrupted,
-        "nlp_solves": front.statistics.get("nlp_solves"),
-        "nlp_solves_to_find": front.statistics.get("nlp_solves_to_find"),
+        **{name: _share(figures.get(name), together) for name in ("nlp_solves", "nlp_solves_to_find")},
         "explanation": "" if front.explanation is None else " ".join(str(front.explanation.get("message", "")).split()),
     }
     if not front.designs:
@@ -143,6 +222,10 @@ def record(front: ParetoFront, seconds: float) -> dict[str, Any]:
     content["rows"] = rows
     content["designs"] = [_unknowns(design) for design in front.designs]
     return {"status": str(front.status.value), "seconds": seconds, "layout": layout, "content": content}
+
+
+def _share(count: int | None, together: int) -> int | None:
+    return None if count is None else round(count / together)
 
 
 def _table(front: ParetoFront) -> tuple[dict[str, Any], list[list[Any]]]:

@@ -16,9 +16,11 @@ import socket
 import sqlite3
 import time
 import uuid
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, cast
 
 import sqlalchemy as sa
@@ -29,10 +31,12 @@ from sqlalchemy.orm import Session
 from synth.errors import InputError
 from synth.jobs.job_settings import JOBS, StoreSettings
 from synth.jobs.models import VERSION_TABLE, Event, Job, Layout, Result, Row, RowQuestion, WorkUnit, moment
+from synth.jobs.solve import GROUP
 
 HEAD = "1"  # the last of the migrations
 WHOLE = "a job database that is whole"
 LOCK = 0x636C7574  # of PostgreSQL, while tables are made
+NONE_ALONE: Mapping[str, str] = MappingProxyType({})  # no question that a group leaves to be asked alone
 OPEN, RUNNING, DONE, CANCELLED = "open", "running", "done", "cancelled"
 
 
@@ -371,7 +375,7 @@ class Store:
         rows : iterable of mapping
             The columns of the rows, each with ``question``, its columns or None; read once, not kept.
         rows_per_unit : int
-            Questions of one structure that are solved together.
+            Questions of one structure that are a unit; a group is one, whatever its size.
 
         Returns
         -------
@@ -427,16 +431,17 @@ class Store:
     def _write_units(self, connection: sa.Connection, job: str, rows_per_unit: int) -> int:
         order = (RowQuestion.structure, RowQuestion.position, RowQuestion.key)
         answered = sa.select(Result.key).where(Result.job == job)
+        group = RowQuestion.content[GROUP]
         asked = connection.execute(
-            sa.select(RowQuestion.structure, RowQuestion.key)
+            sa.select(RowQuestion.structure, RowQuestion.key, group["name"].as_string(), group["rows"].as_integer())
             .where(RowQuestion.job == job, RowQuestion.key.not_in(answered))
             .order_by(*order)
         ).all()
-        units = [
-            [key for _, key in some]
-            for _, same in itertools.groupby(asked, key=lambda question: str(question[0]))
-            for some in _chunks(same, rows_per_unit)
-        ]
+        units: list[list[str]] = []
+        for (_, _, rows), same in itertools.groupby(asked, key=lambda question: (question[0], *question[2:])):
+            keys = [question[1] for question in same]
+            # What is left of a group that was answered before cannot be answered as the group was.
+            units += [keys] if len(keys) == rows else _chunks(keys, rows_per_unit)
         for some in _chunks(units, self.settings.chunk):
             self._add_units(connection, job, some, 0)
         return len(units)
@@ -546,6 +551,7 @@ class Store:
         outcomes: Mapping[str, Outcome],
         errors: Mapping[str, str],
         most_attempts: int,
+        alone: Mapping[str, str] = NONE_ALONE,
     ) -> bool:
         """Write what came out of a unit, if the owner still holds it.
 
@@ -559,6 +565,9 @@ class Store:
             Question key -> error. Each of these questions is tried again in a unit of its own, until it has failed
             ``most_attempts`` times; then it is answered by its error.
         most_attempts : int
+        alone : mapping
+            Question key -> why it has to be asked alone, as one of a group: each in a unit of its own, as if for the
+            first time.
 
         Returns
         -------
@@ -599,11 +608,27 @@ class Store:
                         for key, o in final.items()
                     ],
                 )
-            if again:
-                self._add_units(connection, job, [[key] for key in again], attempts)
+            for keys, tried in ((again, attempts), (list(alone), claim.attempts)):
+                if keys:
+                    self._add_units(connection, job, [[key] for key in keys], tried)
             for key, error in errors.items():
                 _tell(connection, job, "failed", f"attempt {attempts} of question {key[:12]}: {error}")
+            for reason, count in Counter(filter(None, alone.values())).items():
+                _tell(connection, job, "alone", f"{count} questions of a group: {reason}")
         return True
+
+    def put_back(self, job: str, claim: Claim, owner: str, error: str) -> bool:
+        """Leave a whole unit to be tried again, after an attempt that ended in an error; as for :meth:`finish`."""
+        with self.engine.begin() as connection:
+            held = connection.execute(
+                sa.update(WorkUnit)
+                .where(*_held(claim, owner))
+                .values(state=OPEN, owner=None, lease=None, attempts=claim.attempts + 1)
+            )
+            if held.rowcount == 1:
+                text = f"attempt {claim.attempts + 1} of {len(claim.questions)} questions: {error}"
+                _tell(connection, job, "failed", text)
+        return bool(held.rowcount == 1)
 
     # -- looking -------------------------------------------------------------------------------
 

@@ -120,15 +120,9 @@ class JointFrontSearch:
 
     def _work_counted(self) -> int:
         """Add the work of all other searches to that of the first; return how many continuous problems were solved."""
-        form, codec = self.first.form, self.first.instance.combinations
         for search, positions in self.others:
-            form.counters.contracted += search.form.counters.contracted
-            form.counters.nlp_solves += search.form.counters.nlp_solves
-            solved = np.array(list(search.form.counters.solved_combinations), dtype=np.int64)
-            form.counters.solved_combinations.update(
-                codec.joined(positions[codec.question(solved)], codec.own(solved)).tolist()
-            )
-        return form.counters.nlp_solves
+            self.first.count(search, positions)
+        return self.first.form.counters.nlp_solves
 
     # -- the ends ------------------------------------------------------------------------------
 

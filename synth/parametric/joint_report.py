@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,20 @@ from synth.bounds.boxes import Boxes
 from synth.feasibility import Status
 from synth.results import Certificate, Design, ParetoFront
 from synth.results.assembly import front_of, ranked
+from synth.results.least_infeasible import LeastInfeasible
+from synth.results.statistics import SearchStatistics
 from synth.search.archive import Candidate, rows_of
 from synth.search.formulation import Formulation
 from synth.search.found_designs import found_designs
 from synth.search.joint.joint_question import JointInstance
+from synth.search.least_infeasible import explain_infeasible
 from synth.search.polishing import break_ties
 from synth.search.question import Question
 from synth.search.resolution import rounded_up
 from synth.search.sensitivity import elasticities
+
+Told = tuple[Candidate, tuple[str, ...]]  # a design, and what ties with it
+NO_OTHER: Mapping[int, int] = MappingProxyType({})
 
 
 class JointReport:
@@ -52,7 +59,14 @@ class JointReport:
         self.goals, self.started = goals, started
         self.gap, self.tuning = questions[0].settings.gap, questions[0].tuning
 
-    def fronts(self, pool: Boxes, chosen: Sequence[Candidate], traded: int, solves: int) -> list[ParetoFront | None]:
+    def fronts(
+        self,
+        pool: Boxes,
+        chosen: Sequence[Candidate],
+        traded: int,
+        solves: int,
+        same: Mapping[int, int] = NO_OTHER,
+    ) -> list[ParetoFront | None]:
         """Return the front of each question that has designs, ties settled.
 
         Parameters
@@ -65,36 +79,89 @@ class JointReport:
             How many objectives, from the first, are traded off.
         solves : int
             Continuous problems that were solved to find them.
+        same : mapping
+            Position of a question that was not searched -> that of one which is the same in all that counts.
         """
         form, instance = self.form, self.instance
         fronts: list[ParetoFront | None] = [None] * len(instance.each)
         found = break_ties(form, pool, chosen, traded) if chosen else []
+        found += [pair for q, first in same.items() for pair in self._turned(found, first, q)]
         every = np.array(sorted(form.counters.solved_combinations), dtype=np.int64)
         solved = np.bincount(instance.combinations.question(every), minlength=len(instance.each))
         for number, designs in self.designs(found, traded).items():
-            question = self.questions[number]
-            total, own = question.instance.combinations.count, int(solved[number])
-            statistics = replace(
-                offered(question.instance),
-                excluded_by_bound=total - own,
-                solved=own,
-                searched_together=len(self.questions),
-                boxes=form.counters.contracted,
-                nlp_solves=form.counters.nlp_solves,
-                nlp_solves_to_find=solves,
-                seconds={"total": time.monotonic() - self.started},
-            )
+            question, own = self.questions[number], int(solved[same.get(number, number)])
+            total = question.instance.combinations.count
             certificate = Certificate("global", self.gap, total, total - own, own, **self._amounts(designs, traded))
             fronts[number] = front_of(
                 question.instance,
                 designs[0].frame,
                 designs,
                 certificate,
-                statistics,
+                self._statistics(question, own, solves),
                 question.record(),
                 complete=traded == 1,
             )
         return fronts
+
+    def _turned(self, found: Sequence[Told], first: int, number: int) -> Iterator[Told]:
+        """Yield what was found for one question as it stands for another that is the same in all that counts."""
+        codec = self.instance.combinations
+        for c, also in found:
+            if codec.question(c.combination) == first:
+                yield Candidate(codec.joined(number, codec.own(c.combination)), c.variables, c.phi), also
+
+    def explanation(self, number: int) -> LeastInfeasible:
+        """Return why the question at a position has no design: what comes nearest."""
+        counters, codec = self.form.counters, self.instance.combinations
+        searched, first = set(counters.solved_combinations), codec.joined(number, 0)
+        rng = np.random.default_rng(self.questions[number].settings.seed)
+        explanation = explain_infeasible(self.form, rng, range(first, first + codec.size))
+        # What was solved only to explain does not change how the combinations were excluded.
+        counters.solved_combinations = searched
+        return explanation
+
+    def front_without_design(
+        self, number: int, searched: int, solves: int, explanation: LeastInfeasible
+    ) -> ParetoFront:
+        """Return the front of a question of which it is proven that no design is feasible.
+
+        Parameters
+        ----------
+        number : int
+            Position of the question.
+        searched : int
+            That of the one that was searched for it.
+        solves : int
+            Continuous problems that were solved to find designs.
+        explanation : LeastInfeasible
+        """
+        question, codec = self.questions[number], self.instance.combinations
+        own = sum(codec.question(c) == searched for c in self.form.counters.solved_combinations)
+        total = question.instance.combinations.count
+        return front_of(
+            question.instance,
+            make_frame(question.instance, question.chosen),
+            [],
+            Certificate("global", None, total, total - own, own),
+            self._statistics(question, own, solves),
+            question.record(),
+            complete=False,
+            explanation=explanation,
+        )
+
+    def _statistics(self, question: Question, solved: int, solves: int) -> SearchStatistics:
+        """Return what the search of all questions has cost, and how many combinations of one were solved."""
+        counters = self.form.counters
+        return replace(
+            offered(question.instance),
+            excluded_by_bound=question.instance.combinations.count - solved,
+            solved=solved,
+            searched_together=len(self.questions),
+            boxes=counters.contracted,
+            nlp_solves=counters.nlp_solves,
+            nlp_solves_to_find=solves,
+            seconds={"total": time.monotonic() - self.started},
+        )
 
     def _amounts(self, designs: Sequence[Design], traded: int) -> dict[str, Any]:
         """Return in SI by how much a design must be better for a claim, where that is no share of its value; units."""
@@ -108,7 +175,7 @@ class JointReport:
                 )
         return {"resolution": amounts, "units": {name: units[name] for name in amounts}}
 
-    def designs(self, found: Sequence[tuple[Candidate, tuple[str, ...]]], traded: int) -> dict[int, list[Design]]:
+    def designs(self, found: Sequence[Told], traded: int) -> dict[int, list[Design]]:
         """Return the designs of each question in order of rank, from candidates with what ties with each.
 
         ``traded``: how many objectives are traded off and have elasticities; none where designs are not reported.

@@ -11,6 +11,7 @@ import numpy as np
 
 from synth.parametric.joint_report import JointReport
 from synth.results import Design, ParetoFront
+from synth.results.least_infeasible import LeastInfeasible
 from synth.search.budget import Clock
 from synth.search.joint.joint_optima import JointOptima, SharedBounds
 from synth.search.question import Question
@@ -52,6 +53,25 @@ class JointSearch:
         search = self.search
         chosen = search.optima(search.told_apart())
         return self.report.fronts(search.pool, chosen, 1, search.form.counters.nlp_solves)
+
+    def settled(self) -> list[ParetoFront | None]:
+        """Return the front of each question, also where it is proven that there is no design; None: better asked alone.
+
+        Questions that are the same in all that counts have the same answer.
+        """
+        search, every = self.search, np.arange(len(self.questions))
+        first = search.representatives()
+        proven = search.prove(first == every, True)[first]
+        same = {q: int(first[q]) for q in every[first != every].tolist()}
+        solves, without = search.form.counters.nlp_solves, proven & ~np.isfinite(search.known.best()[first])
+        chosen, reasons = search.ties_settled(proven), dict[int, LeastInfeasible]()
+        for number in np.flatnonzero(without).tolist():
+            search.clock.check()
+            reasons[number] = self.report.explanation(number)
+        fronts = self.report.fronts(search.pool, chosen, 1, solves, same)
+        for number, reason in reasons.items():
+            fronts[number] = self.report.front_without_design(number, same.get(number, number), solves, reason)
+        return fronts
 
     def best(self, wanted: Sequence[int]) -> list[tuple[Design | None, bool]]:
         """Return the best designs of some questions, None where there is none, and whether that is proven.

@@ -11,14 +11,17 @@ from synth.search.formulation import Formulation
 from synth.units import format_quantity
 
 
-def explain_infeasible(form: Formulation, rng: np.random.Generator) -> LeastInfeasible:
+def explain_infeasible(form: Formulation, rng: np.random.Generator, among: range | None = None) -> LeastInfeasible:
     """Return the design that misses the limits by least (over a sample of combinations), and which it misses.
 
     Every limit may be exceeded by the same fraction, guards excepted; the fraction is made as small as possible.
+    ``among``: the numbers of the combinations that count, all unless they are given.
     """
     instance, limits = form.instance, form.tuning.heuristics.least_infeasible
-    total = instance.combinations.count
+    among = range(instance.combinations.count) if among is None else among
+    total = len(among)
     numbers = rng.choice(total, size=limits.tries, replace=False) if total > limits.tries else np.arange(total)
+    numbers = numbers + among.start
     tried = np.empty(0, dtype=np.int64)
     found: list[tuple[float, int, np.ndarray]] = []
     for _ in range(limits.rounds):

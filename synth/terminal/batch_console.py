@@ -91,8 +91,12 @@ def figures(state: Mapping[str, Any]) -> str:
     --------
     >>> figures({"rows": 10000, "done": 1200, "failed": 1, "infeasible": 30, "bad": 2, "rate": 12.5, "left": 704.0})
     '1 200 of 10 000 rows, 12.5 rows/s, 12 min left, 30 infeasible, 2 bad, 1 failed'
+    >>> figures({"rows": 400, "done": 0, "found": 180, "failed": 0, "infeasible": 0, "bad": 0, "rate": 0, "left": None})
+    '0 of 400 rows, 180 more have designs'
     """
     parts = [f"{thousands(state['done'])} of {thousands(state['rows'])} rows"]
+    if state.get("found"):
+        parts.append(f"{thousands(state['found'])} more have designs")
     if state["rate"] > 0:
         parts.append(f"{state['rate']:.3g} rows/s")
     if state["left"]:

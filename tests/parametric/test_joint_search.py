@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import product
 from typing import Any
@@ -277,6 +278,68 @@ def test_refused_parts_make_groups_of_their_own() -> None:
         check_ropes(FREE, [loads(3, 6, 7, 9, 12, 15, 21, 30)[k] for k in group], worn)
     with pytest.raises(synth.InputError, match="heavy"):
         asked(FREE, loads(401))
+
+
+# ---- settled: also that there is no design --------------------------------------------------------------------------
+
+
+def check_settled(questions: Sequence[Question], expected: Sequence[float | None]) -> None:
+    """Check that every question has the answer that it has alone, and that plain formulas say."""
+    name = next(iter(questions[0].chosen))
+    for front, question, true in zip(JointSearch(questions).settled(), questions, expected, strict=True):
+        own = question.answer()
+        assert front is not None
+        assert front.statistics.searched_together == len(questions)
+        if true is not None:
+            check_front(front, question, own)
+            assert front.designs[0].values[name] == pytest.approx(true, rel=GAP, abs=1e-4)
+            continue
+        assert front.status == own.status == Status.INFEASIBLE
+        assert (front.certificate.kind, front.certificate.gap) == (own.certificate.kind, None) == ("global", None)
+        assert front.certificate.excluded_by_bound + front.certificate.solved == front.certificate.combinations
+        assert (front.complete, front.frame) == (own.complete, own.frame)
+        assert front.question is question.instance
+        assert front.settings == question.record()
+        told, alone = front.explanation, own.explanation
+        assert told is not None
+        assert alone is not None
+        assert [(m.limit, m.limit_value) for m in told.conflicts] == [(m.limit, m.limit_value) for m in alone.conflicts]
+        assert max(m.missed_by for m in told.conflicts) == pytest.approx(
+            max(m.missed_by for m in alone.conflicts), rel=1e-3
+        )
+
+
+@pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
+@pytest.mark.parametrize("at", [(10, 29, 31, 89, 91, 95, 300), (91, 300), (5, 12)], ids=["some", "none", "all"])
+def test_questions_without_a_design_are_settled_too(problem: DesignProblem, at: tuple[int, ...]) -> None:
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    questions = asked(problem, loads(*at), catalogs=weak)
+    made = [best_ropes(problem, q.instance.values.requirements, weak) for q in questions]
+    assert sum(own is None for own in made) == sum(load > 90 for load in at)
+    check_settled(questions, [None if own is None else own.cost for own in made])
+
+
+def test_questions_that_are_the_same_in_all_that_counts_have_the_same_answer() -> None:
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    both = [{"load": f"{load} kN", "idle": i} for load in (5, 300, 12) for i in (1, 2)]
+    questions = asked(MAKEABLE, both, catalogs=weak)
+    made = [best_ropes(MAKEABLE, q.instance.values.requirements, weak) for q in questions]
+    check_settled(questions, [None if own is None else own.cost for own in made])
+
+
+def test_what_is_left_open_is_not_settled() -> None:
+    # One box a turn settles nothing that has to be searched.
+    few = tuned(joint={"turns": ((1, 1, 1),)})
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    fronts = JointSearch([replace(q, tuning=few) for q in asked(MAKEABLE, loads(7, 91, 92), catalogs=weak)]).settled()
+    assert None in fronts
+
+
+def test_what_settles_in_company_is_counted_as_work() -> None:
+    weak = ropes((10, 2), (20, 1), most=[20, 60])
+    search = JointSearch(asked(FREE, loads(10, 29, 91, 300), catalogs=weak))
+    boxes = {f.statistics.boxes for f in search.settled() if f is not None}
+    assert boxes == {search.search.form.counters.contracted}
 
 
 def test_of_questions_that_are_the_same_one_is_answered() -> None:

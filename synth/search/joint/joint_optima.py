@@ -154,7 +154,15 @@ class JointOptima:
         ----------
         asked : array of bool (questions,)
         """
-        proven = self.prove(asked, False)
+        return self.ties_settled(self.prove(asked, False))
+
+    def ties_settled(self, proven: np.ndarray) -> list[Candidate]:
+        """Return the best designs of questions of which they are proven; the next objective settles ties.
+
+        Parameters
+        ----------
+        proven : array of bool (questions,)
+        """
         return self._second([c for c, q in zip(self.known, self.known.questions(), strict=True) if proven[q]])
 
     def glimpse(self) -> list[Candidate]:
@@ -175,9 +183,18 @@ class JointOptima:
         if not len(self.pool) or not asked.any():
             return asked
         self.heuristics.first(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), asked), self.pool)
-        found, unproven = np.isfinite(self.known.best()), asked.copy()
+        found = np.isfinite(self.known.best())
         if not found.any() and not excluded:
             return np.zeros_like(asked)
+        if excluded and found.any():
+            proven = self._by_turns(asked & found)
+            proven[self._apart(np.flatnonzero(asked & ~found))] = True
+            return proven
+        return self._by_turns(asked)
+
+    def _by_turns(self, asked: np.ndarray) -> np.ndarray:
+        """Prove what is best in the questions asked by both ways of bounding; tell of which it is proven."""
+        found, unproven = np.isfinite(self.known.best()), asked.copy()
         by_objectives = JointTree(self, self.form, self.known, self.pool)
         by_limits: JointTree | None = None
         # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
@@ -194,6 +211,50 @@ class JointOptima:
             unproven &= by_limits.open_questions(unproven, node_limit)
         proven: np.ndarray = asked & ~unproven
         return proven
+
+    def _apart(self, positions: np.ndarray) -> np.ndarray:
+        """Prove what is best in some of the questions, or that they have no design, as a search of their own.
+
+        Beside questions that have designs, boxes that hold nothing for these are kept until they speak of no other.
+
+        Parameters
+        ----------
+        positions : array of int
+            Of the questions.
+
+        Returns
+        -------
+        array of int
+            The positions of those of which it is proven.
+        """
+        if not len(positions):
+            return positions
+        shared = self.shared or SharedBounds(self.questions, tuple(self.instance.moving))
+        cutoffs = {k: values[positions] for k, values in self.instance.cutoffs.items()}
+        own = JointOptima([self.questions[q] for q in positions], self.clock, shared, self.sought, cutoffs)
+        proven = own.prove(own.told_apart(), True)
+        known, codec = own.known, own.instance.combinations
+        numbers = self.instance.combinations.joined(positions[known.questions()], codec.own(known.combination))
+        self.known.add(numbers, known.variables, known.phi)
+        self.count(own, positions)
+        settled: np.ndarray = positions[proven]
+        return settled
+
+    def count(self, other: JointOptima, positions: np.ndarray) -> None:
+        """Count the work of another search as work of this one.
+
+        Parameters
+        ----------
+        other : JointOptima
+        positions : array of int
+            Which of the questions here each of its questions is.
+        """
+        counters, more, codec = self.form.counters, other.form.counters, other.instance.combinations
+        counters.contracted += more.contracted
+        counters.nlp_solves += more.nlp_solves
+        solved = np.array(list(more.solved_combinations), dtype=np.int64)
+        numbers = self.instance.combinations.joined(positions[codec.question(solved)], codec.own(solved))
+        counters.solved_combinations.update(numbers.tolist())
 
     def best_among(self, combinations: np.ndarray, points: np.ndarray) -> tuple[IncumbentPerScenario, np.ndarray]:
         """Return the best designs among given combinations, and of which questions it is proven.
@@ -241,10 +302,14 @@ class JointOptima:
 
     def told_apart(self) -> np.ndarray:
         """Return the questions that boxes can tell apart: of those that are the same in all that counts, one."""
+        apart: np.ndarray = self.representatives() == np.arange(len(self.questions))
+        return apart
+
+    def representatives(self) -> np.ndarray:
+        """Return, per question, the one that stands for all that are the same in all that counts."""
         tree = self.form.boxes.cells.trees[0]
-        result = np.zeros(len(self.questions), dtype=bool)
-        result[tree.first[tree.leaf]] = True
-        return result
+        first: np.ndarray = tree.first[tree.leaf_of_row]
+        return first
 
     def tolerance_of(self, k: int) -> Callable[[np.ndarray], np.ndarray]:
         """Return the gap as a distance in phi of an objective, per design."""

@@ -1,0 +1,19 @@
+"""What a worker process shows of the group that it is at: how many of its rows have designs by now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+_shown: list[Any] = []  # the number that this process shares with its master, if it has one
+
+
+def share(number: Any) -> None:
+    """Show from now on in a number that another process reads."""
+    _shown[:] = [number]
+
+
+def show(state: Mapping[str, Any]) -> None:
+    """Show the progress of a search; where nobody looks, nothing."""
+    for number in _shown:
+        number.value = int(state["incumbents"])
