@@ -36,7 +36,10 @@ class Code:
     _functions: dict[bytes, Callable[..., Any]] = field(default_factory=dict)
 
     def function(self, root: Root) -> Callable[..., Any]:
-        """Return the code as a Python function; it holds those nodes alone of which the root tells more."""
+        """Return the code as a Python function; it holds those nodes alone of which the root tells more.
+
+        Signs that hold over the root are settled in it: boxes of variables must lie within the root.
+        """
         key = root.narrowed.tobytes()
         if key not in self._functions:
             text = python_text(self.sweeps, root.narrowed)

@@ -7,7 +7,7 @@ import casadi as ca
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import synth
@@ -90,7 +90,9 @@ def contraction(contractor, data, trees, cell, low, high, caps, passes, bounds=N
         f = contractor.nodes.factor[k]
         least, most = trees[f].hull(v[:, None])
         tables.append((np.fmax(least[cell[:, f], 0], root.low[k]), np.fmin(most[cell[:, f], 0], root.high[k])))
-    variables = [(low[:, i].copy(), high[:, i].copy()) for i in range(n)]
+    # Signs that hold over the question are settled in the code: as in the engine, no box reaches beyond its root.
+    inputs = contractor.nodes.program.input_nodes[:n]
+    variables = [(np.fmax(low[:, i], root.low[k]), np.fmin(high[:, i], root.high[k])) for i, k in enumerate(inputs)]
     count = len(low)
     function = contractor.code(root, caps is not None).function(root)
     with np.errstate(all="ignore"):
@@ -177,6 +179,7 @@ class Question:
 
 
 @given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
+@example(8564, 1, False)  # a limit settles the sign of a variable that boxes have with both signs
 @settings(deadline=None, derandomize=True, max_examples=120)
 def test_a_box_with_a_feasible_point_survives_and_keeps_it(seed, passes, capped):
     question = Question(seed)
@@ -203,6 +206,7 @@ def test_the_random_questions_are_worth_asking():
     assert np.mean(width < 0.99 * before) > 0.02
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 3))
 @settings(deadline=None, derandomize=True, max_examples=40)
 def test_bounds_of_objectives_hold_at_every_point_of_a_box(seed, passes):
@@ -226,6 +230,7 @@ def test_bounds_of_objectives_hold_at_every_point_of_a_box(seed, passes):
             assert not np.any(result.bounds[:, j] > value + 1e-9 * (1 + np.abs(value)))
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=50)
 def test_a_box_of_one_point_survives_its_own_values(seed):
@@ -515,7 +520,10 @@ class Family:
         return np.concatenate(found_x)[:wanted], np.concatenate(found_c)[:wanted]
 
 
-@pytest.fixture(scope="module", params=OPTION_SETS)
+@pytest.fixture(
+    scope="module",
+    params=[name if name == "default" else pytest.param(name, marks=pytest.mark.slow) for name in OPTION_SETS],
+)
 def family(request):
     found = Family(OPTION_SETS[request.param], ["mass", "actuation_force", "friction_work", "drag_torque"])
     assert len(found.points) > 100

@@ -148,6 +148,7 @@ def never_done(tmp_path, monkeypatch):
     return tmp_path / "home" / "clutchsynth"
 
 
+@pytest.mark.slow
 def test_a_time_limit_that_the_compiler_outlasts_still_returns_designs(never_done):
     begin = time.monotonic()
     front = ask(effort=ALWAYS, time_limit=4.0, gap=1e-6)
