@@ -6,6 +6,7 @@ A failing id names structure and seed; ``pytest tests/certificates -k "waves-3]"
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -23,7 +24,7 @@ from synth.tables.catalogs import Catalogs
 from synth.tuning import SearchEffort
 from tests.asking import pose
 from tests.certificates.__main__ import tried
-from tests.certificates.claims import Answer, answer, faults, refuted, run, signed, weak_reference
+from tests.certificates.claims import PATIENT, Answer, answer, faults, refuted, run, signed, weak_reference
 from tests.certificates.kinks import KINKS
 from tests.certificates.reference import Reference
 from tests.certificates.signs import SIGNS
@@ -32,22 +33,15 @@ from tests.tuned import tuned
 
 pytestmark = pytest.mark.slow  # hundreds of searches
 
+# Seeds enough for every kind that a structure tells apart by its seed; ``python -m tests.certificates`` tries more.
 INSTANCES = (
-    dict.fromkeys(STRUCTURES, 6)
-    | {
-        "infeasible": 12,
-        "discrete": 12,
-        "knife_edge": 8,
-        "equality": 14,
-        "alternatives": 12,
-        "expressions": 20,
-        "hard": 0,
-    }
-    | dict.fromkeys(SIGNS, 4)
-    | dict.fromkeys(KINKS, 8)
+    dict.fromkeys(STRUCTURES, 3)
+    | dict.fromkeys(("signed", "guards", "mixed", "poles", "mismatch", "knife_edge", "refusals", *KINKS), 4)
+    | dict.fromkeys(("infeasible", "discrete", "equality", "alternatives"), 6)
+    | {"degenerate": 5, "expressions": 9, "hard": 0}
 )
 CASES = [(structure, seed) for structure, count in INSTANCES.items() for seed in range(count)]
-# Bounds of these are valid and cheap: all but one front of each must be proven.
+# Bounds of these are valid and cheap: every front must be proven.
 PROVABLE = (
     "posynomial",
     "three_objectives",
@@ -68,7 +62,6 @@ PROVABLE = (
     "signs_gridded",
     "signs_pinned",
 )
-PATIENT = 120  # seconds; a question that is stopped by its own limit may get another answer each time
 HANDFUL = [("posynomial", 1), ("gridded", 3), ("polynomials", 1), ("maximised", 1), ("alternatives", 1), ("pieces", 1)]
 
 
@@ -80,8 +73,10 @@ def test_a_front_claims_nothing_that_is_wrong(structure, seed):
     assert not weak_reference(a)
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("structure", ["signs_gridded", "signs_pinned", "signs_poles"])
+@pytest.mark.parametrize(
+    ("structure", "seed"),
+    [(s, k) for s, kinds in (("signs_gridded", 2), ("signs_pinned", 2), ("signs_poles", 3)) for k in range(kinds)],
+)
 def test_compiled_code_loses_no_value_of_any_sign(structure, seed):
     case = make(structure, 4 + seed)
     at_once = tuned(compiling={"boxes": 0})
@@ -101,7 +96,7 @@ def test_what_is_proven_of_values_of_any_sign_is_proven_again(structure):
 @pytest.mark.parametrize("structure", PROVABLE)
 def test_what_bounds_can_prove_is_proven(structure):
     kinds = Counter(answer(structure, seed).front.certificate.kind for seed in range(INSTANCES[structure]))
-    assert kinds["global"] >= INSTANCES[structure] - 1, f"{structure}: {dict(kinds)}"
+    assert kinds["global"] == INSTANCES[structure], f"{structure}: {dict(kinds)}"
 
 
 # -- fronts step by step ---------------------------------------------------------------------------
@@ -125,7 +120,14 @@ TWO_OBJECTIVES = (
     "one_feasible",
 )
 STEPS = {"whole_front": -1, "many_variables": 0}  # every front of two objectives goes step by step
-IN_STEPS = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(3)]
+
+
+def several(structure: str, seeds: Iterable[int]) -> list[int]:
+    """Return those seeds whose cases have two objectives or more."""
+    return [seed for seed in seeds if len(make(structure, seed).objectives) >= 2]
+
+
+IN_STEPS = [(structure, seed) for structure in TWO_OBJECTIVES for seed in several(structure, range(3))]
 
 
 @pytest.fixture
@@ -164,8 +166,7 @@ def reference(structure: str, seed: int) -> Reference:
     return Reference(of_two(structure, seed, 2))
 
 
-@pytest.mark.parametrize("points", [5, 20])
-@pytest.mark.parametrize("effort", [100, 5000])
+@pytest.mark.parametrize(("effort", "points"), [(100, 20), (5000, 5)])
 @pytest.mark.parametrize(
     ("structure", "seed"), [("gridded", 3), ("hard", 0), ("waves", 0), ("waves", 1), ("products", 1)]
 )
@@ -214,10 +215,10 @@ def together(structure: str, seed: int, points: int) -> synth.ParetoFront | None
     return JointFrontSearch([q for q in questions if joint_key(q) == first], time_limit=PATIENT).answers()[0]
 
 
-JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in range(INSTANCES[structure])]
+JOINT = [(structure, seed) for structure in TWO_OBJECTIVES for seed in several(structure, range(6))[:2]]
 
 
-@pytest.mark.parametrize("points", [2, 3, 6])
+@pytest.mark.parametrize("points", [3, 6])
 @pytest.mark.parametrize(("structure", "seed"), JOINT)
 def test_a_front_searched_with_others_claims_nothing_that_is_wrong(points, structure, seed):
     front = together(structure, seed, points)
@@ -230,15 +231,15 @@ def test_a_front_searched_with_others_claims_nothing_that_is_wrong(points, struc
 
 def test_there_are_enough_fronts_searched_with_others():
     answered = [together(structure, seed, 3) is not None for structure, seed in JOINT]
-    assert sum(answered) >= 20, f"{sum(answered)} of {len(answered)}"
+    assert sum(answered) >= 11, f"{sum(answered)} of {len(answered)}"
 
 
 def test_there_are_enough_instances_of_every_kind():
     answers = [answer(*case) for case in CASES]
     kinds = Counter((a.front.certificate.kind, bool(a.front.designs)) for a in answers)
-    assert len(answers) >= 200
+    assert len(answers) >= 110
     assert kinds["global", True] >= 0.75 * len(answers), dict(kinds)
-    assert kinds["global", False] >= 8, dict(kinds)
+    assert kinds["global", False] >= 5, dict(kinds)
 
 
 # -- the check itself ------------------------------------------------------------------------------
@@ -267,10 +268,16 @@ def test_a_front_that_leaves_out_the_best_rows_is_refuted(structure):
 # -- stopping and repeating ------------------------------------------------------------------------
 
 
+@cache
+def whole_reference(structure: str, seed: int) -> Reference:
+    """Return the reference of a case with all its objectives."""
+    return Reference(make(structure, seed))
+
+
 @pytest.mark.parametrize("seconds", [1e-3, 0.2, 1.0])
 def test_a_front_that_was_stopped_claims_nothing_that_is_wrong(seconds):
     case = make("hard", 0)
-    a = Answer(case, run(case, time_limit=seconds), Reference(case))
+    a = Answer(case, run(case, time_limit=seconds), whole_reference("hard", 0))
     assert a.front.interrupted == "time limit"
     assert a.front.certificate.kind == "heuristic"
     assert not a.front.complete
@@ -286,9 +293,8 @@ def told(front: synth.ParetoFront, folder) -> tuple:
 
 @pytest.mark.parametrize(("structure", "seed"), HANDFUL)
 def test_the_same_question_gets_the_same_answer(structure, seed, tmp_path):
-    case = make(structure, seed)
-    first, again = (run(case, time_limit=PATIENT) for _ in range(2))
-    assert told(first, tmp_path / "first") == told(again, tmp_path / "again")
+    a = answer(structure, seed)
+    assert told(a.front, tmp_path / "first") == told(run(a.case, time_limit=PATIENT), tmp_path / "again")
 
 
 @pytest.mark.parametrize(("structure", "seed"), HANDFUL[:3])
