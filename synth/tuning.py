@@ -560,11 +560,15 @@ class CompilingEffort:
         In s, after which a compiler is given up.
     look : float
         In s, between looks at whether it is done: as long as the end of the time limit may go unnoticed.
+    undisturbed : float
+        In s, that a search waits and does nothing: a search beside the compiler would only slow it down where it is
+        done soon.
     """
 
     worthwhile: float = 10.0
     most: float = 300.0
     look: float = 0.02
+    undisturbed: float = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)

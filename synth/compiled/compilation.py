@@ -254,19 +254,22 @@ def compile_shared(compiler: str, text: str, path: Path, flags: Sequence[str], e
 
 
 def _wait(ready: Callable[[], bool], begun: float, effort: CompilingEffort) -> None:
-    """Wait for a compiler, and do other work meanwhile, if there is any."""
+    """Wait for a compiler, and do other work meanwhile, if there is any and it takes long."""
     work = _other_work.get()
-    if work is not None and not ready():
-        without = _other_work.set(None)  # what is done meanwhile waits for nothing
-        try:
-            work(ready)
-        finally:
-            _other_work.reset(without)
+    alone_until = time.monotonic() + effort.undisturbed
     while not ready():
         deadline.check()
         if time.monotonic() > begun + effort.most:
             raise subprocess.TimeoutExpired("cc", effort.most)
-        time.sleep(effort.look)
+        if work is not None and time.monotonic() >= alone_until:
+            without = _other_work.set(None)  # what is done meanwhile waits for nothing
+            try:
+                work(ready)
+            finally:
+                _other_work.reset(without)
+            work = None
+        else:
+            time.sleep(effort.look)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -14,7 +14,6 @@ from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings
 from synth.results import Design, ParetoFront
 from synth.results.search_record import SettingsRecord
-from synth.robust.counterpart import robust_counterpart
 from synth.search.front_search import FrontSearch, Report
 from synth.search.front_state import FrontTask
 from synth.search.warm_start import WarmStart
@@ -120,7 +119,11 @@ def pose(
         For everything that is wrong with the request, in one sentence.
     """
     if problem is None:
-        problem = robust_counterpart(request.problem, request.robust, request.limits)
+        problem = request.problem
+        if request.robust is not None:
+            from synth.robust.counterpart import robust_counterpart  # costly to import; few questions need it
+
+            problem = robust_counterpart(problem, request.robust, request.limits)
     instance = Instance(replace(request, problem=problem))
     chosen = chosen_objectives(instance.model, request.objectives)
     weights = dict(zip(chosen, weights_of(instance, chosen, request.weights), strict=True))

@@ -12,8 +12,6 @@ from synth.question.request import Request
 from synth.question.settings import Progress, SearchSettings, check_progress
 from synth.question.uncertainty import Uncertainty
 from synth.results import ParetoFront
-from synth.robust.rating import Rater
-from synth.robust.robust_front import robust_front
 from synth.search.question import Question, pose
 from synth.tuning import TUNING, Tuning
 
@@ -117,6 +115,10 @@ def find_front(
     if request.robust is None:
         question = pose(request, settings, tuning=tuning)
         return question.within(settings.since(begun).time_limit).answer(progress)
+    # Costly to import; few questions need it.
+    from synth.robust.rating import Rater
+    from synth.robust.robust_front import robust_front
+
     rater = Rater(request, request.robust, tuning.robust)
     left = settings.since(begun).time_limit
 

@@ -27,8 +27,8 @@ from tests.tuned import synthesize, tuned
 SOURCE = "int one(void) { return 1; }"
 
 
-USUAL = CompilingEffort()
-ALWAYS = CompilingEffort(worthwhile=0.0)  # however short the time limit is
+USUAL = CompilingEffort(undisturbed=0.0)  # other work begins at once
+ALWAYS = CompilingEffort(worthwhile=0.0, undisturbed=0.0)  # however short the time limit is
 NOT_WITHIN_A_YEAR = CompilingEffort(worthwhile=3e7)
 
 
@@ -109,6 +109,16 @@ def test_what_is_done_meanwhile_is_told_when_the_compiler_is_done(tmp_path):
     with meanwhile(work):
         compile_shared(slow_compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [], USUAL)
     assert told == [False, True]
+
+
+def test_what_is_compiled_soon_is_not_disturbed(tmp_path):
+    worked = []
+    with meanwhile(worked.append):
+        compile_shared(
+            slow_compiler(tmp_path, 0.2), SOURCE, tmp_path / "code.so", [], CompilingEffort(undisturbed=60.0)
+        )
+    assert (tmp_path / "code.so").exists()
+    assert not worked
 
 
 def test_what_killed_programs_have_left_is_cleared_away(tmp_path):

@@ -74,6 +74,23 @@ def test_help_and_version_import_nothing_heavy(flag: str) -> None:
     assert "clutchsynth" in done.stdout
 
 
+UNASKED = ["pandas", "scipy", "optuna", "cvxpy", "matplotlib", "sqlalchemy", "http.server"]
+UNASKED += ["synth.jobs", "synth.variants", "synth.studies", "synth.verification", "synth.proof", "synth.robust.rating"]
+
+
+def test_a_run_imports_nothing_that_its_question_does_not_need(tmp_path: Path) -> None:
+    asked = ["clutchsynth", "run", str(ROOT / "examples" / "automobile_disc.yaml"), "-o", str(tmp_path / "out")]
+    program = (
+        f"import sys\nsys.argv = {asked!r}\n"
+        "from synth.terminal.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    code = end.code\n"
+        f"print(code or 0, [m for m in {UNASKED!r} if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=True)
+    assert done.stdout.splitlines()[-1] == "0 []"
+    assert (tmp_path / "out" / "front.json").exists()
+
+
 def test_families_are_listed_with_their_titles() -> None:
     done = clutchsynth("families")
     assert done.returncode == 0

@@ -110,7 +110,7 @@ static int halved(const Batch *b, const Tree *t, const Box *box, const int *cell
     return 1;
 }
 
-/* Where a box comes among those that come back: first those of the first box, and first its first half. */
+/* Where a box comes among those that come back: first those of the last box, and first its first half. */
 static int by_place(const void *a, const void *b) {
     const long long first = ((const long long *)a)[0], second = ((const long long *)b)[0];
     return (first > second) - (first < second);
@@ -166,7 +166,7 @@ long long grow(const Batch *b, Tree *t) {
         memcpy(cells + k * factors, b->cell + k * factors, factors * sizeof *cells);
         box->tag = b->tag[k];
         box->level = 0;
-        box->place = k << t->levels;
+        box->place = (b->count - 1 - k) << t->levels;
     }
     begin(b, &whole, file, counted);
     while (waiting && kept + waiting + 2 * BLOCK < t->capacity && waiting + 2 * BLOCK <= most) {
