@@ -129,6 +129,9 @@ class TreeLimits:
         The same for one objective: one design is enough to begin with.
     fine : float
         Every design is covered within so many times the mean distance of the points asked for.
+    at_gap : float
+        With three objectives or more, everything is covered within the gap at once if that takes at most so many times
+        the designs that a coarser cover would do with.
     fill : int
         To find all designs where fewer are chosen than were asked for, beside what was looked into before.
     tie : int
@@ -175,6 +178,7 @@ class TreeLimits:
     coarse_boxes: int = 20_000
     first_boxes: int = 1_000
     fine: float = 2.0
+    at_gap: float = 2.0
     fill: int = 100_000
     tie: int = 2_000
     choices: int = 4

@@ -244,11 +244,20 @@ class FrontState:
         return EpsilonCover(self.rule.columns, tolerance, self.rule.fixed_cutoffs, self.form.archive)
 
     def fine_cover(self) -> EpsilonCover:
-        """Return the cover that is as fine as the points asked for need, at most as the gap."""
+        """Return the cover that is as fine as the points asked for need, at most as the gap.
+
+        With three objectives or more a cover that is hardly coarser than the gap is made at the gap at once: it then
+        proves what is chosen, while a coarser one and a proof of the designs chosen go over the same ground twice.
+        """
         phi = self.form.archive.phi[:, : self.task.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.task.m)
         needed = self.task.limits.fine * span / self.task.settings.points
-        return self.cover_within(np.maximum(needed, self.rule.tolerance))
+        tolerance = np.maximum(needed, self.rule.tolerance)
+        if self.task.m > 2:
+            # A front has a dimension less than there are objectives: so many times the designs cover it within the gap.
+            times = float(np.prod(tolerance / self.rule.tolerance)) ** (1 - 1 / self.task.m)
+            tolerance = self.rule.tolerance if times <= self.task.limits.at_gap else tolerance
+        return self.cover_within(tolerance)
 
     def phi_listed(self) -> np.ndarray:
         """Return phi of the designs listed (designs, objectives)."""

@@ -71,6 +71,30 @@ def test_covers_are_never_finer_than_the_gap() -> None:
     np.testing.assert_allclose(state.rule.tolerance, -np.log1p(-1e-2))
 
 
+@pytest.mark.parametrize(
+    ("objectives", "times", "at_gap"),
+    [
+        (["mass", "flexibility", "width"], (1.6, 1.0, 0.5), True),
+        (["mass", "flexibility", "width"], (1.4, 1.3, 1.5), True),  # 2.73 in all: less than twice as many designs
+        (["mass", "flexibility", "width"], (1.4, 1.4, 1.5), False),
+        (["mass", "flexibility", "width"], (9.0, 0.1, 0.1), False),
+        (["mass", "flexibility"], (1.1, 1.0), False),
+    ],
+)
+def test_with_three_objectives_a_cover_hardly_coarser_than_the_gap_is_made_at_the_gap(
+    objectives: list[str], times: tuple[float, ...], at_gap: bool
+) -> None:
+    state = FrontState(task(objectives=objectives, points=50, gap=1e-3))
+    m, gap = len(objectives), state.rule.tolerance
+    ends = np.zeros((2, len(state.form.goals)))
+    ends[0, 0] = ends[1, 1:m] = 1.0  # neither is better than the other in all objectives
+    ends[:, :m] *= np.array(times) * gap * 50 / state.task.limits.fine
+    state.form.archive.add(np.zeros(2, dtype=np.int64), np.zeros((2, state.form.n)), ends)
+    coarser = gap * np.maximum(times, 1.0)
+    np.testing.assert_allclose(state.fine_cover().tolerance, gap if at_gap else coarser, rtol=1e-12)
+    assert not at_gap or np.array_equal(state.fine_cover().tolerance, gap)
+
+
 def test_a_cover_that_is_noted_bounds_all_designs() -> None:
     state, proof = FrontState(task()), FrontProof(open_combinations=1.0)
     rule = state.rule
