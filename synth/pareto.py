@@ -34,12 +34,26 @@ def spread_subset(phi: np.ndarray, count: int, first: Sequence[int] | None = Non
     span = np.maximum(phi.max(axis=0) - phi.min(axis=0), 1e-300)
     unit = (phi - phi.min(axis=0)) / span
     taken = list(dict.fromkeys(extremes(unit) if first is None else first))[:count]
-    distance = np.min(np.linalg.norm(unit[:, None, :] - unit[None, taken, :], axis=2), axis=1)
+    # Column by column: rows are many and short.
+    columns = np.ascontiguousarray(unit.T)
+    distance = np.full(len(unit), np.inf)
+    for row in taken:
+        np.minimum(distance, _distances(columns, row), out=distance)
     while len(taken) < count:
         farthest = int(np.argmax(distance))
         taken.append(farthest)
-        distance = np.minimum(distance, np.linalg.norm(unit - unit[farthest], axis=1))
+        np.minimum(distance, _distances(columns, farthest), out=distance)
     return np.sort(np.array(taken))
+
+
+def _distances(columns: np.ndarray, row: int) -> np.ndarray:
+    """Return the distances of all rows of a table, which is given by columns, from one of them."""
+    square = np.zeros(columns.shape[1])
+    for column in columns:
+        apart = column - column[row]
+        square += apart * apart
+    distances: np.ndarray = np.sqrt(square, out=square)
+    return distances
 
 
 @dataclass(frozen=True)

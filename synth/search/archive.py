@@ -70,6 +70,8 @@ class Archive:
         variables = np.concatenate([self.variables, variables])
         phi = np.concatenate([self.phi, phi])
         keep = non_dominated(phi[:, self.columns])
+        if not keep[len(self) :].any():
+            return
         self.combination, self.variables, self.phi = combination[keep], variables[keep], phi[keep]
 
     def cutoffs(self, lower: np.ndarray, tolerance: np.ndarray) -> np.ndarray:

@@ -179,7 +179,10 @@ class NonImprovement:
         cutoffs = np.full(lower.shape, np.inf)
         own = lower[:, self.columns]
         below = self._below_two(own) if len(self.columns) == 2 else self._below(own)
-        cutoffs[:, self.columns] = np.minimum(below, self.known.cutoffs(own, self.tolerance))
+        # Of what is below no step nothing is of use, whatever is known.
+        some = np.flatnonzero(below[:, 0] > -np.inf)
+        below[some] = np.minimum(below[some], self.known.cutoffs(own[some], self.tolerance))
+        cutoffs[:, self.columns] = below
         return cutoffs
 
     def possible_gain(self, lower: np.ndarray, cell: np.ndarray | None = None) -> np.ndarray:
