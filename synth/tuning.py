@@ -634,8 +634,6 @@ class DominanceSettings:
     ----------
     block : float
         Of three objectives: designs of a block, as a multiple of the square root of their number.
-    shift : int
-        Blocks are powers of two, of this exponent at least, so that registers hold whole parts of them.
     rows : int
         Of more objectives: sets of designs that are kept for each order.
     boxes : int
@@ -648,7 +646,6 @@ class DominanceSettings:
     """
 
     block: float = 0.35
-    shift: int = 3
     rows: int = 512
     boxes: int = 1024
     compiled_from: int = 200_000

@@ -15,6 +15,7 @@ from synth.search.dominance_code import DominanceCode
 from synth.tuning import DominanceSettings
 
 WORD = 64  # bits
+SHIFT = 3  # of the shortest block, which is a power of two: the C source takes eight points at a time
 PAIRS = ((1, 2), (2, 0), (0, 1))  # of three objectives: the other two of each
 
 
@@ -104,7 +105,7 @@ class CornerTable:
     def __init__(self, points: np.ndarray, settings: DominanceSettings, strict: bool = False) -> None:
         count = len(points)
         self._order, self._settings = _Order(points, strict), settings
-        shift = max(settings.shift, round(np.log2(settings.block * count**0.5)))
+        shift = max(SHIFT, round(np.log2(settings.block * count**0.5)))
         self._block = block = 1 << shift
         self._blocks = blocks = count // block + 1
         # In the order of each objective, the places in the others and the values; beyond the last point nothing covers.

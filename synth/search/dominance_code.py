@@ -8,10 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from synth import deadline
 from synth.compiled.c_text import template
-from synth.compiled.compilation import meanwhile, switched_on
-from synth.compiled.compiler import library
+from synth.compiled.compilation import switched_on
+from synth.compiled.compiler import LibraryBeside
 from synth.tuning import DominanceSettings
 
 TABLE = ("points", "shift", "blocks", "strict"), ("ordered", "place", "value", "corner")
@@ -68,10 +67,10 @@ def _answer(function: Callable[..., None], record: ctypes.Structure, lower: np.n
 
 
 def dominance_code(asked: int, settings: DominanceSettings) -> DominanceCode | None:
-    """Return the compiled code; None where too few boxes are asked about, or it cannot be had.
+    """Return the compiled code; None where too few boxes are asked about, or it is not there.
 
-    The compiler takes a fraction of a second, once for all questions. Nothing else is done meanwhile: what a search
-    finds then must not depend on whether the code was there.
+    It is compiled once for all questions, beside the search that asks first: nobody waits for it, as arrays give the
+    same numbers.
 
     Parameters
     ----------
@@ -81,13 +80,15 @@ def dominance_code(asked: int, settings: DominanceSettings) -> DominanceCode | N
     """
     if asked < settings.compiled_from or not switched_on():
         return None
-    if deadline.current().given < settings.effort.worthwhile:
-        return None  # asking the compiler now would switch off all other compiled code as well
-    with meanwhile(lambda ready: None):
-        return _loaded(settings)
+    loaded = _beside(settings).loaded()
+    return None if loaded is None else _code(loaded)
 
 
 @cache
-def _loaded(settings: DominanceSettings) -> DominanceCode | None:
-    loaded = library("dominance", template("search", "dominance"), settings.effort)
-    return None if loaded is None else DominanceCode(loaded)
+def _beside(settings: DominanceSettings) -> LibraryBeside:
+    return LibraryBeside("dominance", template("search", "dominance"), settings.effort)
+
+
+@cache
+def _code(loaded: ctypes.CDLL) -> DominanceCode:
+    return DominanceCode(loaded)

@@ -11,14 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth import deadline
 from synth.compiled import compiler
-from synth.compiled.compilation import switched_off, switched_on
+from synth.compiled.compilation import switched_off
 from synth.search import archive as archive_module
 from synth.search import pruning
 from synth.search.archive import Archive, Candidate, distinct
 from synth.search.dominance import CornerTable, CoverSets, sorted_points
-from synth.search.dominance_code import dominance_code
+from synth.search.dominance_code import DominanceCode, dominance_code
 from synth.search.pruning import NonImprovement
 from synth.tuning import TUNING, DominanceSettings, Tuning
 from tests.tuned import synthesize, tuned
@@ -29,8 +28,15 @@ AT_ONCE = DominanceSettings(compiled_from=0)
 
 
 def code(wanted: bool) -> Any:
-    found = dominance_code(1, AT_ONCE) if wanted else None
-    assert (found is not None) == wanted
+    """Return compiled code, once it is there."""
+    return compiled_code(AT_ONCE) if wanted else None
+
+
+def compiled_code(own: DominanceSettings) -> DominanceCode:
+    end = time.monotonic() + own.effort.most
+    while (found := dominance_code(own.compiled_from, own)) is None and time.monotonic() < end:
+        time.sleep(0.01)
+    assert found is not None
     return found
 
 
@@ -135,16 +141,12 @@ def test_distinct_designs_against_brute_force(m, seed):
 
 
 @pytest.mark.skipif(not HERE, reason="no C compiler")
-def test_nothing_is_compiled_for_few_boxes_or_in_a_hurry():
-    most = TUNING.dominance.compiled_from
-    assert dominance_code(most - 1, TUNING.dominance) is None
-    assert dominance_code(most, TUNING.dominance) is not None
+def test_compiled_code_is_taken_for_many_boxes_alone_and_where_it_is_wanted():
+    own = TUNING.dominance
+    compiled_code(own)
+    assert dominance_code(own.compiled_from - 1, own) is None
     with switched_off():
-        assert dominance_code(most, TUNING.dominance) is None
-    with deadline.until(time.monotonic() + 60.0):
-        hurried = replace(AT_ONCE, effort=replace(AT_ONCE.effort, worthwhile=100.0))
-        assert dominance_code(most, hurried) is None
-        assert switched_on()  # other code may be there already
+        assert dominance_code(own.compiled_from, own) is None
 
 
 class ByHand:
@@ -178,6 +180,8 @@ def front_by(tuning: Tuning, m: int) -> tuple[list[list[float]], str, int]:
 @pytest.mark.parametrize("m", [3, 4])
 def test_a_search_takes_the_same_way_whatever_tells_dominance(m, monkeypatch):
     never, always = (tuned(dominance={"compiled_from": asked}) for asked in (10**12, 0))
+    if HERE:
+        compiled_code(always.dominance)
     over_arrays = front_by(never, m)
     assert len(over_arrays[0]) == 10
     assert over_arrays[1] == "global"
