@@ -129,6 +129,9 @@ class TreeLimits:
         The same for one objective: one design is enough to begin with.
     fine : float
         Every design is covered within so many times the mean distance of the points asked for.
+    rough : float
+        Of three objectives or more: the same of a first cover, which is the last one if enough designs are known then.
+        There the mean distance falls as the root of the number of points.
     at_gap : float
         With three objectives or more, everything is covered within the gap at once if that takes at most so many times
         the designs that a coarser cover would do with.
@@ -178,6 +181,7 @@ class TreeLimits:
     coarse_boxes: int = 20_000
     first_boxes: int = 1_000
     fine: float = 2.0
+    rough: float = 0.5
     at_gap: float = 2.0
     fill: int = 100_000
     tie: int = 2_000

@@ -244,19 +244,34 @@ class FrontState:
         return EpsilonCover(self.rule.columns, tolerance, self.rule.fixed_cutoffs, self.form.archive)
 
     def fine_cover(self) -> EpsilonCover:
-        """Return the cover that is as fine as the points asked for need, at most as the gap.
+        """Return the cover that is as fine as the points asked for need, at most as the gap."""
+        return self._cover_apart(self.task.limits.fine, self.task.settings.points)
+
+    def rough_cover(self) -> EpsilonCover:
+        """Return a cover that shows a front of three objectives or more, never finer than :meth:`fine_cover`.
+
+        Such a front has a dimension less than there are objectives, and points divide its span by the root of their
+        number, not by their number as along a line.
+        """
+        limits, points = self.task.limits, self.task.settings.points
+        root = points ** (1 / (self.task.m - 1))
+        return (
+            self._cover_apart(limits.rough, root) if limits.rough / root > limits.fine / points else self.fine_cover()
+        )
+
+    def _cover_apart(self, times: float, parts: float) -> EpsilonCover:
+        """Return the cover within so many times a part of the span of the designs known, at most as fine as the gap.
 
         With three objectives or more a cover that is hardly coarser than the gap is made at the gap at once: it then
         proves what is chosen, while a coarser one and a proof of the designs chosen go over the same ground twice.
         """
         phi = self.form.archive.phi[:, : self.task.m]
         span = np.ptp(phi, axis=0) if len(phi) else np.zeros(self.task.m)
-        needed = self.task.limits.fine * span / self.task.settings.points
-        tolerance = np.maximum(needed, self.rule.tolerance)
+        tolerance = np.maximum(times * span / parts, self.rule.tolerance)
         if self.task.m > 2:
-            # A front has a dimension less than there are objectives: so many times the designs cover it within the gap.
-            times = float(np.prod(tolerance / self.rule.tolerance)) ** (1 - 1 / self.task.m)
-            tolerance = self.rule.tolerance if times <= self.task.limits.at_gap else tolerance
+            # So many times the designs cover a front of that dimension within the gap.
+            designs = float(np.prod(tolerance / self.rule.tolerance)) ** (1 - 1 / self.task.m)
+            tolerance = self.rule.tolerance if designs <= self.task.limits.at_gap else tolerance
         return self.cover_within(tolerance)
 
     def phi_listed(self) -> np.ndarray:

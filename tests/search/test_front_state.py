@@ -95,6 +95,17 @@ def test_with_three_objectives_a_cover_hardly_coarser_than_the_gap_is_made_at_th
     assert not at_gap or np.array_equal(state.fine_cover().tolerance, gap)
 
 
+def test_with_three_objectives_a_first_cover_is_as_fine_as_points_lie_apart_on_a_surface() -> None:
+    for points, coarser in ((100, 2.5), (64, 2.0), (16, 1.0), (4, 1.0)):
+        state = FrontState(task(objectives=["mass", "flexibility", "width"], points=points, gap=1e-4))
+        ends = np.zeros((2, len(state.form.goals)))
+        ends[0, 0] = ends[1, 1:3] = 1.0
+        state.form.archive.add(np.zeros(2, dtype=np.int64), np.zeros((2, state.form.n)), ends)
+        fine = state.fine_cover().tolerance
+        np.testing.assert_allclose(fine, np.full(3, 2.0 / points))
+        np.testing.assert_allclose(state.rough_cover().tolerance, coarser * fine)
+
+
 def test_a_cover_that_is_noted_bounds_all_designs() -> None:
     state, proof = FrontState(task()), FrontProof(open_combinations=1.0)
     rule = state.rule

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from synth.search.branch_and_bound import TreeOutcome
 from synth.search.front_state import FrontState
 from synth.search.large_neighbourhood import large_neighbourhood_search
@@ -12,7 +14,7 @@ from synth.search.stages.trees import close_open_boxes, cover_everything, cover_
 
 def cover_front(state: FrontState) -> None:
     """Cover everything as finely as the points asked for need, at most as the gap."""
-    rule, outcome = _first_cover(state)
+    rule, outcome = _first_cover(state) if state.task.m == 2 else _cover_of_many(state)
     if not outcome.closed and state.task.m == 2:
         rule, outcome = _second_cover(state)
     left = close_open_boxes(state, outcome.open, rule)
@@ -22,12 +24,23 @@ def cover_front(state: FrontState) -> None:
 
 
 def _first_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
-    """Cover the front at once; with two objectives not for long, least where designs are scarce."""
-    limits, two = state.task.limits, state.task.m == 2
-    scarce = two and state.task.instance.combinations.count > limits.few_combinations and _search_neighbourhoods(state)
+    """Cover a front of two objectives at once, but not for long, least where designs are scarce."""
+    limits = state.task.limits
+    scarce = state.task.instance.combinations.count > limits.few_combinations and _search_neighbourhoods(state)
     rule = state.fine_cover()
     at_once = limits.scarce_front if scarce else limits.whole_front
-    return rule, cover_everything(state, rule, min(state.node_limit, at_once) if two else state.node_limit)
+    return rule, cover_everything(state, rule, min(state.node_limit, at_once))
+
+
+def _cover_of_many(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
+    """Cover a front of three objectives or more; as finely as its points lie apart if enough are known then."""
+    rule = state.rough_cover()
+    outcome = cover_everything(state, rule, state.node_limit)
+    fine = state.fine_cover()
+    enough = len(state.form.archive) >= state.task.more_than_asked
+    if enough or not outcome.closed or not np.any(fine.tolerance < rule.tolerance):
+        return rule, outcome
+    return fine, cover_everything(state, fine, state.node_limit)
 
 
 def _second_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
