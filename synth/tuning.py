@@ -87,6 +87,8 @@ class SearchEffort:
         Boxes that may wait; when there are more, those that nearly close come first, so that they become fewer.
     most_stuck : int
         Boxes that are open but too small to be split, after which it ends: limits leave a sliver that never closes.
+    behind : float
+        Of two ways of bounding that have turns, the share of the effort of that which leaves more open.
     """
 
     seconds: float = 60.0
@@ -95,6 +97,35 @@ class SearchEffort:
     closing: float = 0.05
     most_waiting: int = 1_000_000
     most_stuck: int = 20_000
+    behind: float = 0.25
+
+
+@dataclass(frozen=True, kw_only=True)
+class LevelLimits:
+    """How a front of two objectives is searched level by level, in boxes unless another unit is told.
+
+    Parameters
+    ----------
+    soon : int
+        For a whole front at once, before it is judged whether that will close.
+    stays_open : float
+        Share of the boxes looked into: if more are open, it will not close soon. Trees that close stay below.
+    first : int
+        For each level that is open, in the first turn of a way of bounding; each turn that closes something doubles it.
+    first_of_one : int
+        The same for the best in one objective.
+    picture : int
+        Levels of a rough picture of the front, beside so many as designs are asked for.
+    rounds : int
+        Of looking for more designs between those that are known, where fewer are known than asked for.
+    """
+
+    soon: int = 100_000
+    stays_open: float = 0.32
+    first: int = 5_000
+    first_of_one: int = 20_000
+    picture: int = 8
+    rounds: int = 8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +135,7 @@ class TreeLimits:
     Parameters
     ----------
     whole_front : int
-        For a front of two objectives at once; what needs more is easier step by step.
+        For a front of two objectives at once; what needs more is easier level by level.
     scarce_front : int
         The same where few designs are known although they were looked for.
     first_try : int
@@ -121,6 +152,8 @@ class TreeLimits:
         Combinations that are few enough to be solved one by one, each from several starts.
     further : SearchEffort
         For what all this leaves open.
+    by_levels : LevelLimits
+        For fronts of two objectives that do not close soon.
     coarse : float
         The gap with which first designs are looked for.
     coarse_boxes : int
@@ -160,10 +193,6 @@ class TreeLimits:
         Of them in all.
     level_batches : int
         Batches of a level that are kept apart before they are joined.
-    step_proof : float
-        The share of the slack that the proof of one step of a front takes; the rest is for the choice of its design.
-    narrow : float
-        In units of the slack: when so little is left between the ends of a front, it is covered at once.
     focus : int
         Designs known at which it is measured what boxes are split along.
     """
@@ -177,6 +206,7 @@ class TreeLimits:
     boxes_of_few_parts: int = 200_000
     few_combinations: int = 3000
     further: SearchEffort = field(default_factory=SearchEffort)
+    by_levels: LevelLimits = field(default_factory=LevelLimits)
     coarse: float = 0.1
     coarse_boxes: int = 20_000
     first_boxes: int = 1_000
@@ -195,8 +225,6 @@ class TreeLimits:
     levels_per_doubling: int = 2
     levels: int = 64
     level_batches: int = 64
-    step_proof: float = 0.8
-    narrow: float = 20.0
     focus: int = 64
 
 

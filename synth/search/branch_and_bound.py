@@ -8,6 +8,7 @@ tolerance in every objective, because whatever improves it would itself be cover
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,13 +26,14 @@ from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, r
 class TreeOutcome:
     """What a tree left open, how many boxes were looked into, and why it stopped.
 
-    ``full``: enough is known; ``spent``: its time was over.
+    ``full``: enough is known; ``spent``: its time was over; ``given_up``: so much was open that it hardly closes.
     """
 
     open: Boxes
     looked: int
     full: bool = False
     spent: bool = False
+    given_up: bool = False
 
     @property
     def closed(self) -> bool:
@@ -47,6 +49,7 @@ def branch_and_bound(
     rng: np.random.Generator,
     node_limit: float = np.inf,
     enough: int | None = None,
+    hopeless: Callable[[int, int], bool] = lambda looked, waiting: False,
 ) -> TreeOutcome:
     """Cover everything that boxes may hold by known designs.
 
@@ -63,6 +66,8 @@ def branch_and_bound(
         Boxes that may be looked into.
     enough : int, optional
         Stop when more designs than this are known.
+    hopeless : callable, optional
+        Tells by how many boxes were looked into, and how many are open, whether to give up.
 
     Returns
     -------
@@ -73,7 +78,7 @@ def branch_and_bound(
     heuristics, looked = PrimalHeuristics(form, rule, rng, every), 0
     boxes = boxes if every else form.boxes.lean(boxes)
     nothing = boxes.take(slice(0, 0))
-    queue, fresh, stuck = nothing, [boxes], nothing
+    queue, fresh, stuck, given_up = nothing, [boxes], nothing, False
     while (len(queue) or fresh) and looked <= node_limit:
         if not len(queue):
             queue = _most_open(form, _latest(fresh, tree.generation), rule)
@@ -82,6 +87,9 @@ def branch_and_bound(
         clock.check([queue, *fresh, stuck])
         if enough is not None and len(form.archive) > enough:
             return TreeOutcome(Boxes.joined([queue, *fresh, stuck]), looked, True)
+        if hopeless(looked, len(queue) + sum(len(b) for b in fresh) + len(stuck)):
+            given_up = True
+            break
         batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
         children, small, seen = further(form, batch, rule, heuristics, node_limit - looked)
         looked += seen
@@ -90,7 +98,8 @@ def branch_and_bound(
         if len(children):
             fresh.append(children)
     left = Boxes.joined([queue, *fresh, stuck])
-    return TreeOutcome(left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0), looked)
+    left = left.take(rule.possible_gain(form.objectives.phi_of(left.bounds), left.cell) > 0)
+    return TreeOutcome(left, looked, given_up=given_up)
 
 
 def further(

@@ -22,7 +22,6 @@ class Clock:
     deadline: float = np.inf
     report: Callable[[int], None] = lambda open_boxes: None
     open: list[Boxes] = field(default_factory=list)
-    beyond: Sequence[np.ndarray] = ()  # lower corners, in phi, of what is open and in no box yet
 
     def check(self, boxes: Sequence[Boxes] = ()) -> None:
         """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""

@@ -55,11 +55,10 @@ def claim_no_less(state: FrontState) -> None:
 def note_open_boxes(state: FrontState) -> None:
     """Note what is proven where a tree was stopped: what its open boxes still allow."""
     tolerance, clock, m = state.proof.tolerance_under_way, state.clock, state.task.m
-    if tolerance is None or (not clock.open and not clock.beyond):
+    if tolerance is None or not clock.open:
         return
     boxes = [state.form.objectives.phi_of(b.bounds)[:, :m] for b in clock.open]
-    corners = list(clock.beyond) or boxes
-    state.proof.bounds.append(Bound(tolerance, np.concatenate([c.reshape(-1, m) for c in corners])))
+    state.proof.bounds.append(Bound(tolerance, np.concatenate(boxes)))
 
 
 def _sizes(state: FrontState) -> np.ndarray:

@@ -19,7 +19,7 @@ from synth.search.front_report import designs_as_found, front_found, settled_des
 from synth.search.front_state import FrontState, FrontTask
 from synth.search.given_front import given_front
 from synth.search.least_infeasible import explain_infeasible
-from synth.search.proven_gap import Bound
+from synth.search.proven_gap import Bound, LevelBound
 from synth.search.stages.choosing import choose_designs
 from synth.search.stages.covering import cover_front
 from synth.search.stages.first_designs import bound_everything, find_first_designs
@@ -53,13 +53,13 @@ class FoundAside:
     Parameters
     ----------
     designs : list of Candidate
-    bounds : list of Bound
+    bounds : list of Bound or LevelBound
     front : ParetoFront, optional
         Where it has proven everything: the answer if time is over before the search itself has it.
     """
 
     designs: Sequence[Candidate] = ()
-    bounds: Sequence[Bound] = ()
+    bounds: Sequence[Bound | LevelBound] = ()
     front: ParetoFront | None = None
 
 

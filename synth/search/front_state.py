@@ -18,9 +18,12 @@ from synth.search.budget import Clock
 from synth.search.counters import SearchCounters
 from synth.search.formulation import Formulation
 from synth.search.given_front import GivenFront
-from synth.search.proven_gap import Bound
+from synth.search.joint.joint_optima import SharedBounds
+from synth.search.joint.levels import Cutoffs, LevelProof
+from synth.search.proven_gap import Bound, Level, LevelBound
 from synth.search.pruning import EpsilonCover, NonImprovement
 from synth.search.stage_progress import StageProgress
+from synth.search.turns import TurnBudget
 from synth.search.warm_start import WarmStart
 from synth.tuning import TUNING, TreeLimits, Tuning
 
@@ -142,6 +145,8 @@ class FrontProof:
         Boxes that were left open.
     bounds : list of Bound
         What is proven of all designs, each on its own.
+    levels : list of Level
+        What is proven of designs within cutoffs.
     finest_cover : EpsilonCover, optional
         The finest cover that is finished.
     designs : set of bytes
@@ -157,7 +162,8 @@ class FrontProof:
     exhausted: bool = True
     complete: bool = False
     unresolved: int = 0
-    bounds: list[Bound] = field(default_factory=list)
+    bounds: list[Bound | LevelBound] = field(default_factory=list)
+    levels: list[Level] = field(default_factory=list)
     finest_cover: EpsilonCover | None = None
     designs: set[bytes] = field(default_factory=set)
     tolerance_under_way: np.ndarray | None = None
@@ -192,6 +198,10 @@ class OpenBoxBudget:
     seconds: float
     spent: bool = False
 
+    def take(self, turns: TurnBudget) -> None:
+        """Take note of what turns have left of the time."""
+        self.seconds, self.spent = min(self.seconds, turns.seconds), self.spent or turns.spent
+
 
 class FrontState:
     """What a search for a front knows; its stages read it and write what they find.
@@ -220,7 +230,9 @@ class FrontState:
         self.front: list[Candidate] = []
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.given = GivenFront.nothing(task.m)
-        self.by_steps = False  # whether a front at once has turned out to cost too much
+        self.by_levels = False  # whether a front at once has turned out to cost too much
+        self._shared: SharedBounds | None = None
+        self.sampled = False  # whether parts were drawn for what several levels leave open
         self.may_find_more = True  # unless a try was given up
         self.reporting = False  # whether the designs stand, and are only told
         self.taught = learned is not None and self.form.bounding.branching.adopt(learned)
@@ -282,6 +294,25 @@ class FrontState:
         """Put a feasible design into the archive."""
         self.form.archive.add(*rows_of([design]))
 
+    def levels_within(self, cutoffs: Cutoffs) -> LevelProof:
+        """Return the search for the best in the second objective within cutoffs of the first."""
+        if self._shared is None:
+            self._shared = SharedBounds([self.task], ())
+        proof = LevelProof(self.task, self._shared, self.clock, cutoffs)
+        proof.begin_with(self.form.archive)
+        return proof
+
+    def hopeless(self, looked: int, waiting: int) -> bool:
+        """Tell whether a front of two objectives will hardly close at once, by its boxes."""
+        limits = self.task.limits.by_levels
+        return self.task.m == 2 and looked >= limits.soon and waiting > limits.stays_open * looked
+
+    def turn_budget(self) -> TurnBudget:
+        """Return for how long trees may go on by turns."""
+        limits = self.task.limits
+        boxes = limits.boxes if self.task.thorough else self.node_limit
+        return TurnBudget(boxes, self.budget.seconds if self.task.thorough else 0.0, limits.further)
+
     # -- boxes ---------------------------------------------------------------------------------
 
     def set_pool(self) -> None:
@@ -303,7 +334,7 @@ class FrontState:
     def begin_tree(self, tolerance: np.ndarray | None) -> None:
         """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""
         self.proof.tolerance_under_way = tolerance
-        self.clock.open, self.clock.beyond = [], ()
+        self.clock.open = []
 
     def end_tree(self) -> None:
         """Note that no tree is under way: one that was stopped by an exception stays."""

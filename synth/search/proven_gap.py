@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,12 +55,77 @@ class Bound:
         return worst
 
 
-def least_gap(bounds: Iterable[Bound], phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray) -> float | None:
+@dataclass(frozen=True)
+class Level:
+    """What is proven of the designs within some cutoffs: none is better in one objective, unless in an open box.
+
+    Parameters
+    ----------
+    within : array (objectives,)
+        Cutoffs of phi; infinite where there is none.
+    sought : int
+        The objective.
+    least : float
+        phi of it: nothing within the cutoffs is better by more than its tolerance, but for what is open.
+    tolerance : array (objectives,)
+        In phi; of the objective that is sought.
+    corners : array (boxes, objectives)
+        Lower bounds of phi of the open boxes.
+    """
+
+    within: np.ndarray
+    sought: int
+    least: float
+    tolerance: np.ndarray
+    corners: np.ndarray
+
+    def speaks_of(self, phi: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
+        """Tell of which designs (designs, objectives) it says what can improve them by more than a tolerance.
+
+        What does so lies within the cutoffs, and what is proven there is no worse than the design.
+        """
+        inside: np.ndarray = np.all(phi - tolerance <= self.within, axis=1) & (phi[:, self.sought] <= self.least)
+        return inside
+
+    def proves(self, phi: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
+        """Tell of which designs it proves that nothing improves them by more than a tolerance in every objective."""
+        fine = not len(self.corners) and bool(self.tolerance[self.sought] <= tolerance[self.sought])
+        return self.speaks_of(phi, tolerance) & fine
+
+
+@dataclass(frozen=True)
+class LevelBound:
+    """What is proven of designs one by one, each within cutoffs of its own.
+
+    Parameters
+    ----------
+    tolerance : array (objectives,)
+        In phi.
+    levels : list of Level
+    """
+
+    tolerance: np.ndarray
+    levels: Sequence[Level]
+
+    def gaps(self, phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+        """Return, per design listed, by how much at most another one improves it; as :meth:`Bound.gaps`."""
+        best = np.full(len(phi), np.inf)
+        for level in self.levels:
+            rows = np.flatnonzero(level.speaks_of(phi, self.tolerance))
+            own = Bound(np.maximum(self.tolerance, level.tolerance), level.corners)
+            if len(rows):
+                best[rows] = np.minimum(best[rows], own.gaps(phi[rows], logs, sizes))
+        return best
+
+
+def least_gap(
+    bounds: Iterable[Bound | LevelBound], phi: np.ndarray, logs: np.ndarray, sizes: np.ndarray
+) -> float | None:
     """Return the smallest g of which some bound proves that nothing improves a design by more in every objective.
 
     Parameters
     ----------
-    bounds : iterable of Bound
+    bounds : iterable of Bound or LevelBound
     phi, logs, sizes
         As for :meth:`Bound.gaps`.
 

@@ -160,9 +160,21 @@ class NonImprovement:
             result.append(self.known[int(rows[0])] if len(rows) else c)
         return result
 
-    def unproven(self) -> list[Candidate]:
-        """Return the designs that need a proof."""
-        return [c for c in self.designs if c.phi.tobytes() not in self._proven]
+    def renew(self, sought: int) -> None:
+        """Exchange designs that a known one beats for the best of these in one objective; likewise the ends.
+
+        A design so stays where it is on the front: what beats it by most may beat many others.
+        """
+        known = self.known.phi[:, self.columns]
+        for j, c in enumerate(self.designs):
+            rows = np.flatnonzero(beating(known, c.phi[self.columns], self.tie))
+            if len(rows):
+                self.designs[j] = self.known[int(rows[np.argmin(known[rows, sought])])]
+        for k, best in enumerate(np.argmin(known, axis=0).tolist()):
+            j = int(np.argmin([c.phi[self.columns[k]] for c in self.designs]))
+            if known[best, k] < self.designs[j].phi[self.columns[k]]:
+                self.designs[j] = self.known[best]
+        self._set()
 
     def _set(self) -> None:
         phi = np.array([c.phi[self.columns] for c in self.designs])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -18,6 +19,7 @@ from synth.search.budget import Clock
 from synth.search.formulation import Formulation
 from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
+from synth.search.log_objectives import LogObjectives
 from synth.search.resolution import gap_tolerance
 from synth.tuning import Tuning
 
@@ -65,9 +67,33 @@ class SharedBounds:
 
     def among(self, instance: JointInstance, infeasibility: bool, workers: int = 1) -> Formulation | None:
         """Return questions prepared for a search; None where their numbers are not among those of these."""
+        return self._form(infeasibility).among(instance, workers)
+
+    @property
+    def objectives(self) -> LogObjectives:
+        """How objectives are compared."""
+        return self._form(False).objectives
+
+    def _form(self, infeasibility: bool) -> Formulation:
         if infeasibility not in self._forms:
             self._forms[infeasibility] = Formulation(self._instance, self.goals, 1, infeasibility, tuning=self._tuning)
-        return self._forms[infeasibility].among(instance, workers)
+        return self._forms[infeasibility]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Needs:
+    """What designs must beat to be of use, where that is not the best one known.
+
+    Parameters
+    ----------
+    to_beat : array (questions,)
+        phi of the objective that is sought.
+    tolerance : float
+        In phi, by which it and the best known must be beaten.
+    """
+
+    to_beat: np.ndarray
+    tolerance: float
 
 
 class JointTree:
@@ -75,6 +101,7 @@ class JointTree:
 
     def __init__(self, search: JointOptima, form: Formulation, known: IncumbentPerScenario, boxes: Boxes) -> None:
         self.search, self.form, self.known, self.left = search, form, known, boxes
+        self.under_way = False  # also where it was stopped by an exception: the clock holds its boxes then
 
     def open_questions(self, asked: np.ndarray, node_limit: float) -> np.ndarray:
         """Go on for so many boxes; tell of which of the questions asked it is not proven what is best."""
@@ -87,13 +114,15 @@ class JointTree:
             rows = asked[search.known.questions()]
             self.known.add(search.known.combination[rows], search.known.variables[rows], search.known.phi[rows])
         before = form.counters.contracted, form.counters.nlp_solves
-        rule = BestPerScenario(form, self.known, search.tolerance_of(search.sought), asked)
+        rule = search.rule(asked, form, self.known)
+        self.under_way = True
         for _ in range(2):
             self.left = branch_and_bound(
                 form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
             ).open
             if not 0 < len(self.left) < limits.nearly_closed * node_limit:
                 break
+        self.under_way = False
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)
             search.form.counters.contracted += form.counters.contracted - before[0]
@@ -116,6 +145,8 @@ class JointOptima:
         Number of the objective that is sought.
     cutoffs : mapping, optional
         As for :class:`JointInstance`.
+    needs : Needs, optional
+        What designs must beat; otherwise the best known by more than the gap.
     """
 
     def __init__(
@@ -125,6 +156,7 @@ class JointOptima:
         shared: SharedBounds | None = None,
         sought: int = 0,
         cutoffs: Mapping[int, np.ndarray] | None = None,
+        needs: Needs | None = None,
     ) -> None:
         self.questions, self.clock = list(questions), clock
         first = questions[0]
@@ -132,7 +164,7 @@ class JointOptima:
         self.shared, self.workers, self.sought = shared, first.settings.workers, sought
         moving = () if shared is None else shared.moving
         self.instance = JointInstance([q.instance for q in questions], moving, cutoffs)
-        self.gap = first.settings.gap
+        self.gap, self.needs = first.settings.gap, needs
         self.goals = with_ties(first.instance.model, dict(first.chosen)) if shared is None else shared.goals
         self.form = self._prepared()
         self.fixed_cutoffs = np.full((len(self.questions), len(self.form.goals)), np.inf)
@@ -169,7 +201,7 @@ class JointOptima:
         """Return good designs of the questions, of which nothing is proven."""
         self.pool, self.heuristics.thorough = self.form.boxes.root(), False
         if len(self.pool):
-            rule = BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), self.told_apart())
+            rule = self.rule(self.told_apart())
             self.heuristics.warm_start(rule)
             self.heuristics.improve(rule)
         return list(self.known)
@@ -182,7 +214,7 @@ class JointOptima:
         self.pool = self.form.boxes.root()
         if not len(self.pool) or not asked.any():
             return asked
-        self.heuristics.first(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), asked), self.pool)
+        self.heuristics.first(self.rule(asked), self.pool)
         found = np.isfinite(self.known.best())
         if not found.any() and not excluded:
             return np.zeros_like(asked)
@@ -204,8 +236,8 @@ class JointOptima:
             if not unproven.any():
                 break
             self.heuristics.thorough = True
-            self.heuristics.improve(BestPerScenario(self.form, self.known, self.tolerance_of(self.sought), unproven))
-            by_limits = self._in_infeasibility_mode() if by_limits is None else by_limits
+            self.heuristics.improve(self.rule(unproven))
+            by_limits = self.in_infeasibility_mode() if by_limits is None else by_limits
             sure = int((unproven & np.isfinite(self.known.best())).sum())
             node_limit = sure_boxes * sure + unsure_boxes * (int(unproven.sum()) - sure)
             unproven &= by_limits.open_questions(unproven, node_limit)
@@ -270,14 +302,24 @@ class JointOptima:
         asked = self.told_apart()
         asked &= np.isin(np.arange(len(asked)), codec.question(combinations))
         form.archive = known
-        rule = BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
+        rule = self.rule(asked, form, known)
         self.heuristics.tried(rule, combinations, points)
         node_limit = self.limits.given_parts * len(combinations)
         left = branch_and_bound(form, form.boxes.leaves(combinations), rule, self.clock, self.rng, node_limit).open
         form.archive = self.known
         return known, asked & ~rule.open_questions(left)
 
-    def _in_infeasibility_mode(self) -> JointTree:
+    def rule(
+        self, asked: np.ndarray, form: Formulation | None = None, known: IncumbentPerScenario | None = None
+    ) -> BestPerScenario:
+        """Return what prunes boxes of the questions asked; by default with what is known here."""
+        form, known = form or self.form, self.known if known is None else known
+        if self.needs is None:
+            return BestPerScenario(form, known, self.tolerance_of(self.sought), asked)
+        tolerance = self.needs.tolerance
+        return BestPerScenario(form, known, lambda phi: np.full(len(phi), tolerance), asked, self.needs.to_beat)
+
+    def in_infeasibility_mode(self) -> JointTree:
         """Return what tries with boxes that carry what limits share, which helps where limits leave little room."""
         form = self._prepared(infeasibility=True)
         form.counters.work = self.form.counters.work

@@ -155,6 +155,8 @@ class BestPerScenario:
         Takes phi of the best designs; returns how much better a design must be to be of use.
     asked : array of bool (questions,)
         Questions that are not asked need no proof.
+    to_beat : array (questions,), optional
+        phi that a design must beat as well, whatever is known.
     """
 
     proves = False
@@ -165,8 +167,10 @@ class BestPerScenario:
         known: IncumbentPerScenario,
         tolerance_of: Callable[[np.ndarray], np.ndarray],
         asked: np.ndarray,
+        to_beat: np.ndarray | None = None,
     ) -> None:
         self.form, self.known, self._tolerance_of, self.asked = form, known, tolerance_of, asked
+        self._to_beat = np.full(len(asked), np.inf) if to_beat is None else to_beat
         self.columns, self.tie = [known.column], form.tuning.tolerances.tie
         self.tolerance = tolerance_of(np.zeros(1))
         self.fixed_cutoffs = np.full(len(form.goals), np.inf)
@@ -177,7 +181,7 @@ class BestPerScenario:
 
     def needed(self) -> np.ndarray:
         """Return, per question, what a design must be better than in phi."""
-        best = self.known.best()
+        best = np.minimum(self.known.best(), self._to_beat)
         margin = np.where(np.isfinite(best), self._tolerance_of(best), 0.0)
         needed: np.ndarray = np.where(self.asked, best - margin, -np.inf)
         return needed

@@ -8,9 +8,10 @@ from synth.search.archive import Candidate, rows_of
 from synth.search.front_state import FrontState
 from synth.search.polishing import polish_extremes, polish_variables
 from synth.search.resolution import ranges
+from synth.search.stages.levels import fill_levels
 from synth.search.stages.proving import prove_designs, proven_at_gap
 from synth.search.stages.spreading import different, spread
-from synth.search.stages.trees import cover_everything, cover_step_by_step
+from synth.search.stages.trees import cover_everything
 
 
 def choose_designs(state: FrontState) -> None:
@@ -21,7 +22,9 @@ def choose_designs(state: FrontState) -> None:
         _rescale(state)
         if not last and _too_few(state) and _look_for_more(state):
             continue
-        if not proof.closed or proof.complete or proven_at_gap(state) or prove_designs(state):
+        # Level by level what one design lacks is nothing to the others.
+        open_for_all = not proof.closed and not state.by_levels
+        if open_for_all or proof.complete or proven_at_gap(state) or prove_designs(state):
             break
     if proof.closed and not proof.complete and len(state.front) < points and _covered_at_gap(state):
         # Now each design stands that no known one beats, also those that were found meanwhile.
@@ -61,16 +64,16 @@ def _too_few(state: FrontState) -> bool:
     """Tell whether fewer designs are chosen than asked for, and there may be more."""
     if len(state.front) >= state.task.settings.points or not state.proof.closed or state.proof.complete:
         return False
-    return state.may_find_more and not (state.by_steps and proven_at_gap(state))
+    return state.may_find_more and not (state.by_levels and proven_at_gap(state))
 
 
 def _look_for_more(state: FrontState) -> bool:
     """Find all designs that none dominates, or more than enough of them; tell whether anything was found."""
     archive, m, points = state.form.archive, state.task.m, state.task.settings.points
     known, node_limit = archive.phi, state.task.limits.fill + state.counters.nodes
-    if state.by_steps:
+    if state.by_levels:
         # Not everything that is not dominated, but everything that the gap tells apart.
-        state.may_find_more = cover_step_by_step(state, state.cover_within(state.rule.tolerance)).closed
+        state.may_find_more = fill_levels(state)
     else:
         finest = state.cover_within(np.full(m, state.task.tuning.tolerances.tie))
         outcome = cover_everything(state, finest, node_limit, points)
@@ -80,7 +83,7 @@ def _look_for_more(state: FrontState) -> bool:
 
 def _covered_at_gap(state: FrontState) -> bool:
     """Tell whether everything is covered as finely as the gap; a front at once is covered now."""
-    if state.by_steps:
+    if state.by_levels:
         return proven_at_gap(state)
     return cover_everything(state, state.rule, state.task.limits.boxes).closed
 

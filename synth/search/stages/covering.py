@@ -9,14 +9,19 @@ from synth.search.front_state import FrontState
 from synth.search.large_neighbourhood import large_neighbourhood_search
 from synth.search.pruning import EpsilonCover
 from synth.search.stages.first_designs import seek_beside
-from synth.search.stages.trees import close_open_boxes, cover_everything, cover_step_by_step
+from synth.search.stages.levels import seek_levels
+from synth.search.stages.trees import close_open_boxes, cover_everything
 
 
 def cover_front(state: FrontState) -> None:
     """Cover everything as finely as the points asked for need, at most as the gap."""
     rule, outcome = _first_cover(state) if state.task.m == 2 else _cover_of_many(state)
     if not outcome.closed and state.task.m == 2:
-        rule, outcome = _second_cover(state)
+        if not outcome.given_up and not _scarce(state):
+            rule, outcome = _at_once(state, state.fine_cover(), state.node_limit)
+        if not outcome.closed:
+            seek_levels(state)
+            return
     left = close_open_boxes(state, outcome.open, rule)
     if len(outcome.open) and not len(left):
         state.proof.note_cover(rule)
@@ -29,7 +34,7 @@ def _first_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
     scarce = state.task.instance.combinations.count > limits.few_combinations and _search_neighbourhoods(state)
     rule = state.fine_cover()
     at_once = limits.scarce_front if scarce else limits.whole_front
-    return rule, cover_everything(state, rule, min(state.node_limit, at_once))
+    return _at_once(state, rule, min(state.node_limit, at_once))
 
 
 def _cover_of_many(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
@@ -43,13 +48,13 @@ def _cover_of_many(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
     return fine, cover_everything(state, fine, state.node_limit)
 
 
-def _second_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
-    """Cover a front of two objectives that was not covered at once, step by step if that promises more."""
-    rule = state.fine_cover()
-    # Where designs are many the boxes do close; where they are few or unknowns many, they hardly do.
-    few = len(state.form.archive) < state.task.settings.points
-    state.by_steps = state.node_limit < state.task.limits.boxes or few
-    return rule, cover_step_by_step(state, rule) if state.by_steps else cover_everything(state, rule, state.node_limit)
+def _at_once(state: FrontState, rule: EpsilonCover, node_limit: float) -> tuple[EpsilonCover, TreeOutcome]:
+    return rule, cover_everything(state, rule, node_limit, judged=True)
+
+
+def _scarce(state: FrontState) -> bool:
+    """Tell whether boxes hardly close: because unknowns are many, or designs few."""
+    return state.node_limit < state.task.limits.boxes or len(state.form.archive) < state.task.settings.points
 
 
 def _search_neighbourhoods(state: FrontState) -> bool:

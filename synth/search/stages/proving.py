@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.search.branch_and_bound import TreeOutcome, branch_and_bound
-from synth.search.epsilon_constraint import prove_by_epsilon_constraint
+from synth.pareto import extremes, spread_subset
+from synth.search.archive import Candidate
+from synth.search.branch_and_bound import branch_and_bound
 from synth.search.front_state import FrontState
 from synth.search.pruning import NonImprovement
-from synth.search.stages.spreading import different
+from synth.search.stages.levels import prove_levels, proven_by_levels
+from synth.search.stages.spreading import different, spread
 from synth.search.stages.trees import close_open_boxes
 
 
@@ -20,27 +22,54 @@ def proven_at_gap(state: FrontState) -> bool:
 
 def prove_designs(state: FrontState) -> bool:
     """Prove the designs chosen; tell whether they stand, or better ones were found for some of too few."""
-    proven = state.proof.designs
-    staircase = NonImprovement(state.front, state.rule.columns, state.rule.tolerance, state.form.archive, proven)
-    state.proof.staircase = staircase
-    outcome = _tree(state, staircase)
+    stand = None if state.by_levels else _prove_at_once(state)
+    return _prove_by_levels(state) if stand is None else stand
+
+
+def _prove_at_once(state: FrontState) -> bool | None:
+    """Search below all designs at once; None where that does not end soon, and two objectives are traded off."""
+    limits, two, staircase = state.task.limits, state.task.m == 2, _staircase(state)
+    state.begin_tree(staircase.tolerance)
+    clock, rng, hopeless = state.clock, state.rng, state.hopeless
+    outcome = branch_and_bound(state.form, state.pool, staircase, clock, rng, limits.boxes, hopeless=hopeless)
     state.counters.nodes += outcome.looked
-    left = close_open_boxes(state, outcome.open, staircase)
+    if two and not outcome.closed:
+        state.end_tree()
+        state.front, state.by_levels = different(state, staircase.finished()), True
+        return None
+    return _stand(state, staircase, not len(close_open_boxes(state, outcome.open, staircase)))
+
+
+def _prove_by_levels(state: FrontState) -> bool:
+    """Prove each design at a level of its own, so that no more are worth it than are listed."""
+    state.front = _worth_proving(state)
+    staircase = _staircase(state)
+    return _stand(state, staircase, prove_levels(state, staircase))
+
+
+def _worth_proving(state: FrontState) -> list[Candidate]:
+    """Return as many designs as are asked for that spread best; those that are proven stay."""
+    points, phi = state.task.settings.points, state.phi_listed()
+    proven = np.flatnonzero(proven_by_levels(state, phi)).tolist()
+    if len(state.given.phi) or not proven:
+        return spread(state, state.front, points)
+    return [state.front[int(k)] for k in spread_subset(phi, points, [*extremes(phi), *proven])]
+
+
+def _staircase(state: FrontState) -> NonImprovement:
+    """Return what tells which designs improve those of the front."""
+    proven, rule = state.proof.designs, state.rule
+    state.proof.staircase = NonImprovement(state.front, rule.columns, rule.tolerance, state.form.archive, proven)
+    return state.proof.staircase
+
+
+def _stand(state: FrontState, staircase: NonImprovement, closed: bool) -> bool:
+    """Take the designs that stand; tell whether they are enough, or nothing better is found for them."""
     state.proof.staircase = None
     state.end_tree()
     replaced = any(a is not b for a, b in zip(staircase.designs, state.front, strict=True))
     finished = staircase.finished()
     state.front = different(state, finished)
-    if not len(left):
-        proven.update(c.phi.tobytes() for c in finished)
-    return bool(len(left)) or not replaced or len(state.front) >= state.task.settings.points
-
-
-def _tree(state: FrontState, staircase: NonImprovement) -> TreeOutcome:
-    """Search below the designs, step by step where that has turned out to be easier."""
-    form, pool, clock, rng = state.form, state.pool, state.clock, state.rng
-    if state.by_steps:
-        state.begin_tree(None)  # the boxes of one step are not all that is open
-        return prove_by_epsilon_constraint(form, pool, staircase, clock, rng, state.node_limit)
-    state.begin_tree(staircase.tolerance)
-    return branch_and_bound(form, pool, staircase, clock, rng, state.task.limits.boxes)
+    if closed:
+        state.proof.designs.update(c.phi.tobytes() for c in finished)
+    return not closed or not replaced or len(state.front) >= state.task.settings.points

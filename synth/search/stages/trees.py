@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.search.best_first import best_first
 from synth.search.branch_and_bound import TreeOutcome, branch_and_bound
-from synth.search.epsilon_constraint import cover_by_epsilon_constraint
 from synth.search.front_state import FrontState
 from synth.search.part_sampling import BEGUN_ANEW, passed_over, sample_parts, study_file
 from synth.search.polishing import solve_everywhere
@@ -17,7 +19,7 @@ from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule
 
 
 def cover_everything(
-    state: FrontState, rule: EpsilonCover, node_limit: float, enough: int | None = None
+    state: FrontState, rule: EpsilonCover, node_limit: float, enough: int | None = None, judged: bool = False
 ) -> TreeOutcome:
     """Cover everything with one tolerance; if the time runs out, the boxes that are open tell what is proven.
 
@@ -29,16 +31,12 @@ def cover_everything(
         Boxes that may be looked into.
     enough : int, optional
         Stop when more designs than this are known.
+    judged : bool
+        Stop where a front of two objectives will hardly close at once.
     """
+    hopeless = state.hopeless if judged else lambda looked, waiting: False
     state.begin_tree(rule.tolerance)
-    outcome = branch_and_bound(state.form, state.pool, rule, state.clock, state.rng, node_limit, enough)
-    return _noted(state, rule, outcome)
-
-
-def cover_step_by_step(state: FrontState, rule: EpsilonCover) -> TreeOutcome:
-    """Cover everything with one tolerance, one objective capped step by step."""
-    state.begin_tree(rule.tolerance)
-    outcome = cover_by_epsilon_constraint(state.form, state.pool, rule, state.clock, state.rng, state.node_limit)
+    outcome = branch_and_bound(state.form, state.pool, rule, state.clock, state.rng, node_limit, enough, hopeless)
     return _noted(state, rule, outcome)
 
 
@@ -74,11 +72,38 @@ def close_open_boxes(state: FrontState, left: Boxes, rule: TabledPruningRule) ->
     return left
 
 
+class LeftOpen(Protocol):
+    """What trees have left open."""
+
+    @property
+    def open_boxes(self) -> int:
+        """How many boxes."""
+
+    def open_combinations(self, most: int) -> np.ndarray:
+        """Return combinations in them, at most so many."""
+
+
+def leave_open(state: FrontState, left: LeftOpen, rule: PruningRule) -> None:
+    """Note that something stays open; its combinations are solved one by one where they are few, else some drawn."""
+    proof, thorough = state.proof, state.task.thorough
+    proof.closed = False
+    proof.unresolved += left.open_boxes
+    solved = thorough and _solved(state, left.open_combinations(state.task.limits.few_combinations + 1), rule)
+    if thorough and not solved and not state.sampled:
+        _sample_parts(state, state.pool, rule)
+        state.sampled = True
+    proof.exhausted = proof.exhausted and solved
+
+
 def _solve_few(state: FrontState, boxes: Boxes, rule: PruningRule) -> bool:
     """Solve the combinations of boxes from several starts, where they are few enough; tell whether they are."""
     most = state.task.limits.few_combinations
-    combinations = state.form.boxes.cells.all_members(boxes.cell, most + 1)
-    few = len(combinations) <= most
+    return _solved(state, state.form.boxes.cells.all_members(boxes.cell, most + 1), rule)
+
+
+def _solved(state: FrontState, combinations: np.ndarray, rule: PruningRule) -> bool:
+    """Solve combinations from several starts, where they are few enough; tell whether they are."""
+    few = len(combinations) <= state.task.limits.few_combinations
     if few:
         solve_everywhere(state.form, combinations, rule, state.clock, state.rng)
     return few
@@ -97,7 +122,7 @@ def _go_on(state: FrontState, left: Boxes, rule: TabledPruningRule) -> Boxes:
     return outcome.open
 
 
-def _sample_parts(state: FrontState, left: Boxes, rule: TabledPruningRule) -> None:
+def _sample_parts(state: FrontState, left: Boxes, rule: PruningRule) -> None:
     """Look for designs in some of the combinations of boxes, which prove nothing."""
     task, seed = state.task, state.task.settings.seed
     journal = study_file(task.instance, task.chosen, seed, task.tuning)

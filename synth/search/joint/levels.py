@@ -1,0 +1,200 @@
+"""Levels: the best in the second of two objectives while the first is capped, at many cutoffs as one tree.
+
+A question with a cutoff is one more question, so that the levels of one front are a joint search. A box from which both
+objectives could still be good has no cap; with the first objective capped outright there is no such box.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.bounds.boxes import Boxes
+from synth.pareto import spread_subset
+from synth.search.archive import Archive, Candidate
+from synth.search.budget import Clock
+from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, Posed, SharedBounds
+from synth.search.proven_gap import Level
+from synth.search.turns import TurnBudget, by_turns
+
+CAPPED, SOUGHT = 0, 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cutoffs:
+    """Where the first objective is capped, and what the second is to beat there.
+
+    Parameters
+    ----------
+    first : array (levels,)
+        phi that a design must keep; no two are the same.
+    to_beat : array (levels,)
+        phi of the second objective; infinite where nothing is.
+    tolerance : float
+        In phi of the second objective: by how much a design must be better to count.
+    """
+
+    first: np.ndarray
+    to_beat: np.ndarray
+    tolerance: float
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def told_apart(self) -> Cutoffs:
+        """Return the same where each cutoff stands once, with the most of what it is to beat."""
+        first, places = np.unique(self.first, return_inverse=True)
+        to_beat = np.full(len(first), -np.inf)
+        np.maximum.at(to_beat, places, self.to_beat)
+        return Cutoffs(first=first, to_beat=to_beat, tolerance=self.tolerance)
+
+
+class LevelTree:
+    """One tree over all levels, by one way of bounding."""
+
+    def __init__(self, proof: LevelProof, tree: JointTree) -> None:
+        self.proof, self.tree = proof, tree
+
+    @property
+    def extent(self) -> float:
+        """How much of everything its open boxes hold; nothing where all levels are proven."""
+        return self.tree.form.boxes.extent(self.tree.left) if self.proof.unproven.any() else 0.0
+
+    @property
+    def open_boxes(self) -> int:
+        """How many boxes are open."""
+        return len(self.tree.left)
+
+    def go_on(self, boxes: float, most: float) -> int:
+        """Look into so many boxes for each level that is open, at most so many in all; return how many it were."""
+        proof, counters = self.proof, self.tree.form.counters
+        before = counters.contracted
+        boxes = min(boxes * int(proof.unproven.sum()), most)
+        proof.unproven &= self.tree.open_questions(proof.unproven, boxes)
+        return counters.contracted - before
+
+
+class LevelProof:
+    """The search for the best design of each level, and its proof.
+
+    Parameters
+    ----------
+    task : Posed
+        The question, of two objectives.
+    shared : SharedBounds
+        Of the question.
+    clock : Clock
+    cutoffs : Cutoffs
+    """
+
+    def __init__(self, task: Posed, shared: SharedBounds, clock: Clock, cutoffs: Cutoffs) -> None:
+        self.cutoffs, self.clock = cutoffs, clock
+        # Settling ties may make a proven design worse by so much; the proof is as much finer.
+        self.room = task.tuning.tolerances.rounded
+        needs = Needs(to_beat=cutoffs.to_beat, tolerance=cutoffs.tolerance - self.room)
+        capped = {CAPPED: shared.objectives.signed(CAPPED, cutoffs.first)}
+        self.search = JointOptima([task] * len(cutoffs), clock, shared, SOUGHT, capped, needs)
+        self.unproven = self.search.told_apart()
+        self.known_before: set[bytes] = set()
+        self.trees: list[LevelTree] = []
+
+    def begin_with(self, known: Archive) -> None:
+        """Know designs of the question at every level that they keep."""
+        search, levels = self.search, np.arange(len(self.cutoffs))
+        rows = np.tile(np.arange(len(known)), len(levels))
+        every = search.instance.combinations.joined(np.repeat(levels, len(known)), known.combination[rows])
+        search.known.add(every, known.variables[rows], known.phi[rows])
+        most = search.tuning.heuristics.primal.families
+        if len(known):
+            some = spread_subset(known.phi[:, : SOUGHT + 1], most).tolist()
+            search.heuristics.starts = {int(known.combination[k]): known.variables[k] for k in some}
+        self.known_before = {x.tobytes() for x in known.phi}
+
+    def look(self) -> None:
+        """Look for good designs of the levels, of which nothing is proven."""
+        search = self.search
+        search.pool = search.form.boxes.root()
+        if len(search.pool):
+            search.heuristics.first(search.rule(self.unproven), search.pool)
+
+    def found(self) -> list[Candidate]:
+        """Return the best designs of the levels that were not known before."""
+        own = self.search.instance.combinations.own
+        new = [c for c in self.search.known if c.phi.tobytes() not in self.known_before]
+        return [Candidate(own(c.combination), c.variables, c.phi) for c in new]
+
+    def prove(self, budget: TurnBudget, first: float) -> None:
+        """Search by turns for what is better at any level; plain boxes begin.
+
+        Parameters
+        ----------
+        budget : TurnBudget
+        first : float
+            Boxes of the first turns, per level.
+        """
+        search = self.search
+        search.pool = search.form.boxes.root()
+        if not len(search.pool):
+            self.unproven[:] = False
+            return
+        ways = (
+            lambda: self._begun(JointTree(search, search.form, search.known, search.pool)),
+            lambda: self._begun(search.in_infeasibility_mode()),
+        )
+        by_turns(ways, budget, first, self._look)
+
+    def levels(self) -> list[Level]:
+        """Return what is proven of each level; what is open is told by the lower bounds of its boxes."""
+        best = np.minimum(self.search.known.best(), self.cutoffs.to_beat)
+        told = self.search.told_apart()
+        open_boxes = [self._open(t.tree) for t in self.trees]
+        result = []
+        for k in np.flatnonzero(told):
+            corners = np.empty((0, 2))
+            if self.unproven[k]:
+                if not open_boxes:
+                    continue
+                each = [_corners_of(t, boxes, int(k)) for t, boxes in open_boxes]
+                corners = max(each, key=lambda c: c[:, SOUGHT].min(initial=np.inf))
+            within = np.array([self.cutoffs.first[k], np.inf])
+            tolerance = np.array([0.0, self.cutoffs.tolerance])
+            result.append(Level(within, SOUGHT, float(best[k]) + self.room, tolerance, corners))
+        return result
+
+    def own(self, combination: int) -> int:
+        """Return the number that a combination has in the question."""
+        return self.search.instance.combinations.own(combination)
+
+    def open_combinations(self, most: int) -> np.ndarray:
+        """Return combinations of the question that the last tree has open, at most so many."""
+        tree = self.trees[-1].tree
+        return np.unique(self.search.instance.combinations.own(tree.form.boxes.cells.all_members(tree.left.cell, most)))
+
+    @property
+    def open_boxes(self) -> int:
+        """How many boxes the last tree has open."""
+        return len(self.trees[-1].tree.left)
+
+    def _begun(self, tree: JointTree) -> LevelTree:
+        self.trees.append(LevelTree(self, tree))
+        return self.trees[-1]
+
+    def _open(self, tree: JointTree) -> tuple[JointTree, Boxes]:
+        """Return the boxes that a tree has open: those at hand where it was stopped."""
+        at_hand = self.clock.open if tree.under_way else []
+        return tree, Boxes.joined(list(at_hand)) if at_hand else tree.left
+
+    def _look(self) -> None:
+        """Look for designs of the levels that are open."""
+        self.search.heuristics.thorough = True
+        self.search.heuristics.improve(self.search.rule(self.unproven))
+
+
+def _corners_of(tree: JointTree, boxes: Boxes, level: int) -> np.ndarray:
+    """Return phi of the lower bounds of those boxes that speak of a level."""
+    questions = tree.form.boxes.cells.trees[0]
+    holding = np.array([level in questions.rows(k) for k in range(len(questions))])
+    own = boxes.take(holding[boxes.cell[:, 0]])
+    corners: np.ndarray = tree.form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1]
+    return corners

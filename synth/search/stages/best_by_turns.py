@@ -1,0 +1,107 @@
+"""What is best in one objective, by turns of plain boxes and of boxes that carry what limits share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.bounds.boxes import Boxes
+from synth.search.branch_and_bound import branch_and_bound, cover_of_one
+from synth.search.formulation import Formulation
+from synth.search.front_state import FrontState
+from synth.search.proven_gap import Level
+from synth.search.turns import by_turns
+
+
+class BestTree:
+    """A tree for what is best in one objective, by one way of bounding.
+
+    Parameters
+    ----------
+    state : FrontState
+    form : Formulation
+    pool : Boxes
+        Everything that may be feasible.
+    k : int
+        Number of the objective.
+    """
+
+    def __init__(self, state: FrontState, form: Formulation, pool: Boxes, k: int) -> None:
+        self.state, self.form, self.left, self.k, self.under_way = state, form, pool, k, False
+        no_cutoffs = np.full(len(form.goals), np.inf)
+        # As for levels: what settling ties may give away is no part of the gap.
+        finer = float(state.rule.tolerance[k]) - state.task.tuning.tolerances.rounded
+        self.rule = cover_of_one(form, k, finer, no_cutoffs)
+
+    @property
+    def extent(self) -> float:
+        """How much of everything its open boxes hold."""
+        return self.form.boxes.extent(self.left)
+
+    def go_on(self, boxes: float, most: float) -> int:
+        """Look into so many boxes; return how many were looked into."""
+        state, known = self.state, self.state.form.archive
+        self.form.archive.add(known.combination, known.variables, known.phi)
+        self.rule.take(known.combination, known.variables, known.phi)
+        state.begin_tree(None)
+        self.under_way = True
+        outcome = branch_and_bound(self.form, self.left, self.rule, state.clock, state.rng, min(boxes, most))
+        self.under_way = False
+        self.left = outcome.open
+        state.counters.nodes += outcome.looked
+        found = self.form.archive
+        known.add(found.combination, found.variables, found.phi)
+        return outcome.looked
+
+    @property
+    def open_boxes(self) -> int:
+        """How many boxes are open."""
+        return len(self.left)
+
+    def open_combinations(self, most: int) -> np.ndarray:
+        """Return combinations in open boxes, at most so many."""
+        return self.form.boxes.cells.all_members(self.left.cell, most)
+
+    def open(self) -> Boxes:
+        """Return the boxes that are open: those at hand where it was stopped."""
+        at_hand = self.state.clock.open if self.under_way else []
+        return Boxes.joined(list(at_hand)) if at_hand else self.left
+
+
+def prove_end(state: FrontState, k: int) -> BestTree | None:
+    """Prove what is best in one objective of a front, and note what is proven; designs go into the archive.
+
+    Returns
+    -------
+    BestTree, optional
+        What is left open.
+    """
+    trees: list[BestTree] = []
+
+    def plain() -> BestTree:
+        trees.append(BestTree(state, state.form, state.pool, k))
+        return trees[-1]
+
+    def other() -> BestTree:
+        form = state.task.formulation(not state.infeasibility_mode, state.form.counters)
+        form.bounding.branching.adopt(state.form.bounding.branching.statistics())
+        trees.append(BestTree(state, form, form.boxes.root(), k))
+        return trees[-1]
+
+    state.counters.scalar_problems += 1
+    budget = state.turn_budget()
+    try:
+        by_turns((plain, other), budget, state.task.limits.by_levels.first_of_one, lambda: None)
+    finally:
+        state.budget.take(budget)
+        if trees:
+            state.proof.levels.append(_end(state, k, trees))
+    return trees[-1] if all(len(t.left) for t in trees) else None
+
+
+def _end(state: FrontState, k: int, trees: list[BestTree]) -> Level:
+    """Return what trees have proven of an objective; each of them speaks of all designs."""
+    least = float(state.form.archive.phi[:, k].min(initial=np.inf))
+    each = [t.form.objectives.phi_of(t.open().bounds)[:, : state.task.m] for t in trees]
+    corners = max(each, key=lambda c: float(c[:, k].min(initial=np.inf)))
+    nowhere = np.full(state.task.m, np.inf)
+    return Level(nowhere, k, least + state.task.tuning.tolerances.rounded, state.rule.tolerance, corners)

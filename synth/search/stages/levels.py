@@ -1,0 +1,164 @@
+"""A front of two objectives level by level: its ends, then the best in the second within cutoffs of the first.
+
+Nothing need be covered between the levels: each design stands by its own level, and by the two ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from synth.search.archive import rows_of
+from synth.search.front_state import FrontState
+from synth.search.joint.levels import CAPPED, SOUGHT, Cutoffs, LevelProof
+from synth.search.polishing import polish_extremes
+from synth.search.proven_gap import LevelBound
+from synth.search.pruning import NonImprovement, PruningRule
+from synth.search.stages.best_by_turns import prove_end
+from synth.search.stages.spreading import different
+from synth.search.stages.trees import leave_open
+
+
+def seek_levels(state: FrontState) -> None:
+    """Go on level by level where a front was not covered soon: its ends, and designs that spread between them."""
+    state.by_levels = True
+    _prove_ends(state)
+    if len(state.form.archive):
+        first = state.form.archive.phi[:, CAPPED]
+        wanted = state.task.more_than_asked + state.task.limits.by_levels.picture
+        _look_at(state, np.linspace(first.min(), first.max(), wanted + 2)[1:-1])
+    elif state.proof.closed:
+        state.proof.open_combinations = 0.0
+
+
+def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
+    """Prove designs, each at a level of its own; tell whether all are proven.
+
+    A design that is beaten gives its place to the best of its level, which is thereby proven.
+
+    Parameters
+    ----------
+    state : FrontState
+    staircase : NonImprovement
+        The designs.
+    """
+    ends_proven = _prove_ends(state)
+    for _ in range(state.task.limits.by_levels.rounds):
+        staircase.renew(SOUGHT)
+        phi = np.array([c.phi[: state.task.m] for c in staircase.designs])
+        phi = phi[~proven_by_levels(state, phi)]
+        if not len(phi):
+            return ends_proven
+        if not _prove(state, phi[:, CAPPED], phi[:, SOUGHT], staircase):
+            break
+    return False
+
+
+def fill_levels(state: FrontState) -> bool:
+    """Look for designs between those known, until there are as many as asked for; tell whether all was looked into."""
+    ends_proven, tolerance = _prove_ends(state), state.rule.tolerance
+    for _ in range(state.task.limits.by_levels.rounds if ends_proven else 0):
+        known = sorted(different(state, list(state.form.archive)), key=lambda c: float(c.phi[CAPPED]))
+        phi, before = np.array([c.phi[: state.task.m] for c in known]), state.form.archive.phi
+        if len(known) >= state.task.settings.points:
+            return True
+        _look_at(state, 0.5 * (phi[1:, CAPPED] + phi[:-1, CAPPED]))
+        if not np.array_equal(before, state.form.archive.phi):
+            continue
+        # Nothing within what is as good as a design in the first objective is better than its neighbour in the second.
+        gaps = np.stack([phi[1:, CAPPED] - tolerance[CAPPED], phi[:-1, SOUGHT]], axis=1)
+        left = np.array([not _covered(state, *gap) for gap in gaps], dtype=bool)
+        closed = not left.any() or _prove(state, gaps[left, 0], gaps[left, 1], state.rule)
+        if not closed:
+            return False
+        if np.array_equal(before, state.form.archive.phi):
+            state.proof.note_cover(state.cover_within(tolerance))
+            return True
+    return ends_proven
+
+
+def _prove_ends(state: FrontState) -> bool:
+    """Prove what is best in each objective, once at each tolerance; tell whether it is proven."""
+    proof, tolerance = state.proof, state.rule.tolerance
+    if not any(isinstance(b, LevelBound) and np.array_equal(b.tolerance, tolerance) for b in proof.bounds):
+        proof.bounds.append(LevelBound(tolerance, proof.levels))
+    result = True
+    for k in (CAPPED, SOUGHT):
+        ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
+        if not any(len(level.corners) or level.tolerance[k] <= tolerance[k] for level in ends):
+            left = prove_end(state, k)
+            ends = [proof.levels[-1]]
+            if left is not None:
+                leave_open(state, left, state.cover_within(tolerance))
+            polish_extremes(state.form, state.task.m, float(tolerance.max()))
+        result &= not any(len(level.corners) for level in ends)
+    return result
+
+
+def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: PruningRule) -> bool:
+    """Search levels and note what is proven of them; tell whether nothing is open. Designs go into the archive."""
+    closed = True
+    for some in _in_numbers(state, len(first)):
+        cutoffs = Cutoffs(first=first[some], to_beat=to_beat[some], tolerance=float(state.rule.tolerance[SOUGHT]))
+        levels, budget = state.levels_within(cutoffs.told_apart()), state.turn_budget()
+        state.begin_tree(None)
+        try:
+            levels.prove(budget, state.task.limits.by_levels.first)
+        finally:
+            state.budget.take(budget)
+            state.proof.levels += levels.levels()
+            _take(state, levels)
+        if levels.unproven.any():
+            leave_open(state, levels, rule)
+            closed = False
+    return closed
+
+
+def _look_at(state: FrontState, first: np.ndarray) -> None:
+    """Look for designs at levels, of which nothing is proven."""
+    for some in _in_numbers(state, len(first)):
+        anything = np.full(len(first[some]), np.inf)
+        cutoffs = Cutoffs(first=first[some], to_beat=anything, tolerance=float(state.rule.tolerance[SOUGHT]))
+        levels = state.levels_within(cutoffs.told_apart())
+        state.begin_tree(None)
+        levels.look()
+        _take(state, levels)
+
+
+def _take(state: FrontState, levels: LevelProof) -> None:
+    """Take the designs that were found at levels, and count the work."""
+    found, own, form = levels.found(), levels.search.form.counters, state.form
+    if found:
+        form.archive.add(*rows_of(found))
+    state.counters.scalar_problems += len(levels.cutoffs)
+    state.counters.nodes += own.contracted
+    form.counters.contracted += own.contracted
+    form.counters.nlp_solves += own.nlp_solves
+    form.counters.solved_combinations |= {levels.own(c) for c in own.solved_combinations}
+
+
+def _in_numbers(state: FrontState, levels: int) -> Sequence[slice]:
+    """Return levels in groups whose combinations can all be numbered."""
+    most = max(state.task.tuning.joint.numbers // state.task.instance.combinations.count, 1)
+    return [slice(k, k + most) for k in range(0, levels, most)]
+
+
+def proven_by_levels(state: FrontState, phi: np.ndarray) -> np.ndarray:
+    """Tell which designs are proven."""
+    result = np.zeros(len(phi), dtype=bool)
+    for level in state.proof.levels:
+        result |= level.proves(phi, state.rule.tolerance)
+    return result
+
+
+def _covered(state: FrontState, first: float, second: float) -> bool:
+    """Tell whether it is proven that nothing within a cutoff of the first objective is better in the second."""
+    return any(
+        level.sought == SOUGHT
+        and not len(level.corners)
+        and level.within[CAPPED] >= first
+        and level.least >= second
+        and level.tolerance[SOUGHT] <= state.rule.tolerance[SOUGHT]
+        for level in state.proof.levels
+    )

@@ -1,0 +1,100 @@
+"""Levels of a front: what they claim of designs, against all points there are; and turns of two trees."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from synth.search.joint.levels import Cutoffs
+from synth.search.proven_gap import Level, LevelBound
+from synth.search.turns import TurnBudget, by_turns
+from synth.tuning import SearchEffort
+
+LOGS = np.array([True, True])
+
+
+def a_level(rng: np.random.Generator, points: np.ndarray, tolerance: np.ndarray) -> Level:
+    """Return a true statement about points: what is not below its value stands in no box, the rest in some."""
+    within = np.array([np.inf, np.inf])
+    sought = int(rng.integers(2))
+    if rng.random() < 0.8:
+        within[1 - sought] = rng.choice(points[:, 1 - sought])
+    inside = points[np.all(points <= within, axis=1)]
+    least = float(rng.choice(inside[:, sought])) if len(inside) else np.inf
+    left = inside[inside[:, sought] < least - tolerance[sought]]
+    corners = left - rng.random(left.shape) * 0.1 if rng.random() < 0.7 else left.min(axis=0, initial=np.inf)[None, :]
+    return Level(within, sought, least, tolerance, corners[: len(left)])
+
+
+@given(st.integers(0, 10**6))
+@settings(deadline=None, derandomize=True, max_examples=300)
+def test_no_point_improves_a_design_by_more_than_levels_allow(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points, tolerance = np.round(rng.random((30, 2)), 2), np.full(2, 0.05)
+    levels = [a_level(rng, points, tolerance) for _ in range(4)]
+    told = LevelBound(tolerance, levels).gaps(points, LOGS, np.ones(2))
+    better = -np.expm1(-(points[:, None, :] - points[None, :, :]).min(axis=2)).max(axis=1)
+    assert np.all(better <= told + 1e-12)
+    for level in levels:
+        proven = level.proves(points, tolerance)
+        assert np.all(better[proven] <= -np.expm1(-0.05) + 1e-12)
+        assert not level.proves(points, 0.9 * tolerance).any()
+
+
+def test_the_same_cutoff_stands_once_with_the_most_that_is_to_beat() -> None:
+    cutoffs = Cutoffs(first=np.array([2.0, 1.0, 2.0]), to_beat=np.array([5.0, 7.0, 6.0]), tolerance=0.1).told_apart()
+    assert cutoffs.first.tolist() == [1.0, 2.0]
+    assert cutoffs.to_beat.tolist() == [7.0, 6.0]
+
+
+class Work:
+    """A tree of which each box closes a share of itself, and leaves boxes open."""
+
+    def __init__(self, needed: float, leaves: float) -> None:
+        self.needed, self.leaves, self.done, self.asked = needed, leaves, 0.0, list[float]()
+
+    @property
+    def extent(self) -> float:
+        return max(self.needed - self.done, 0.0)
+
+    @property
+    def open_boxes(self) -> int:
+        return int(self.leaves * self.done)
+
+    def go_on(self, boxes: float, most: float) -> int:
+        self.asked.append(boxes)
+        self.done += min(boxes, most)
+        return int(min(boxes, most))
+
+
+def turns(*trees: Work, boxes: float = 1e9, patience: int = 10) -> TurnBudget:
+    effort = SearchEffort(spell=1000, patience=patience)
+    budget, looks = TurnBudget(boxes, 0.0, effort), list[int]()
+    last = by_turns([lambda t=t: t for t in trees], budget, 100, lambda: looks.append(1))[-1]  # type: ignore[misc]
+    assert looks == [1] * (trees[0].done > 100)
+    assert budget.over() or not last.extent
+    return budget
+
+
+def test_what_closes_soon_has_one_turn() -> None:
+    first, second = Work(50, 0.5), Work(50, 0.5)
+    turns(first, second)
+    assert (len(first.asked), len(second.asked)) == (1, 0)
+
+
+def test_the_tree_that_leaves_less_open_has_most_of_the_effort_and_the_other_stays_alive() -> None:
+    good, bad = Work(1e5, 0.1), Work(1e12, 0.6)
+    for pair in ((good, bad), (Work(1e12, 0.6), Work(1e5, 0.1))):
+        budget = turns(*pair)
+        wasted = max(pair, key=lambda w: w.needed).done
+        assert budget.looked < 1.6e5 + 2e5
+        assert 0.1 * budget.looked < wasted < 0.5 * budget.looked
+    assert good.asked == sorted(good.asked)
+
+
+def test_turns_end_with_the_boxes_and_where_nothing_closes() -> None:
+    assert turns(Work(1e12, 0.5), Work(1e12, 0.4), boxes=5000).looked == 5000
+    idle = turns(Work(1e15, 0.5), Work(1e15, 0.4))
+    assert 10_000 < idle.looked < 100_000
+    assert not idle.spent
