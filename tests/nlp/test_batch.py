@@ -100,13 +100,13 @@ class Small:
         void: Any = None,
         weights: Any = (1.0,),
         slopes: Any = (0.0,),
-        caps: Any = (np.inf,),
+        cutoffs: Any = (np.inf,),
         count: int = 1,
         **more: float,
     ) -> Solutions:
         m, n = len(self.rows.goals), len(self.rows.log_variables)
         tasks = Tasks(
-            *(np.broadcast_to(np.asarray(x, dtype=float), (count, m)) for x in (weights, slopes, caps)),
+            *(np.broadcast_to(np.asarray(x, dtype=float), (count, m)) for x in (weights, slopes, cutoffs)),
             np.ones(m),
             **{"t_weight": 0.0, **more},
         )
@@ -168,7 +168,7 @@ def test_optima_of_a_whole_batch_are_the_known_ones(code):
 @EVERY
 def test_scalar_data_and_arrays_give_the_same(code):
     small = Small(3, 2, box, code=code)
-    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf), "count": 3}
+    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "cutoffs": (np.inf, np.inf), "count": 3}
     scalar = small.solve([2.0, 0.9], 1.0, 1e-2, 1e2, **more)
     array = small.solve([np.full(3, 2.0), np.full(3, 0.9)], 1.0, 1e-2, 1e2, **more)
     np.testing.assert_array_equal(scalar.variables, array.variables)
@@ -200,7 +200,7 @@ def test_a_chebyshev_task_meets_both_objectives_at_the_same_share(code):
 @EVERY
 def test_pinned_variables_stay_and_the_others_move(code):
     small = Small(3, 2, box, code=code)
-    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf)}
+    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "cutoffs": (np.inf, np.inf)}
     solution = small.solve([1.0, 50.0], (0.5, 1.0, 1.0), (0.5, 1e-2, 1e-2), (0.5, 1e2, 1e2), **more)
     np.testing.assert_allclose(solution.variables[0], [0.5, np.sqrt(2), np.sqrt(2)], rtol=1e-4)
     assert solution.converged[0]
@@ -217,7 +217,7 @@ def test_pinned_variables_stay_and_the_others_move(code):
 def test_bounds_hold_exactly(code):
     small = Small(3, 2, box, code=code)
     low, high = np.array([0.1, 0.1, 0.1]), np.array([0.7, 5.0, 5.0])
-    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf)}
+    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "cutoffs": (np.inf, np.inf)}
     solution = small.solve([1.0, 50.0], 0.3, low, high, **more)
     assert np.all((solution.variables >= low) & (solution.variables <= high))
     assert solution.variables[0, 0] == pytest.approx(0.7, rel=1e-8)
@@ -253,10 +253,10 @@ def test_void_rows_and_columns_without_value_do_not_count(code):
 
 
 @EVERY
-def test_caps_that_cannot_be_met_are_told_by_the_violation(code):
+def test_cutoffs_that_cannot_be_met_are_told_by_the_violation(code):
     small = Small(3, 2, box, code=code)
-    caps = np.log([[5.0, 9.0], [6.1, 9.0], [6.1, 0.5]])  # a cube of 1 has a surface of 6
-    solution = small.solve([1.0, 50.0], 1.3, 1e-2, 1e2, weights=(0.0, 1.0), slopes=(0.0, 0.0), cutoffs=caps, count=3)
+    cutoffs = np.log([[5.0, 9.0], [6.1, 9.0], [6.1, 0.5]])  # a cube of 1 has a surface of 6
+    solution = small.solve([1.0, 50.0], 1.3, 1e-2, 1e2, weights=(0.0, 1.0), slopes=(0.0, 0.0), cutoffs=cutoffs, count=3)
     assert solution.converged.tolist() == [False, True, False]
     # The best that can be done lies between breaking the cap alone and breaking both rows alike.
     assert 0.5 * np.log(6 / 5) <= solution.violation[0] <= np.log(6 / 5) + 1e-6
@@ -460,13 +460,13 @@ class Clutch:
             self.low[:, 3] = self.high[:, 3] = point[:, 3]
         self.start = np.sqrt(self.low * self.high)
         phi = np.log(np.stack([model.evaluate(point, self.data).values[name] for name in OBJECTIVES], axis=1))
-        caps = phi + rng.normal(0.1, 0.3, (count, 2))
+        cutoffs = phi + rng.normal(0.1, 0.3, (count, 2))
         if kind == "single":
-            self.tasks = Tasks(np.tile([1.0, 1e-6], (count, 1)), np.zeros((count, 2)), caps, np.ones(2), 0.0)
+            self.tasks = Tasks(np.tile([1.0, 1e-6], (count, 1)), np.zeros((count, 2)), cutoffs, np.ones(2), 0.0)
             self.tasks.cutoffs[:, 0] = np.inf
         else:
             slopes = np.exp(rng.uniform(-2.0, 0.5, (count, 2)))
-            self.tasks = Tasks(np.full((count, 2), 1e-6), slopes, caps, np.ones(2))
+            self.tasks = Tasks(np.full((count, 2), 1e-6), slopes, cutoffs, np.ones(2))
         self.void = np.stack([x.void(self.data, (count,)) for x in model.constraints], axis=1)
 
     def _points(self, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -564,7 +564,7 @@ def test_the_answers_do_not_depend_on_the_number_of_threads(code, kind):
 @EVERY
 def test_threads_may_share_a_solver(code):
     small = Small(3, 2, box, code=code)
-    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "caps": (np.inf, np.inf), "count": 50}
+    more = {"weights": (1.0, 0.0), "slopes": (0.0, 0.0), "cutoffs": (np.inf, np.inf), "count": 50}
     volumes = [np.linspace(0.5, 1.0 + k, 50) for k in range(6)]
     alone = [small.solve([v, 50.0], 1.0, 1e-2, 1e2, **more).variables for v in volumes]
     with ThreadPoolExecutor(3) as pool:
