@@ -331,6 +331,12 @@ class FrontState:
         self.rule = self.cover_at_gap(None)
         self.set_pool()
 
+    def go_on_with(self, form: Formulation) -> None:
+        """Go on with an earlier formulation, and keep what is known."""
+        known, self.form, self.infeasibility_mode = self.form.archive, form, form.infeasibility
+        form.archive.add(known.combination, known.variables, known.phi)
+        self.rule, self.pool = self.cover_at_gap(None), form.boxes.root()
+
     def begin_tree(self, tolerance: np.ndarray | None) -> None:
         """Remember what a tree is to prove; if time runs out, the boxes that are open then tell what it has proven."""
         self.proof.tolerance_under_way = tolerance

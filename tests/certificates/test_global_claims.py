@@ -197,6 +197,20 @@ def test_a_front_that_was_stopped_between_levels_claims_nothing_that_is_wrong(le
     assert not wrong, "\n".join([f"hard-{seed}: {a.front.certificate}", *wrong])
 
 
+# -- one best design by turns ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("structure", ["waves", "signed", "gridded", "mismatch", "hard", "infeasible"])
+@pytest.mark.parametrize("boxes", [300, 20_000])
+def test_one_best_design_that_is_sought_by_turns_is_as_good_as_is_claimed(structure, boxes):
+    case = make(structure, 1)
+    case = replace(case, objectives=dict(list(case.objectives.items())[:1]), points=1)
+    effort = {"first_try": 10, "boxes": boxes, "boxes_of_many": boxes, "boxes_of_few_parts": boxes}
+    a = Answer(case, run(case, tuned(tree=effort)), Reference(case))
+    wrong = faults(a)
+    assert not wrong, "\n".join([f"{structure}: {a.front.certificate}", *wrong])
+
+
 # -- fronts of several questions together ---------------------------------------------------------
 
 

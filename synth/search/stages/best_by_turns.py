@@ -9,7 +9,7 @@ from synth.search.branch_and_bound import branch_and_bound, cover_of_one
 from synth.search.formulation import Formulation
 from synth.search.front_state import FrontState
 from synth.search.proven_gap import Level
-from synth.search.turns import by_turns
+from synth.search.turns import TurnBudget, by_turns
 
 
 class BestTree:
@@ -19,18 +19,18 @@ class BestTree:
     ----------
     state : FrontState
     form : Formulation
-    pool : Boxes
-        Everything that may be feasible.
+    left : Boxes
+        Everything that may be feasible, but for what is proven.
     k : int
         Number of the objective.
+    tolerance : float
+        In phi.
     """
 
-    def __init__(self, state: FrontState, form: Formulation, pool: Boxes, k: int) -> None:
-        self.state, self.form, self.left, self.k, self.under_way = state, form, pool, k, False
+    def __init__(self, state: FrontState, form: Formulation, left: Boxes, k: int, tolerance: float) -> None:
+        self.state, self.form, self.left, self.k, self.under_way = state, form, left, k, False
         no_cutoffs = np.full(len(form.goals), np.inf)
-        # As for levels: what settling ties may give away is no part of the gap.
-        finer = float(state.rule.tolerance[k]) - state.task.tuning.tolerances.rounded
-        self.rule = cover_of_one(form, k, finer, no_cutoffs)
+        self.rule = cover_of_one(form, k, tolerance, no_cutoffs)
 
     @property
     def extent(self) -> float:
@@ -42,10 +42,12 @@ class BestTree:
         state, known = self.state, self.state.form.archive
         self.form.archive.add(known.combination, known.variables, known.phi)
         self.rule.take(known.combination, known.variables, known.phi)
-        state.begin_tree(None)
+        # Where there is but one objective, what a tree leaves open speaks of all designs.
+        state.begin_tree(self.rule.tolerance if state.task.m == 1 else None)
         self.under_way = True
         outcome = branch_and_bound(self.form, self.left, self.rule, state.clock, state.rng, min(boxes, most))
         self.under_way = False
+        state.end_tree()
         self.left = outcome.open
         state.counters.nodes += outcome.looked
         found = self.form.archive
@@ -76,15 +78,17 @@ def prove_end(state: FrontState, k: int) -> BestTree | None:
         What is left open.
     """
     trees: list[BestTree] = []
+    # As for levels: what settling ties may give away is no part of the gap.
+    finer = float(state.rule.tolerance[k]) - state.task.tuning.tolerances.rounded
 
     def plain() -> BestTree:
-        trees.append(BestTree(state, state.form, state.pool, k))
+        trees.append(BestTree(state, state.form, state.pool, k, finer))
         return trees[-1]
 
     def other() -> BestTree:
         form = state.task.formulation(not state.infeasibility_mode, state.form.counters)
         form.bounding.branching.adopt(state.form.bounding.branching.statistics())
-        trees.append(BestTree(state, form, form.boxes.root(), k))
+        trees.append(BestTree(state, form, form.boxes.root(), k, finer))
         return trees[-1]
 
     state.counters.scalar_problems += 1
@@ -105,3 +109,31 @@ def _end(state: FrontState, k: int, trees: list[BestTree]) -> Level:
     corners = max(each, key=lambda c: float(c[:, k].min(initial=np.inf)))
     nowhere = np.full(state.task.m, np.inf)
     return Level(nowhere, k, least + state.task.tuning.tolerances.rounded, state.rule.tolerance, corners)
+
+
+def best_by_turns(state: FrontState, k: int, plain: tuple[Formulation, Boxes], left: Boxes, tolerance: float) -> Boxes:
+    """Go on with two trees for what is best in one objective; return what the one has open that tells most.
+
+    Parameters
+    ----------
+    state : FrontState
+        In infeasibility mode; afterwards in that of the tree that tells most.
+    k : int
+        Number of the objective.
+    plain : tuple
+        The formulation for plain boxes, and those that it has left open.
+    left : Boxes
+        What the formulation of the state has left open.
+    tolerance : float
+        In phi.
+    """
+    pair = BestTree(state, *plain, k, tolerance), BestTree(state, state.form, left, k, tolerance)
+    limits, task = state.task.limits, state.task
+    # Combinations that are few are solved one by one instead.
+    few = task.instance.combinations.count <= limits.few_combinations
+    budget = TurnBudget(limits.boxes if task.thorough and not few else state.node_limit, 0.0, limits.further)
+    by_turns([lambda: pair[0], lambda: pair[1]], budget, limits.first_try, lambda: None)
+    most = max(pair, key=lambda t: float(t.form.objectives.phi_of(t.left.bounds)[:, k].min(initial=np.inf)))
+    if most.form is not state.form:
+        state.go_on_with(most.form)
+    return most.left

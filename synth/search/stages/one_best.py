@@ -12,6 +12,7 @@ from synth.search.branch_and_bound import TreeOutcome, best, cover_of_one
 from synth.search.front_state import FrontState
 from synth.search.pruning import EpsilonCover
 from synth.search.resolution import ranges
+from synth.search.stages.best_by_turns import best_by_turns
 from synth.search.stages.trees import close_open_boxes
 
 
@@ -42,9 +43,17 @@ def best_in(state: FrontState, k: int, fixed_cutoffs: np.ndarray) -> Candidate |
     state.counters.scalar_problems += 1
     found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, None, soon)
     if not outcome.closed and not state.infeasibility_mode:
-        # What is feasible is so narrow that it costs most to tell which limits leave nothing.
+        # What is feasible may be so narrow that it costs most to tell which limits leave nothing.
+        plain, open_plain, coarse = state.form, outcome.open, tolerance
         state.begin_again(infeasibility=True)
-        found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, found, state.node_limit)
+        found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, found, soon)
+        if not outcome.closed:
+            # What was settled with a coarser tolerance is not settled.
+            open_plain = open_plain if coarse <= tolerance else plain.boxes.root()
+            left = best_by_turns(state, k, (plain, open_plain), outcome.open, tolerance)
+            known = state.form.archive
+            best_known = known[int(np.argmin(known.phi[:, k]))] if len(known) else None
+            return _close_best(state, _rule_for_best(state, k, fixed_cutoffs, tolerance, best_known), left)
     if not outcome.closed:
         return _close_best(state, _rule_for_best(state, k, fixed_cutoffs, tolerance, found), outcome.open)
     if before == 0 and found is None:
