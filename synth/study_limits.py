@@ -112,7 +112,7 @@ class BreakLimits:
     gap: float = 1e-5
     same: float = 2e-5
     most: int = 20
-    at_once: int = 16
+    at_once: int = 64
     parts: int = 6
     guesses: int = 4
     seconds: float = 60.0

@@ -475,6 +475,8 @@ class JointLimits:
     turns : tuple of (int, int, int)
         Boxes per question, by turns: with plain boxes; with boxes that carry what limits share; and the same where no
         design is known, as there may be none to be found.
+    least_boxes : int
+        Plain boxes of a turn at least, however few the questions: one alone takes tens of thousands.
     nearly_closed : float
         Share of the boxes looked into: if fewer are open, as much again is worth it.
     given_parts : int
@@ -498,6 +500,7 @@ class JointLimits:
         (5_000, 20_000, 10_000),
         (5_000, 250_000, 20_000),
     )
+    least_boxes: int = 60_000
     nearly_closed: float = 0.1
     given_parts: int = 20_000
     most_boxes: int = 12_000_000

@@ -335,7 +335,7 @@ def test_intervals_that_were_finished_are_kept(tmp_path: Path) -> None:
 
     def narrow(progress: Callable[[Mapping[str, Any]], None] | None, folder: Path | None) -> Study:
         return synth.whatif(
-            GIVEN, {}, {"load": "2:114:4 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress
+            GIVEN, {}, {"load": "2.5:90.5:1 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress
         )
 
     short = narrow(stop, tmp_path)

@@ -232,7 +232,7 @@ class JointOptima:
         # What one way of bounding can hardly tell the other often can: each has its turn before one goes on for long.
         for boxes, sure_boxes, unsure_boxes in self.limits.turns:
             now = unproven & found
-            unproven &= ~found | by_objectives.open_questions(now, boxes * int(now.sum()))
+            unproven &= ~found | by_objectives.open_questions(now, max(boxes * int(now.sum()), self.limits.least_boxes))
             if not unproven.any():
                 break
             self.heuristics.thorough = True
