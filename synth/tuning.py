@@ -117,7 +117,7 @@ class LevelLimits:
     picture : int
         Levels of a rough picture of the front, beside so many as designs are asked for.
     rounds : int
-        Of looking for more designs between those that are known, where fewer are known than asked for.
+        Of exchanging designs for better ones, and of looking for more beside one for each that is asked for.
     """
 
     soon: int = 100_000

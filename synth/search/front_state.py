@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -193,14 +193,18 @@ class OpenBoxBudget:
         That are left; infinite where a time limit of the whole search takes the place of a budget.
     spent : bool
         Whether it was the budget that ended the work on open boxes.
+    boxes : float
+        That trees of a front may look into by turns.
     """
 
     seconds: float
     spent: bool = False
+    boxes: float = 0.0
 
     def take(self, turns: TurnBudget) -> None:
-        """Take note of what turns have left of the time."""
-        self.seconds, self.spent = min(self.seconds, turns.seconds), self.spent or turns.spent
+        """Take note of what turns have left."""
+        self.boxes = max(self.boxes - turns.looked, 0.0)
+        self.seconds, self.spent = turns.effort.seconds, self.spent or turns.spent
 
 
 class FrontState:
@@ -222,6 +226,7 @@ class FrontState:
         end = math.inf if limit is None else self.progress.started + limit
         self.clock = Clock(end, self.progress.working)
         self.budget = OpenBoxBudget(task.limits.further.seconds if limit is None else math.inf)
+        self.budget.boxes = task.limits.boxes if task.thorough else self.node_limit
         self.rng = np.random.default_rng(settings.seed)
         self.counters = FrontCounters()
         self.proof = FrontProof(open_combinations=float(instance.combinations.count))
@@ -309,9 +314,8 @@ class FrontState:
 
     def turn_budget(self) -> TurnBudget:
         """Return for how long trees may go on by turns."""
-        limits = self.task.limits
-        boxes = limits.boxes if self.task.thorough else self.node_limit
-        return TurnBudget(boxes, self.budget.seconds if self.task.thorough else 0.0, limits.further)
+        seconds = self.budget.seconds if self.task.thorough else 0.0
+        return TurnBudget(self.budget.boxes, replace(self.task.limits.further, seconds=seconds))
 
     # -- boxes ---------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from synth.pareto import non_dominated
 from synth.tuning import TUNING
 
 
@@ -116,6 +117,14 @@ class LevelBound:
             if len(rows):
                 best[rows] = np.minimum(best[rows], own.gaps(phi[rows], logs, sizes))
         return best
+
+
+def lowest(corners: np.ndarray) -> np.ndarray:
+    """Return those lower bounds (boxes, objectives) that no other one lies below: they tell what the others tell."""
+    known = np.nan_to_num(corners, nan=-np.inf)
+    # Of those that are equal to nine digits one stays.
+    result: np.ndarray = known[non_dominated(known)] - TUNING.tolerances.tie
+    return result
 
 
 def least_gap(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Protocol
-
-import numpy as np
 
 from synth.tuning import SearchEffort
 
@@ -25,41 +24,39 @@ class TurnTree(Protocol):
     def go_on(self, boxes: float, most: float) -> int:
         """Look into so many boxes for each question that is open, at most so many in all; return how many it were."""
 
+    def finish(self, effort: SearchEffort) -> bool:
+        """Go on, what promises most first; tell whether its time was over."""
+
 
 class TurnBudget:
-    """How long trees have turns: a count of boxes that is the same on every machine, then a budget of time.
+    """How long trees go on: by turns for a count of boxes, then one of them against time, what promises most first.
 
     Parameters
     ----------
     boxes : float
-        That may be looked into before time counts.
-    seconds : float
-        That may be spent afterwards.
+        That may be looked into by turns.
     effort : SearchEffort
-        Its ``patience`` and ``spell`` tell how many boxes may be looked into while nothing closes.
+        For what they leave open; ``behind`` counts while they have turns.
     """
 
-    def __init__(self, boxes: float, seconds: float, effort: SearchEffort) -> None:
-        self.boxes, self.seconds, self.effort = boxes, seconds, effort
-        self.looked, self.idle, self.spent = 0, 0, False
+    def __init__(self, boxes: float, effort: SearchEffort) -> None:
+        self.boxes, self.effort = boxes, effort
+        self.looked, self.spent = 0, False
 
     def turn(self, tree: TurnTree, boxes: float) -> int:
         """Let a tree go on; return how many boxes it has looked into."""
-        begun, timed, before = time.monotonic(), self.looked >= self.boxes, tree.extent
-        looked = tree.go_on(boxes, np.inf if timed else self.boxes - self.looked)
+        looked = tree.go_on(boxes, self.boxes - self.looked)
         self.looked += looked
-        if timed:
-            self.seconds -= time.monotonic() - begun
-        closing = tree.extent <= (1 - self.effort.closing) * before
-        self.idle = 0 if closing else self.idle + looked
         return looked
 
-    def over(self) -> bool:
-        """Tell whether no tree shall have another turn."""
-        if self.idle > self.effort.patience * self.effort.spell:
-            return True
-        self.spent = self.looked >= self.boxes and self.seconds <= 0
-        return self.spent
+    def finish(self, tree: TurnTree) -> None:
+        """Let a tree go on against time."""
+        if self.effort.seconds > 0 and tree.extent:
+            begun = time.monotonic()
+            self.spent = tree.finish(self.effort)
+            self.effort = replace(self.effort, seconds=max(self.effort.seconds - time.monotonic() + begun, 0.0))
+        else:
+            self.spent = bool(tree.extent) and self.effort.seconds <= 0
 
 
 def by_turns(
@@ -95,8 +92,12 @@ def by_turns(
             share = 1.0 if left[k] <= min(left) else budget.effort.behind
             effort *= 2 if k == 0 else 1
         looked[k] += budget.turn(trees[k], share * effort)
-        if not trees[k].extent or budget.over():
+        if not trees[k].extent:
             return [t for t in trees if t is not trees[k]] + [trees[k]]
+        if budget.looked >= budget.boxes:
+            first_tree = min(trees, key=lambda t: t.open_boxes / max(looked[trees.index(t)], 1))
+            budget.finish(first_tree)
+            return [t for t in trees if t is not first_tree] + [first_tree]
         if not turn:
             between()
         turn += 1

@@ -14,6 +14,7 @@ from synth.question.instance import Instance
 from synth.question.objectives import with_ties
 from synth.question.settings import SearchSettings
 from synth.search.archive import Candidate, rows_of
+from synth.search.best_first import best_first
 from synth.search.branch_and_bound import branch_and_bound
 from synth.search.budget import Clock
 from synth.search.formulation import Formulation
@@ -21,7 +22,7 @@ from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.joint_question import BestPerScenario, IncumbentPerScenario, JointInstance
 from synth.search.log_objectives import LogObjectives
 from synth.search.resolution import gap_tolerance
-from synth.tuning import Tuning
+from synth.tuning import SearchEffort, Tuning
 
 
 class Posed(Protocol):
@@ -105,10 +106,33 @@ class JointTree:
 
     def open_questions(self, asked: np.ndarray, node_limit: float) -> np.ndarray:
         """Go on for so many boxes; tell of which of the questions asked it is not proven what is best."""
-        search, form = self.search, self.form
-        limits = search.limits
+        search, form, limits = self.search, self.form, self.search.limits
         if not asked.any():
             return asked
+
+        def go_on(rule: BestPerScenario) -> None:
+            for _ in range(2):
+                self.left = branch_and_bound(
+                    form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
+                ).open
+                if not 0 < len(self.left) < limits.nearly_closed * node_limit:
+                    break
+
+        return self._open_after(asked, go_on)
+
+    def finish(self, asked: np.ndarray, effort: SearchEffort) -> tuple[np.ndarray, bool]:
+        """Go on, what promises most first; tell of which questions it is not proven, and whether time was over."""
+        search, spent = self.search, [False]
+
+        def go_on(rule: BestPerScenario) -> None:
+            outcome = best_first(self.form, self.left, rule, search.clock, search.rng, effort)
+            self.left, spent[0] = outcome.open, outcome.spent
+
+        return self._open_after(asked, go_on), spent[0]
+
+    def _open_after(self, asked: np.ndarray, go_on: Callable[[BestPerScenario], None]) -> np.ndarray:
+        """Let the tree go on with what is known of the questions; tell of which it is not proven what is best."""
+        search, form = self.search, self.form
         if self.known is not search.known:
             # Designs of other questions would only seem to say that those of these are found.
             rows = asked[search.known.questions()]
@@ -116,12 +140,7 @@ class JointTree:
         before = form.counters.contracted, form.counters.nlp_solves
         rule = search.rule(asked, form, self.known)
         self.under_way = True
-        for _ in range(2):
-            self.left = branch_and_bound(
-                form, self.left, rule, search.clock, search.rng, min(node_limit, limits.most_boxes)
-            ).open
-            if not 0 < len(self.left) < limits.nearly_closed * node_limit:
-                break
+        go_on(rule)
         self.under_way = False
         if self.known is not search.known:
             search.known.add(self.known.combination, self.known.variables, self.known.phi)

@@ -15,8 +15,9 @@ from synth.pareto import spread_subset
 from synth.search.archive import Archive, Candidate
 from synth.search.budget import Clock
 from synth.search.joint.joint_optima import JointOptima, JointTree, Needs, Posed, SharedBounds
-from synth.search.proven_gap import Level
+from synth.search.proven_gap import Level, lowest
 from synth.search.turns import TurnBudget, by_turns
+from synth.tuning import SearchEffort
 
 CAPPED, SOUGHT = 0, 1
 
@@ -65,6 +66,12 @@ class LevelTree:
     def open_boxes(self) -> int:
         """How many boxes are open."""
         return len(self.tree.left)
+
+    def finish(self, effort: SearchEffort) -> bool:
+        """Go on, what promises most first; tell whether its time was over."""
+        left, spent = self.tree.finish(self.proof.unproven, effort)
+        self.proof.unproven &= left
+        return spent
 
     def go_on(self, boxes: float, most: float) -> int:
         """Look into so many boxes for each level that is open, at most so many in all; return how many it were."""
@@ -151,15 +158,12 @@ class LevelProof:
         open_boxes = [self._open(t.tree) for t in self.trees]
         result = []
         for k in np.flatnonzero(told):
-            corners = np.empty((0, 2))
-            if self.unproven[k]:
-                if not open_boxes:
-                    continue
-                each = [_corners_of(t, boxes, int(k)) for t, boxes in open_boxes]
-                corners = max(each, key=lambda c: c[:, SOUGHT].min(initial=np.inf))
             within = np.array([self.cutoffs.first[k], np.inf])
-            tolerance = np.array([0.0, self.cutoffs.tolerance])
-            result.append(Level(within, SOUGHT, float(best[k]) + self.room, tolerance, corners))
+            tolerance, least = np.array([0.0, self.cutoffs.tolerance]), float(best[k]) + self.room
+            each = [np.empty((0, 2))]
+            if self.unproven[k]:
+                each = [_corners_of(t, boxes, int(k)) for t, boxes in open_boxes]
+            result += [Level(within, SOUGHT, least, tolerance, corners) for corners in each]
         return result
 
     def own(self, combination: int) -> int:
@@ -196,5 +200,4 @@ def _corners_of(tree: JointTree, boxes: Boxes, level: int) -> np.ndarray:
     questions = tree.form.boxes.cells.trees[0]
     holding = np.array([level in questions.rows(k) for k in range(len(questions))])
     own = boxes.take(holding[boxes.cell[:, 0]])
-    corners: np.ndarray = tree.form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1]
-    return corners
+    return lowest(tree.form.objectives.phi_of(own.bounds)[:, : SOUGHT + 1])

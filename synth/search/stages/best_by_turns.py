@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from synth.bounds.boxes import Boxes
+from synth.search.best_first import best_first
 from synth.search.branch_and_bound import branch_and_bound, cover_of_one
 from synth.search.formulation import Formulation
 from synth.search.front_state import FrontState
-from synth.search.proven_gap import Level
+from synth.search.proven_gap import Level, lowest
 from synth.search.turns import TurnBudget, by_turns
+from synth.tuning import SearchEffort
 
 
 class BestTree:
@@ -53,6 +57,19 @@ class BestTree:
         found = self.form.archive
         known.add(found.combination, found.variables, found.phi)
         return outcome.looked
+
+    def finish(self, effort: SearchEffort) -> bool:
+        """Go on, what promises most first; tell whether its time was over."""
+        state, known = self.state, self.state.form.archive
+        self.rule.take(known.combination, known.variables, known.phi)
+        self.under_way = True
+        outcome = best_first(self.form, self.left, self.rule, state.clock, state.rng, effort)
+        self.under_way = False
+        self.left = outcome.open
+        state.counters.nodes += outcome.looked
+        found = self.form.archive
+        known.add(found.combination, found.variables, found.phi)
+        return outcome.spent
 
     @property
     def open_boxes(self) -> int:
@@ -98,17 +115,17 @@ def prove_end(state: FrontState, k: int) -> BestTree | None:
     finally:
         state.budget.take(budget)
         if trees:
-            state.proof.levels.append(_end(state, k, trees))
+            state.proof.levels += _ends(state, k, trees)
     return trees[-1] if all(len(t.left) for t in trees) else None
 
 
-def _end(state: FrontState, k: int, trees: list[BestTree]) -> Level:
-    """Return what trees have proven of an objective; each of them speaks of all designs."""
-    least = float(state.form.archive.phi[:, k].min(initial=np.inf))
-    each = [t.form.objectives.phi_of(t.open().bounds)[:, : state.task.m] for t in trees]
-    corners = max(each, key=lambda c: float(c[:, k].min(initial=np.inf)))
-    nowhere = np.full(state.task.m, np.inf)
-    return Level(nowhere, k, least + state.task.tuning.tolerances.rounded, state.rule.tolerance, corners)
+def _ends(state: FrontState, k: int, trees: list[BestTree]) -> list[Level]:
+    """Return what each tree has proven of an objective; each of them speaks of all designs."""
+    least = float(state.form.archive.phi[:, k].min(initial=np.inf)) + state.task.tuning.tolerances.rounded
+    nowhere, tolerance = np.full(state.task.m, np.inf), state.rule.tolerance
+    closed = [t for t in trees if not len(t.left)]
+    corners = [t.form.objectives.phi_of(t.open().bounds)[:, : state.task.m] for t in closed[:1] or trees]
+    return [Level(nowhere, k, least, tolerance, lowest(own)) for own in corners]
 
 
 def best_by_turns(state: FrontState, k: int, plain: tuple[Formulation, Boxes], left: Boxes, tolerance: float) -> Boxes:
@@ -131,7 +148,9 @@ def best_by_turns(state: FrontState, k: int, plain: tuple[Formulation, Boxes], l
     limits, task = state.task.limits, state.task
     # Combinations that are few are solved one by one instead.
     few = task.instance.combinations.count <= limits.few_combinations
-    budget = TurnBudget(limits.boxes if task.thorough and not few else state.node_limit, 0.0, limits.further)
+    budget = TurnBudget(
+        limits.boxes if task.thorough and not few else state.node_limit, replace(limits.further, seconds=0.0)
+    )
     by_turns([lambda: pair[0], lambda: pair[1]], budget, limits.first_try, lambda: None)
     most = max(pair, key=lambda t: float(t.form.objectives.phi_of(t.left.bounds)[:, k].min(initial=np.inf)))
     if most.form is not state.form:

@@ -58,7 +58,8 @@ def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
 def fill_levels(state: FrontState) -> bool:
     """Look for designs between those known, until there are as many as asked for; tell whether all was looked into."""
     ends_proven, tolerance = _prove_ends(state), state.rule.tolerance
-    for _ in range(state.task.limits.by_levels.rounds if ends_proven else 0):
+    rounds = state.task.limits.by_levels.rounds + state.task.settings.points
+    for _ in range(rounds if ends_proven else 0):
         known = sorted(different(state, list(state.form.archive)), key=lambda c: float(c.phi[CAPPED]))
         phi, before = np.array([c.phi[: state.task.m] for c in known]), state.form.archive.phi
         if len(known) >= state.task.settings.points:
@@ -88,11 +89,11 @@ def _prove_ends(state: FrontState) -> bool:
         ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
         if not any(len(level.corners) or level.tolerance[k] <= tolerance[k] for level in ends):
             left = prove_end(state, k)
-            ends = [proof.levels[-1]]
+            ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
             if left is not None:
                 leave_open(state, left, state.cover_within(tolerance))
             polish_extremes(state.form, state.task.m, float(tolerance.max()))
-        result &= not any(len(level.corners) for level in ends)
+        result &= any(not len(level.corners) and level.tolerance[k] <= tolerance[k] for level in ends)
     return result
 
 
