@@ -80,7 +80,7 @@ def by_turns(
         Those begun, that which went on last at the end; it has closed all that any of them can.
     """
     trees: list[TurnTree] = []
-    looked = [0] * len(ways)
+    looked, stuck = [0] * len(ways), [False] * len(ways)
     effort, turn = first, 0
     while True:
         k = turn % len(ways)
@@ -91,10 +91,14 @@ def by_turns(
             left = [t.open_boxes / max(n, 1) for t, n in zip(trees, looked, strict=True)]
             share = 1.0 if left[k] <= min(left) else budget.effort.behind
             effort *= 2 if k == 0 else 1
-        looked[k] += budget.turn(trees[k], share * effort)
+        before = trees[k].extent
+        own = budget.turn(trees[k], share * effort)
+        looked[k] += own
+        # What is open is too small to be split: a tree that has nothing else to look into will never close.
+        stuck[k] = own < share * effort and trees[k].extent >= before
         if not trees[k].extent:
             return [t for t in trees if t is not trees[k]] + [trees[k]]
-        if budget.looked >= budget.boxes:
+        if budget.looked >= budget.boxes or all(stuck):
             first_tree = min(trees, key=lambda t: t.open_boxes / max(looked[trees.index(t)], 1))
             budget.finish(first_tree)
             return [t for t in trees if t is not first_tree] + [first_tree]

@@ -102,3 +102,22 @@ def test_turns_end_with_the_boxes_and_the_tree_ahead_goes_on_against_time() -> N
     ahead, behind = Work(1e15, 0.4), Work(1e15, 0.5)
     assert turns(behind, ahead, boxes=5000, seconds=60.0).spent
     assert (ahead.finished, behind.finished) == (True, False)
+
+
+class Stuck(Work):
+    """A tree that comes to boxes which are too small to be split: it looks into those few again and closes nothing."""
+
+    def go_on(self, boxes: float, most: float) -> int:
+        return super().go_on(boxes, most) if self.done < 1000 else 3
+
+
+def test_turns_end_where_neither_tree_has_boxes_to_split() -> None:
+    first, second = Stuck(1e12, 0.5), Stuck(1e12, 0.5)
+    budget = TurnBudget(1e9, SearchEffort(seconds=60.0))
+    by_turns([lambda: first, lambda: second], budget, 100, lambda: None)
+    assert budget.looked < 10_000
+    assert first.finished != second.finished
+    # One of them alone does not end the turns of the other.
+    ahead = Work(1e5, 0.1)
+    by_turns([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
+    assert not ahead.extent
