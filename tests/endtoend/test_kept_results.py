@@ -234,7 +234,7 @@ def test_a_batch_of_other_rows_that_is_stopped_stands_beside(tmp_path: Path) -> 
     rows(tmp_path / "rows.csv", 600)
     assert in_process(*BATCH, "-q", folder=tmp_path).returncode == 0
     before = {name: raw for name, raw in contents(out).items() if not name.startswith("jobs.sqlite")}
-    rows(tmp_path / "rows.csv", *range(600, 760))
+    rows(tmp_path / "rows.csv", *(600 + k / 4 for k in range(2400)))
     with subprocess.Popen(
         [*COMMAND, *BATCH],
         cwd=tmp_path,
