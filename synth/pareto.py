@@ -16,7 +16,9 @@ def non_dominated(phi: np.ndarray) -> np.ndarray:
     if not len(phi):
         return np.zeros(0, dtype=bool)
     # Compared as they stand, two designs that differ in the last digits of the solver would both be kept.
-    return np.asarray(moocore.is_nondominated(np.round(phi, DIGITS), keep_weakly=False), dtype=bool)
+    with np.errstate(over="ignore"):  # the largest numbers there are become infinite
+        rounded = np.round(phi, DIGITS)
+    return np.asarray(moocore.is_nondominated(rounded, keep_weakly=False), dtype=bool)
 
 
 def extremes(phi: np.ndarray) -> list[int]:

@@ -173,3 +173,9 @@ def test_fewer_points_than_there_are():
     assert len(values) == 3
     assert not front.complete
     assert {values[0], values[-1]} == {(1.0, 2.0), (1.8, 1.2)}
+
+
+def test_the_largest_numbers_there_are_have_their_place() -> None:
+    largest = np.finfo(float).max
+    phi = np.array([[-largest, 2.0], [-largest, 3.0], [1.0, 1.0], [largest, 0.5], [np.inf, 0.5]])
+    assert non_dominated(phi).tolist() == [True, False, True, True, False]
