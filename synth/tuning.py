@@ -121,7 +121,7 @@ class LevelLimits:
     """
 
     soon: int = 100_000
-    stays_open: float = 0.32
+    stays_open: float = 0.5
     first: int = 5_000
     first_of_one: int = 20_000
     picture: int = 8
