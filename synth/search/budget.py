@@ -23,6 +23,10 @@ class Clock:
     report: Callable[[int], None] = lambda open_boxes: None
     open: list[Boxes] = field(default_factory=list)
 
+    def open_of(self, left: Boxes, under_way: bool) -> Boxes:
+        """Return what a tree has open: the boxes at hand where it was stopped under way, else those it has left."""
+        return Boxes.joined(self.open) if under_way and self.open else left
+
     def check(self, boxes: Sequence[Boxes] = ()) -> None:
         """Hold the boxes that are open, tell how many, and raise Stopped when time is over."""
         self.open = list(boxes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 
@@ -25,3 +26,9 @@ class SearchCounters:
     nlp_solves: int = 0
     work: int = 0
     solved_combinations: set[int] = field(default_factory=set)
+
+    def add(self, other: SearchCounters, solved: Iterable[int]) -> None:
+        """Count what another search has done, whose solved combinations have these numbers here."""
+        self.contracted += other.contracted
+        self.nlp_solves += other.nlp_solves
+        self.solved_combinations.update(solved)

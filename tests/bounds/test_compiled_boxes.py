@@ -34,20 +34,9 @@ from tests.asking import instance_of
 from tests.tuned import tuned
 
 HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
-pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
+pytestmark = [pytest.mark.skipif(not HERE, reason="no C compiler"), pytest.mark.usefixtures("compiled_quickly")]
 
 ROWS, CLUSTERS = 7, 12
-
-
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Compile everything anew, and keep the user's cache folder as it is."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-        # No optimisation: most of the code is used only once, and bits do not depend on it.
-        patch.setattr(compiled_boxes, "BOX_FLAGS", (*compiled_boxes.BOX_FLAGS, "-O0"))
-        yield
 
 
 def loaded(code):

@@ -23,20 +23,10 @@ from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import synthesize, tuned
 
 HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
-pytestmark = pytest.mark.skipif(not HERE, reason="no C compiler")
+pytestmark = [pytest.mark.skipif(not HERE, reason="no C compiler"), pytest.mark.usefixtures("compiled_quickly")]
 
 EFFORT = CompilingEffort()
 MOST_VARIABLES = interpreted_boxes.MOST["N"]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def own_cache(tmp_path_factory):
-    """Compile everything anew, quickly, and keep the user's cache folder as it is."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-        patch.setattr(compiled_boxes, "BOX_FLAGS", (*compiled_boxes.BOX_FLAGS, "-O0"))
-        yield
 
 
 def general(code):

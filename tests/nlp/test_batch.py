@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
 from typing import Any
@@ -26,16 +26,9 @@ from synth.question.catalogs import as_catalogs
 from synth.tuning import TUNING, InteriorPointSettings, NlpSettings
 from tests.asking import instance_of
 
+pytestmark = pytest.mark.usefixtures("own_cache")
 HAS_COMPILER = shutil.which("cc") is not None
 NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-        yield
 
 
 # -- small problems with known answers ---------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from synth.tuning import TUNING
 from tests.regimes import best_in_any_regime, referee
 
 ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.usefixtures("own_cache")
 HAS_COMPILER = shutil.which("cc") is not None
 NEEDS_COMPILER = pytest.mark.skipif(not HAS_COMPILER, reason="no C compiler")
 EVERY = pytest.mark.parametrize("code", ["arrays", pytest.param("general", marks=NEEDS_COMPILER)])
@@ -33,14 +34,6 @@ EVERY = pytest.mark.parametrize("code", ["arrays", pytest.param("general", marks
 Row = tuple[str, Any, Any]  # sense, value and limit
 Formula = Callable[[Sequence[Any]], Any]
 Written = tuple[Callable[[Sequence[Any]], list[Row]], Formula, bool]  # limits, objective, whether by logarithm
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
-        patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)
-        yield
 
 
 class Kinked:

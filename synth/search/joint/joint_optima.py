@@ -300,12 +300,10 @@ class JointOptima:
         positions : array of int
             Which of the questions here each of its questions is.
         """
-        counters, more, codec = self.form.counters, other.form.counters, other.instance.combinations
-        counters.contracted += more.contracted
-        counters.nlp_solves += more.nlp_solves
+        more, codec = other.form.counters, other.instance.combinations
         solved = np.array(list(more.solved_combinations), dtype=np.int64)
         numbers = self.instance.combinations.joined(positions[codec.question(solved)], codec.own(solved))
-        counters.solved_combinations.update(numbers.tolist())
+        self.form.counters.add(more, numbers.tolist())
 
     def best_among(self, combinations: np.ndarray, points: np.ndarray) -> tuple[IncumbentPerScenario, np.ndarray]:
         """Return the best designs among given combinations, and of which questions it is proven.

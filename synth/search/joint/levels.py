@@ -155,7 +155,8 @@ class LevelProof:
         """Return what is proven of each level; what is open is told by the lower bounds of its boxes."""
         best = np.minimum(self.search.known.best(), self.cutoffs.to_beat)
         told = self.search.told_apart()
-        open_boxes = [self._open(t.tree) for t in self.trees]
+        trees = [t.tree for t in self.trees]
+        open_boxes = [(t, self.clock.open_of(t.left, t.under_way)) for t in trees]
         result = []
         for k in np.flatnonzero(told):
             within = np.array([self.cutoffs.first[k], np.inf])
@@ -183,11 +184,6 @@ class LevelProof:
     def _begun(self, tree: JointTree) -> LevelTree:
         self.trees.append(LevelTree(self, tree))
         return self.trees[-1]
-
-    def _open(self, tree: JointTree) -> tuple[JointTree, Boxes]:
-        """Return the boxes that a tree has open: those at hand where it was stopped."""
-        at_hand = self.clock.open if tree.under_way else []
-        return tree, Boxes.joined(list(at_hand)) if at_hand else tree.left
 
     def _look(self) -> None:
         """Look for designs of the levels that are open."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from synth.bounds.boxes import Boxes
 from synth.search.best_first import best_first
-from synth.search.branch_and_bound import branch_and_bound, cover_of_one
+from synth.search.branch_and_bound import TreeOutcome, branch_and_bound, cover_of_one
 from synth.search.formulation import Formulation
 from synth.search.front_state import FrontState
 from synth.search.proven_gap import Level, lowest
@@ -45,31 +46,30 @@ class BestTree:
         """Look into so many boxes; return how many were looked into."""
         state, known = self.state, self.state.form.archive
         self.form.archive.add(known.combination, known.variables, known.phi)
-        self.rule.take(known.combination, known.variables, known.phi)
         # Where there is but one objective, what a tree leaves open speaks of all designs.
         state.begin_tree(self.rule.tolerance if state.task.m == 1 else None)
-        self.under_way = True
-        outcome = branch_and_bound(self.form, self.left, self.rule, state.clock, state.rng, min(boxes, most))
-        self.under_way = False
+        looked = self._after(
+            lambda: branch_and_bound(self.form, self.left, self.rule, state.clock, state.rng, min(boxes, most))
+        ).looked
         state.end_tree()
-        self.left = outcome.open
-        state.counters.nodes += outcome.looked
-        found = self.form.archive
-        known.add(found.combination, found.variables, found.phi)
-        return outcome.looked
+        return looked
 
     def finish(self, effort: SearchEffort) -> bool:
         """Go on, what promises most first; tell whether its time was over."""
-        state, known = self.state, self.state.form.archive
+        clock, rng = self.state.clock, self.state.rng
+        return self._after(lambda: best_first(self.form, self.left, self.rule, clock, rng, effort)).spent
+
+    def _after(self, go_on: Callable[[], TreeOutcome]) -> TreeOutcome:
+        """Let the tree go on with what is known; take what it has found and left open."""
+        known, found = self.state.form.archive, self.form.archive
         self.rule.take(known.combination, known.variables, known.phi)
         self.under_way = True
-        outcome = best_first(self.form, self.left, self.rule, state.clock, state.rng, effort)
+        outcome = go_on()
         self.under_way = False
         self.left = outcome.open
-        state.counters.nodes += outcome.looked
-        found = self.form.archive
+        self.state.counters.nodes += outcome.looked
         known.add(found.combination, found.variables, found.phi)
-        return outcome.spent
+        return outcome
 
     @property
     def open_boxes(self) -> int:
@@ -82,8 +82,7 @@ class BestTree:
 
     def open(self) -> Boxes:
         """Return the boxes that are open: those at hand where it was stopped."""
-        at_hand = self.state.clock.open if self.under_way else []
-        return Boxes.joined(list(at_hand)) if at_hand else self.left
+        return self.state.clock.open_of(self.left, self.under_way)
 
 
 def prove_end(state: FrontState, k: int) -> BestTree | None:

@@ -134,9 +134,7 @@ def _take(state: FrontState, levels: LevelProof) -> None:
         form.archive.add(*rows_of(found))
     state.counters.scalar_problems += len(levels.cutoffs)
     state.counters.nodes += own.contracted
-    form.counters.contracted += own.contracted
-    form.counters.nlp_solves += own.nlp_solves
-    form.counters.solved_combinations |= {levels.own(c) for c in own.solved_combinations}
+    form.counters.add(own, map(levels.own, own.solved_combinations))
 
 
 def _in_numbers(state: FrontState, levels: int) -> Sequence[slice]:

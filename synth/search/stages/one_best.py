@@ -19,7 +19,7 @@ from synth.search.stages.trees import close_open_boxes
 def find_extremes(state: FrontState) -> None:
     """Find the design that is best in each objective, before the front: its ranges are needed, or it is all."""
     m = state.task.m
-    found = [best_in(state, k, np.full(len(state.form.goals), np.inf)) for k in range(m)]
+    found = [best_in(state, k) for k in range(m)]
     known = [c for c in found if c is not None]
     if m == 1:
         state.front, state.proof.complete = known, state.proof.closed
@@ -27,7 +27,7 @@ def find_extremes(state: FrontState) -> None:
         state.rule = state.cover_at_gap(ranges(np.array([c.phi for c in known])))
 
 
-def best_in(state: FrontState, k: int, fixed_cutoffs: np.ndarray) -> Candidate | None:
+def best_in(state: FrontState, k: int) -> Candidate | None:
     """Return the design that is best in one objective, proven within the gap, or as far as can be proven.
 
     Parameters
@@ -35,27 +35,26 @@ def best_in(state: FrontState, k: int, fixed_cutoffs: np.ndarray) -> Candidate |
     state : FrontState
     k : int
         The number of the objective.
-    fixed_cutoffs : array (objectives,)
-        phi that the design must keep.
     """
+    no_cutoffs = np.full(len(state.form.goals), np.inf)
     before, limits = len(state.form.archive), state.task.limits
     soon = state.node_limit if state.infeasibility_mode else min(limits.first_try, state.node_limit)
     state.counters.scalar_problems += 1
-    found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, None, soon)
+    found, outcome, tolerance = _best_within(state, k, no_cutoffs, None, soon)
     if not outcome.closed and not state.infeasibility_mode:
         # What is feasible may be so narrow that it costs most to tell which limits leave nothing.
         plain, open_plain, coarse = state.form, outcome.open, tolerance
         state.begin_again(infeasibility=True)
-        found, outcome, tolerance = _best_within(state, k, fixed_cutoffs, found, soon)
+        found, outcome, tolerance = _best_within(state, k, no_cutoffs, found, soon)
         if not outcome.closed:
             # What was settled with a coarser tolerance is not settled.
             open_plain = open_plain if coarse <= tolerance else plain.boxes.root()
             left = best_by_turns(state, k, (plain, open_plain), outcome.open, tolerance)
             known = state.form.archive
             best_known = known[int(np.argmin(known.phi[:, k]))] if len(known) else None
-            return _close_best(state, _rule_for_best(state, k, fixed_cutoffs, tolerance, best_known), left)
+            return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, best_known), left)
     if not outcome.closed:
-        return _close_best(state, _rule_for_best(state, k, fixed_cutoffs, tolerance, found), outcome.open)
+        return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, found), outcome.open)
     if before == 0 and found is None:
         state.proof.open_combinations = 0.0
     return found
@@ -68,8 +67,10 @@ def better_in(
 
     Parameters
     ----------
-    state, k, fixed_cutoffs
+    state, k
         As for :func:`best_in`.
+    fixed_cutoffs : array (objectives,)
+        phi that the design must keep.
     start : Candidate
         Known already.
     node_limit : int
