@@ -1,4 +1,4 @@
-# make demo, make check, make test, make lint, make lock, make clean
+# make demo, make check, make test, make thorough, make lint, make lock, make clean
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
@@ -7,7 +7,7 @@ DEV := $(VENV)/.installed-dev
 COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-annotate --custom-compile-command "make lock" --quiet
 
-.PHONY: demo check test lint lock clean
+.PHONY: demo check test thorough lint lock clean
 
 demo: $(RUNTIME)
 	$(BIN)/clutchsynth run examples/hoist_multi_plate.yaml -o out/
@@ -23,6 +23,10 @@ check: lint
 
 test: lint
 	$(TESTS)
+
+# Random tests many times, for changes of what claims rest on.
+thorough: lint
+	$(TESTS) --thorough
 
 lint: $(DEV)
 	$(BIN)/ruff check .

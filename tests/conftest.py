@@ -1,13 +1,21 @@
 """What all tests need."""
 
 import gc
+import os
 import signal
 from collections.abc import Iterator
 
 import pytest
 
+from tests.repetitions import SWITCH
 
-def pytest_configure() -> None:
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Offer the many repetitions of random tests."""
+    parser.addoption("--thorough", action="store_true", help="repeat random tests many times")
+
+
+def pytest_configure(config: pytest.Config) -> None:
     """Hear of Ctrl-C and look for no garbage among the tests that are being collected.
 
     A shell that runs the tests in the background has Ctrl-C ignored, in them and in what they start. Collecting makes
@@ -15,6 +23,8 @@ def pytest_configure() -> None:
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if config.getoption("--thorough"):
+        os.environ[SWITCH] = "1"  # read while tests are collected
     gc.disable()
 
 
