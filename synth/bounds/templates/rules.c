@@ -7,8 +7,7 @@ typedef struct { vd low, high; } Interval;
 /* Of a number and not-a-number, the number. */
 INLINE vd v_fmax(vd a, vd b) {
 #if defined(__AVX512F__)
-    const __mmask8 known = _mm512_cmp_pd_mask((__m512d)b, (__m512d)b, _CMP_ORD_Q);
-    return (vd)_mm512_mask_max_pd((__m512d)a, known, (__m512d)a, (__m512d)b);
+    return (vd)max_of_eight(a, known_of_eight(b), b);
 #elif defined(__AVX__)
     return (vd)blend_of_four(max_of_four(a, b), a, (vd)(b != b));
 #else
@@ -17,8 +16,7 @@ INLINE vd v_fmax(vd a, vd b) {
 }
 INLINE vd v_fmin(vd a, vd b) {
 #if defined(__AVX512F__)
-    const __mmask8 known = _mm512_cmp_pd_mask((__m512d)b, (__m512d)b, _CMP_ORD_Q);
-    return (vd)_mm512_mask_min_pd((__m512d)a, known, (__m512d)a, (__m512d)b);
+    return (vd)min_of_eight(a, known_of_eight(b), b);
 #elif defined(__AVX__)
     return (vd)blend_of_four(min_of_four(a, b), a, (vd)(b != b));
 #else
