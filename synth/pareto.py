@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import moocore
 import numpy as np
 
 DIGITS = 9  # of phi, to which designs are the same: solvers differ beyond them
@@ -18,7 +17,18 @@ def non_dominated(phi: np.ndarray) -> np.ndarray:
     # Compared as they stand, two designs that differ in the last digits of the solver would both be kept.
     with np.errstate(over="ignore"):  # the largest numbers there are become infinite
         rounded = np.round(phi, DIGITS)
-    return np.asarray(moocore.is_nondominated(rounded, keep_weakly=False), dtype=bool)
+    if rounded.shape[1] > 2:
+        import moocore  # costly to import; few questions need it
+
+        return np.asarray(moocore.is_nondominated(rounded, keep_weakly=False), dtype=bool)
+    # In order of the first objective, a row is beaten unless it is better in the last one than all before it.
+    order = np.lexsort(rounded.T[::-1])
+    last = rounded[order, -1]
+    better = np.ones(len(order), dtype=bool)
+    better[1:] = last[1:] < np.minimum.accumulate(last)[:-1]
+    keep = np.zeros(len(order), dtype=bool)
+    keep[order[better]] = True
+    return keep
 
 
 def extremes(phi: np.ndarray) -> list[int]:
