@@ -33,7 +33,8 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     InputError
         When a name is unknown or given twice.
     """
-    model = problem.model(frozenset(), catalogs)
+    # Whoever gives names gets the model that is asked next: tracing one costs as much as reading all else.
+    model = problem.model(frozenset(str(word) for word, value in requirements.items() if value is not None), catalogs)
     result: dict[str, Any] = {}
     for word, value in requirements.items():
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
