@@ -94,8 +94,9 @@ def by_turns(
         before = trees[k].extent
         own = budget.turn(trees[k], share * effort)
         looked[k] += own
-        # What is open is too small to be split: a tree that has nothing else to look into will never close.
-        stuck[k] = own < share * effort and trees[k].extent >= before
+        # What is open is too small to be split: a tree that has nothing else to look into will never close. Each look
+        # at it still takes a little off.
+        stuck[k] = own < share * effort and trees[k].extent > (1 - budget.effort.closing) * before
         if not trees[k].extent:
             return [t for t in trees if t is not trees[k]] + [trees[k]]
         if budget.looked >= budget.boxes or all(stuck):

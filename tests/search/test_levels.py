@@ -111,12 +111,31 @@ class Stuck(Work):
         return super().go_on(boxes, most) if self.done < 1000 else 3
 
 
+class Shaved(Stuck):
+    """The same, where tightening takes a little off at each look."""
+
+    @property
+    def extent(self) -> float:
+        return super().extent * 0.999**self.looks
+
+    looks = 0
+
+    def go_on(self, boxes: float, most: float) -> int:
+        self.looks += 1
+        return super().go_on(boxes, most)
+
+
 def test_turns_end_where_neither_tree_has_boxes_to_split() -> None:
     first, second = Stuck(1e12, 0.5), Stuck(1e12, 0.5)
     budget = TurnBudget(1e9, SearchEffort(seconds=60.0))
     by_turns([lambda: first, lambda: second], budget, 100, lambda: None)
     assert budget.looked < 10_000
     assert first.finished != second.finished
+    # Each look may take a little off, as tightening does.
+    less, little = Shaved(1e12, 0.5), Shaved(1e12, 0.5)
+    budget = TurnBudget(1e9, SearchEffort(seconds=60.0))
+    by_turns([lambda: less, lambda: little], budget, 100, lambda: None)
+    assert budget.looked < 10_000
     # One of them alone does not end the turns of the other.
     ahead = Work(1e5, 0.1)
     by_turns([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
