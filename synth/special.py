@@ -186,5 +186,6 @@ def expanded(expression: Any, calls: Sequence[SpecialCall]) -> Any:
     """Return an expression with the formulas of special functions in place of their symbols."""
     result = ca.SX(expression)
     for call in reversed(calls):
-        result = ca.substitute(result, call.symbol, ca.SX(call.function.formula(*call.arguments)))
+        if ca.depends_on(result, call.symbol):  # most calls stand elsewhere, and formulas are long
+            result = ca.substitute(result, call.symbol, ca.SX(call.function.formula(*call.arguments)))
     return result

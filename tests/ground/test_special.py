@@ -9,7 +9,7 @@ from synth.bounds.contractor import Contractor
 from synth.bounds.propagated_nodes import MovingInputs, PropagatedNodes
 from synth.model.constraint import Goal, NodeConstraint
 from synth.model.program import Program
-from synth.special import TABLE, recorded, special
+from synth.special import TABLE, expanded, recorded, special
 from tests.bounds.test_contractor import contraction
 
 
@@ -86,3 +86,28 @@ def test_a_special_function_is_bounded_at_its_corner_where_it_exists_in_the_whol
     bounds = contraction(contractor, [], [], np.zeros((2, 0), dtype=int), low, high, None, 1).bounds[:, 0]
     # Its terms are bounded one by one; the least value of the function lies where the torque is largest.
     assert bounds == pytest.approx([least + 900e-6, least + 500e-6], rel=1e-12)
+
+
+def test_an_expression_is_written_out_with_the_formulas_it_needs_and_no_others():
+    asked = []
+
+    def formula(name):
+        def declared(x):
+            asked.append(name)
+            return x + 1
+
+        declared.__qualname__ = name
+        return special((0.0, 1.0))(declared)
+
+    names = ("outer", "inner", "elsewhere")
+    outer, inner, elsewhere = map(formula, names)
+    x = ca.SX.sym("x")
+    with recorded() as calls:
+        value = 2 * outer(inner(x))
+        elsewhere(x)
+    for function in [n for n in TABLE if n.rsplit(".", 1)[-1] in names]:
+        TABLE.pop(function)
+    written = expanded(value, calls)
+    assert asked == ["outer", "inner"]
+    assert [str(s) for s in ca.symvar(written)] == ["x"]
+    assert float(ca.Function("f", [x], [written])(3.0)) == 10.0
