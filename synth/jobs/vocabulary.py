@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from synth.declaration import Declaration
@@ -63,18 +64,17 @@ def declared(problem: DesignProblem, catalogs: Catalogs) -> Declaration:
 
 
 def all_words(
-    problem: str | type[DesignProblem] | DesignProblem, catalogs: Catalogs, every_option: bool
+    problem: type[DesignProblem] | DesignProblem, every_option: bool
 ) -> tuple[dict[str, Word], dict[str, str]]:
     """Return the names of a family and what they stand for, and every spelling with its name.
 
     Parameters
     ----------
-    problem : family name, DesignProblem subclass or instance
-    catalogs : Catalogs
+    problem : DesignProblem subclass or instance
     every_option : bool
         Whether those count that only another choice of an option brings.
     """
-    base = problem if isinstance(problem, DesignProblem) else load(problem)
+    base, catalogs = load(problem), as_catalogs(None)
     first = declared(base, catalogs)
     words = words_of(first, base.simulation_settings)
     spellings = {spelling: word.name for spelling, word in words.items()}
@@ -93,6 +93,11 @@ def all_words(
     return found, spellings
 
 
+@cache
+def _words_of_registered(family: str, every_option: bool) -> tuple[dict[str, Word], dict[str, str]]:
+    return all_words(load(family), every_option)
+
+
 class Universe:
     """The names of all registered families, and of one problem of the user's own.
 
@@ -101,11 +106,9 @@ class Universe:
     used : set of str
         Families that rows name: of these every option counts, of the others the names that they have by default.
     own : DesignProblem subclass or instance, optional
-    catalogs : Catalogs, optional
     """
 
-    def __init__(self, used: Set[str], own: Any = None, catalogs: Any = None) -> None:
-        tables = as_catalogs(catalogs)
+    def __init__(self, used: Set[str], own: Any = None) -> None:
         problems: list[Any] = [*families()]
         if own is not None and not isinstance(own, str):
             problems.append(own)
@@ -114,7 +117,7 @@ class Universe:
         self.options: dict[str, dict[str, str]] = {}  # of these families: spelling -> name
         for problem in problems:
             is_used = problem in used or not isinstance(problem, str)
-            words, spellings = all_words(problem, tables, is_used)
+            words, spellings = (_words_of_registered if isinstance(problem, str) else all_words)(problem, is_used)
             for name, word in words.items():
                 self.words.setdefault(name, []).append(word)
             if is_used:

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from synth.results import Design
 
 
+MOST_MODELS = 16  # that a problem keeps: one per set of requirements given, tables and slots compared
+
+
 class DesignProblem:
     """A design problem, written once: subclass it, name it, and declare it.
 
@@ -133,12 +136,15 @@ class DesignProblem:
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
         key = (given, id(catalogs), compared)
-        if key not in self._models:
+        known = self._models.pop(key, None)
+        if known is None:
             declaration = Declaration(self.name, self.options, given, catalogs)
             with held_back(), recorded() as calls:
                 self.declare(declaration)
                 declaration.refusals += [refusal_of(comparison, declaration) for comparison in compared]
-                made = Model(self.name, declaration, calls)
-            # The catalogues are kept with the model, so that their id stays theirs.
-            self._models[key] = (made, catalogs)
-        return self._models[key][0]
+                # The catalogues are kept with the model, so that their id stays theirs.
+                known = Model(self.name, declaration, calls), catalogs
+            while len(self._models) >= MOST_MODELS:
+                self._models.pop(next(iter(self._models)), None)
+        self._models[key] = known
+        return known[0]

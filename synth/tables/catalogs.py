@@ -6,12 +6,12 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from importlib.metadata import entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from synth.errors import InputError, at
+from synth.plugins import installed
 from synth.tables.reading import is_frame, load_table, table_from_frame
 from synth.tables.schema import SCHEMA_SUFFIX, Schema, load_schema
 from synth.tables.table import Table, perhaps_meant
@@ -39,7 +39,7 @@ def shipped_folders() -> tuple[Path, ...]:
         An entry point names a package that is not there.
     """
     folders: dict[Path, None] = {}
-    for point in sorted(entry_points(group=ENTRY_POINTS), key=lambda point: (point.name, point.value)):
+    for point in installed(ENTRY_POINTS):
         try:
             spec = find_spec(point.value)
         except (ImportError, ValueError):

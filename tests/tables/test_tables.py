@@ -485,7 +485,7 @@ def test_discovery_finds_packages_without_importing_them(monkeypatch: pytest.Mon
     user(package, SCHEMA, "parts.schema.csv")
     monkeypatch.syspath_prepend(tmp_path)
     points = [EntryPoint(name, "own_catalogs", synth.tables.catalogs.ENTRY_POINTS) for name in ("one", "again")]
-    monkeypatch.setattr(synth.tables.catalogs, "entry_points", lambda group: points)
+    monkeypatch.setattr(synth.tables.catalogs, "installed", lambda group: points)
     assert shipped_folders() == (package.resolve(),)
     assert Catalogs().names() == ("parts",)
     assert "own_catalogs" not in sys.modules
