@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from synth.model import registry
 from tests.repetitions import SWITCH
 
 
@@ -50,6 +51,7 @@ def pytest_collection_finish() -> None:
 @pytest.fixture(scope="module")
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Compile everything anew, and keep the user's cache folder as it is."""
+    registry._shared.cache_clear()  # families hold what was compiled for them
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.delenv("CLUTCHSYNTH_NATIVE", raising=False)

@@ -143,11 +143,10 @@ class CompiledForms:
     Parameters
     ----------
     code : Code
-    limits : CompilingLimits
     """
 
-    def __init__(self, code: Code, limits: CompilingLimits) -> None:
-        self._code, self._limits = code, limits
+    def __init__(self, code: Code) -> None:
+        self._code = code
         self._listed = listed_code(code)
         self._shared: BoxCode | None = None
         self._own: BoxCode | None = None
@@ -155,8 +154,10 @@ class CompiledForms:
         self._boxes = 0.0
         self._hopeless = False
 
-    def take(self, boxes: int) -> BoxCode | None:
+    def take(self, boxes: int, limits: CompilingLimits) -> BoxCode | None:
         """Return the code for so many boxes more; None where it cannot be had.
+
+        The code outlives a question, so that each brings its own limits.
 
         Raises
         ------
@@ -165,30 +166,30 @@ class CompiledForms:
         """
         self._boxes += boxes
         if self._own is None and self._listed is None and not self._hopeless:
-            self._own = self._made_now()
-        if self._own is None and self._listed is not None and self._boxes > self._limits.own:
-            self._own = self._made_beside()
-        return self._own or self._shared_code()
+            self._own = self._made_now(limits.effort)
+        if self._own is None and self._listed is not None and self._boxes > limits.own:
+            self._own = self._made_beside(limits.effort)
+        return self._own or self._shared_code(limits.effort)
 
-    def _shared_code(self) -> BoxCode | None:
+    def _shared_code(self, effort: CompilingEffort) -> BoxCode | None:
         if self._shared is None and self._listed is not None and not self._hopeless:
-            loaded = library("boxes_general", interpreter_source(), self._limits.effort, GENERAL_FLAGS)
+            loaded = library("boxes_general", interpreter_source(), effort, GENERAL_FLAGS)
             self._shared = None if loaded is None else BoxCode(loaded, self._listed)
             self._hopeless = loaded is None
         return self._shared
 
-    def _made_now(self) -> BoxCode | None:
+    def _made_now(self, effort: CompilingEffort) -> BoxCode | None:
         text = source(self._code)
-        loaded = None if text is None else library("boxes", text, self._limits.effort, BOX_FLAGS)
+        loaded = None if text is None else library("boxes", text, effort, BOX_FLAGS)
         self._hopeless = loaded is None
         return None if loaded is None else BoxCode(loaded)
 
-    def _made_beside(self) -> BoxCode | None:
+    def _made_beside(self, effort: CompilingEffort) -> BoxCode | None:
         if self._beside is None:
             text = source(self._code)
             if text is None:
                 return None
-            self._beside = LibraryBeside("boxes", text, self._limits.effort, BOX_FLAGS)
+            self._beside = LibraryBeside("boxes", text, effort, BOX_FLAGS)
         loaded = self._beside.loaded()
         return None if loaded is None else BoxCode(loaded)
 
@@ -198,10 +199,10 @@ def compiled(code: Code, boxes: int, limits: CompilingLimits) -> BoxCode | None:
     if not switched_on():
         return None
     if code.compiled is None:
-        code.compiled = CompiledForms(code, limits)
+        code.compiled = CompiledForms(code)
     forms: CompiledForms = code.compiled
     try:
-        return forms.take(boxes)
+        return forms.take(boxes, limits)
     except NotCompiled:
         return None
 

@@ -20,6 +20,8 @@ from synth.model.program import InputValue, Program
 from synth.special import SpecialCall, expanded
 from synth.units import format_quantity
 
+MOST_FUNCTIONS = 512  # that a model keeps
+
 
 @dataclass(frozen=True)
 class DataInput:
@@ -412,11 +414,19 @@ class Model:
         )
 
     def function(self, key: Any, make: Callable[[], Any]) -> Any:
-        """Return an object that is built once per model, for example a CasADi function or a solver."""
-        if key not in self._function_cache:
+        """Return an object that is built once per model, for example a CasADi function or a solver.
+
+        A model may serve a process for long, asked for ever other limits: what was not used for longest is given up.
+        """
+        missing = object()
+        found = self._function_cache.pop(key, missing)
+        if found is missing:
             with held_back():
-                self._function_cache[key] = make()
-        return self._function_cache[key]
+                found = make()
+            while len(self._function_cache) >= MOST_FUNCTIONS:
+                self._function_cache.pop(next(iter(self._function_cache)), None)
+        self._function_cache[key] = found
+        return found
 
 
 def _column(x: Any, count: int) -> np.ndarray:

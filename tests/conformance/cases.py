@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import synth
+from synth.model.problem import DesignProblem
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from tests.asking import instance_of
@@ -726,13 +727,18 @@ CASES |= magnetic(Family, Case)
 
 def question(family: str, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:
     """Return a question to the whole catalogue, with or without the optional requirements."""
-    data = CASES[family]
+    return question_to(synth.load(family, **options), options, optional, **settings)
+
+
+def question_to(problem: DesignProblem, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:
+    """Return a question to a problem that is given."""
+    data = CASES[problem.name]
     requirements = {**data.requirements, **(data.optional if optional else {})}
     for option, value in options.items():
         requirements |= data.needed.get(f"{option}={value}", {})
         absent = data.unknown.get(f"{option}={value}", frozenset())
         requirements = {name: given for name, given in requirements.items() if name not in absent}
-    return instance_of(synth.load(family, **options), requirements, as_catalogs(None), **settings)
+    return instance_of(problem, requirements, as_catalogs(None), **settings)
 
 
 def known_design(family: str, name: str, optional: bool) -> tuple[np.ndarray, list[np.ndarray]] | None:

@@ -21,7 +21,7 @@ from synth.search.refused_cells import not_refused
 from synth.special import expanded
 from synth.units import parse_unit
 from tests.asking import instance_of
-from tests.conformance.cases import CASES, answer, question
+from tests.conformance.cases import CASES, answer, question, question_to
 from tests.regimes import refereed
 
 pytestmark = pytest.mark.slow
@@ -177,7 +177,7 @@ def traced_again(instance, constants, scale, monkeypatch):
             value = getattr(importlib.import_module(module), name)
             patch.setattr(f"{module}.{name}", value * np.prod(scale ** np.array(exponents, dtype=float)))
         chosen = {name: option.chosen for name, option in instance.model.declaration.options.items()}
-        return question(instance.problem.name, chosen, optional=True).model
+        return question_to(type(instance.problem)(**chosen), chosen, optional=True).model
 
 
 def test_formulas_scale_like_their_units(traced, monkeypatch):
