@@ -420,12 +420,14 @@ class Model:
         """
         missing = object()
         found = self._function_cache.pop(key, missing)
-        if found is missing:
-            with held_back():
-                found = make()
+        if found is not missing:
+            self._function_cache[key] = found
+            return found
+        with held_back():
+            found = make()
             while len(self._function_cache) >= MOST_FUNCTIONS:
                 self._function_cache.pop(next(iter(self._function_cache)), None)
-        self._function_cache[key] = found
+            self._function_cache[key] = found
         return found
 
 
