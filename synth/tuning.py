@@ -648,6 +648,8 @@ class CompilingLimits:
         takes 0.7 to 1 us longer for each. It gives the same bits, so that the time it takes decides nothing.
     work : float
         Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
+    together : int
+        Questions of one search from which on the solver has code of its own at once: they take as much ``work``.
     sizes : CodeSizes
     effort : CompilingEffort
         For the code of boxes; the solver has its own.
@@ -657,6 +659,7 @@ class CompilingLimits:
     boxes: float = 20_000
     own: float = 500_000
     work: float = 150_000_000
+    together: int = 200
     sizes: CodeSizes = field(default_factory=CodeSizes)
     effort: CompilingEffort = field(default_factory=CompilingEffort)
 

@@ -354,9 +354,9 @@ class JointOptima:
     def _prepared(self, infeasibility: bool = False) -> Formulation:
         form = None if self.shared is None else self.shared.among(self.instance, infeasibility, self.workers)
         if form is None:
-            form = Formulation(
-                self.instance, self.goals, 1, infeasibility, Execution(workers=self.workers), self.tuning
-            )
+            many = len(self.questions) >= self.tuning.compiling.together
+            execution = Execution(similar_questions=len(self.questions) if many else 1, workers=self.workers)
+            form = Formulation(self.instance, self.goals, 1, infeasibility, execution, self.tuning)
         return form
 
     def told_apart(self) -> np.ndarray:
