@@ -26,7 +26,7 @@ def alone(path: Path) -> Iterator[bool]:
     path : Path
         Of the file that is locked, in a folder that is there.
     """
-    handle = _taken(path)
+    handle = locked(path)
     try:
         yield handle is not None
     finally:
@@ -34,7 +34,7 @@ def alone(path: Path) -> Iterator[bool]:
             unlock(path, handle)
 
 
-def _taken(path: Path) -> int | None:
+def locked(path: Path) -> int | None:
     """Return the handle of a file that is locked now; None where another has it, or it cannot be written."""
     while True:
         try:

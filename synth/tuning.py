@@ -646,6 +646,9 @@ class CompilingLimits:
     own : float
         Boxes of all questions of one shape, from which they get code of their own beside the search: what all share
         takes 0.7 to 1 us longer for each. It gives the same bits, so that the time it takes decides nothing.
+    again : float
+        The same, of programs that have ended and of that which ends: from so many on it is compiled for those to come.
+        A question that is asked once leaves no compiler behind.
     work : float
         Of the solver, as ``Formulation.work`` counts it, after which it gets code of its own: it costs about as much.
     together : int
@@ -658,6 +661,7 @@ class CompilingLimits:
     combinations: int = 5000
     boxes: float = 20_000
     own: float = 500_000
+    again: float = 200_000
     work: float = 150_000_000
     together: int = 200
     sizes: CodeSizes = field(default_factory=CodeSizes)

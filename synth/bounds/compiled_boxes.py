@@ -140,19 +140,20 @@ def _places(prepared: Prepared, boxes: Boxes) -> dict[str, np.ndarray]:
 class CompiledForms:
     """What is compiled of generated code: one library for all formulas, then one of its own. Both give the same bits.
 
+    Where an earlier program has left the latter it is used from the beginning.
+
     Parameters
     ----------
     code : Code
     """
 
     def __init__(self, code: Code) -> None:
-        self._code = code
-        self._listed = listed_code(code)
+        self._code, self._text = code, source(code)
+        self._boxes, self._hopeless = 0.0, False
         self._shared: BoxCode | None = None
         self._own: BoxCode | None = None
         self._beside: LibraryBeside | None = None
-        self._boxes = 0.0
-        self._hopeless = False
+        self._listed: ListedCode | None = None
 
     def take(self, boxes: int, limits: CompilingLimits) -> BoxCode | None:
         """Return the code for so many boxes more; None where it cannot be had.
@@ -164,11 +165,15 @@ class CompiledForms:
         NotCompiled
             The time limit is too short for compiling it.
         """
-        self._boxes += boxes
+        if self._beside is None and self._text is not None:
+            self._beside = LibraryBeside("boxes", self._text, limits.effort, BOX_FLAGS)
+            kept = self._beside.kept()
+            self._own = None if kept is None else BoxCode(kept)
         if self._own is None and self._listed is None and not self._hopeless:
-            self._own = self._made_now(limits.effort)
-        if self._own is None and self._listed is not None and self._boxes > limits.own:
-            self._own = self._made_beside(limits.effort)
+            self._listed = listed_code(self._code)
+            self._own = self._made_now(limits.effort) if self._listed is None else None
+        if self._own is None and self._listed is not None and self._beside is not None:
+            self._own = self._made_beside(self._beside, boxes, limits)
         return self._own or self._shared_code(limits.effort)
 
     def _shared_code(self, effort: CompilingEffort) -> BoxCode | None:
@@ -179,18 +184,16 @@ class CompiledForms:
         return self._shared
 
     def _made_now(self, effort: CompilingEffort) -> BoxCode | None:
-        text = source(self._code)
-        loaded = None if text is None else library("boxes", text, effort, BOX_FLAGS)
+        loaded = None if self._text is None else library("boxes", self._text, effort, BOX_FLAGS)
         self._hopeless = loaded is None
         return None if loaded is None else BoxCode(loaded)
 
-    def _made_beside(self, effort: CompilingEffort) -> BoxCode | None:
-        if self._beside is None:
-            text = source(self._code)
-            if text is None:
-                return None
-            self._beside = LibraryBeside("boxes", text, effort, BOX_FLAGS)
-        loaded = self._beside.loaded()
+    def _made_beside(self, beside: LibraryBeside, boxes: int, limits: CompilingLimits) -> BoxCode | None:
+        demand = beside.demand(limits.again)
+        if demand is not None:
+            demand.here += boxes
+        self._boxes += boxes
+        loaded = beside.loaded() if self._boxes > limits.own else None
         return None if loaded is None else BoxCode(loaded)
 
 

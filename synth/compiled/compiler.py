@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from synth.compiled.compilation import compile_beside, compile_shared, switched_on
+from synth.compiled.demand import Demand, demand_for
 from synth.native_switch import c_compiler
 from synth.tuning import CompilingEffort
 
@@ -64,6 +65,17 @@ class LibraryBeside:
         self._text, self._effort, self._flags = text, effort, flags
         self._place = _place(name, text, flags)
         self._loaded: ctypes.CDLL | None = None
+
+    def kept(self) -> ctypes.CDLL | None:
+        """Return the loaded code where an earlier program has left it; nothing is begun."""
+        return self.loaded() if self._place is not None and self._place[1].exists() else None
+
+    def demand(self, enough: float) -> Demand | None:
+        """Return what the code would be used for, which from so much on is compiled for programs to come."""
+        if self._place is None:
+            return None
+        compiler, path = self._place
+        return demand_for([compiler, *self._flags], self._text, path, self._effort, enough)
 
     def loaded(self) -> ctypes.CDLL | None:
         """Return the loaded code; None as long as it is not there, which may be for good."""

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -149,3 +153,24 @@ def test_own_code_beside_a_search_changes_no_byte(tmp_path, monkeypatch):
         time.sleep(0.1)
     assert "boxes" in kinds(folder)
     assert front(0)["designs.csv"] == never["designs.csv"]
+
+
+def test_own_code_that_is_kept_is_used_from_the_beginning(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    never, folder = front(np.inf), tmp_path / "clutchsynth"
+    while "boxes" not in kinds(folder):
+        front(0)
+        time.sleep(0.1)
+    for path in folder.glob("boxes_general_*"):
+        path.unlink()
+    assert front(np.inf)["designs.csv"] == never["designs.csv"]
+    assert kinds(folder) == {"boxes", "nlp_general"}
+
+
+def test_what_own_code_would_be_used_for_is_noted_for_programs_to_come(tmp_path):
+    program = "from tests.bounds.test_interpreted_boxes import front; import numpy; front(numpy.inf)"
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", program], check=True, env=environment, cwd=Path(__file__).parents[2])
+    noted = [float(path.read_text()) for path in (tmp_path / "clutchsynth").glob("boxes_*.demand")]
+    assert noted
+    assert min(noted) > 0
