@@ -20,10 +20,10 @@ from synth.nlp.batch import BatchNlp, Code, Solutions, Tasks
 from synth.nlp.ipopt import ParametricNlp, Task
 from synth.nlp.pieces import KinkedNlp, PiecedNlp, Pieces, decisions
 from synth.nlp.rows import Rows
-from synth.search import formulation
-from synth.search.formulation import Formulation
 from synth.tuning import TUNING
+from tests.asking import pose
 from tests.regimes import best_in_any_regime, referee
+from tests.repetitions import repetitions
 
 ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.usefixtures("own_cache")
@@ -197,7 +197,7 @@ KINDS = (
     clipped,
 )
 QUICK = (either_limit, bent, step, clipped)  # for the referee
-SEEDS, STARTS = 6, 6
+STARTS = 6
 
 
 @pytest.mark.parametrize(
@@ -205,8 +205,9 @@ SEEDS, STARTS = 6, 6
 )
 def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(kind):
     feasible, best, solved = 0, 0, []
+    seeds = 6 if kind in QUICK else repetitions(3, 6)
     codes: tuple[Code, ...] = ("arrays", "general") if HAS_COMPILER else ("arrays",)
-    for seed in range(SEEDS):
+    for seed in range(seeds):
         known: float | None = None
         for code in codes:
             rng = np.random.default_rng([seed, KINDS.index(kind)])
@@ -233,7 +234,7 @@ def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(ki
                 best += bool(np.min(cost[holds], initial=np.inf) <= known + 1e-6)
                 if kind in CONVEX:
                     np.testing.assert_allclose(cost[holds], known, atol=1e-6)
-    assert feasible > 0.5 * SEEDS * len(codes)
+    assert feasible > 0.5 * seeds * len(codes)
     assert np.mean(solved) > 0.9
     # From these few starts; the search goes on where such an answer is not the best.
     assert best >= (1.0 if kind in CONVEX else 0.75) * feasible
@@ -303,38 +304,28 @@ def test_a_branch_that_is_not_taken_does_not_count():
 # -- the two-spring clutch ---------------------------------------------------------------------
 
 
-def _two_springs(monkeypatch: pytest.MonkeyPatch, gap: float, objectives: list[str]) -> tuple[Any, Formulation]:
-    """Return the front of one combination of the example and how it was posed."""
+def _two_springs(gap: float) -> dict[str, Any]:
+    """Return how one combination of the example is asked for."""
     spec = yaml.safe_load((ROOT / "examples" / "centrifugal_two_spring.yaml").read_text())
     parts = {"ball": ["ball 30"], "return_spring": ["CS-1.25x6.3x5.5"], "clamp_spring": ["CS-2.5x12.5x5.5"]}
     fix = {"balls": 4, "return_springs": 3, "clamp_springs": 3}
-    posed: list[Formulation] = []
-    begin = Formulation.__init__
-
-    def remembered(self: Formulation, *args: Any, **more: Any) -> None:
-        begin(self, *args, **more)
-        posed.append(self)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(formulation.Formulation, "__init__", remembered)
-        front = synth.synthesize(
-            spec["family"],
-            spec["requirements"],
-            objectives=objectives,
-            grid=False,
-            gap=gap,
-            points=4,
-            parts={**spec["parts"], **parts},
-            fix={**spec["fix"], **fix},
-        )
-    return front, posed[0]
+    return {
+        "p": synth.load(spec["family"]),
+        "requirements": spec["requirements"],
+        "objectives": ["mass"],
+        "grid": False,
+        "gap": gap,
+        "points": 4,
+        "parts": {**spec["parts"], **parts},
+        "fix": {**spec["fix"], **fix},
+    }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("native", ["1", "0"])
 def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every_start(monkeypatch, native):
     monkeypatch.setenv("CLUTCHSYNTH_NATIVE", native)
-    _, form = _two_springs(monkeypatch, 0.1, ["mass"])
+    form = pose(**_two_springs(0.1)).search().state.form
     goals, rng, own = len(form.goals), np.random.default_rng(1), np.zeros(12, dtype=np.int64)
     start = form.lower * (form.upper / form.lower) ** rng.random((len(own), form.n))
     weights = np.eye(goals)[:1]
@@ -358,10 +349,10 @@ def test_a_pinned_two_spring_clutch_is_as_light_as_in_its_best_regime_from_every
 
 
 @pytest.mark.slow
-def test_fronts_of_a_two_spring_clutch_do_not_become_worse_with_a_smaller_gap(monkeypatch):
+def test_fronts_of_a_two_spring_clutch_do_not_become_worse_with_a_smaller_gap():
     best = []
     for gap in (1e-3, 1e-4, 1e-5):
-        front, _ = _two_springs(monkeypatch, gap, ["mass"])
+        front = synth.synthesize(**_two_springs(gap))
         assert front.certificate.kind == "global"
         best.append(front.designs[0].values["mass"])
     np.testing.assert_allclose(best, best[-1], rtol=1e-8)
