@@ -14,7 +14,7 @@ from synth.question.refusals import allowed_together
 from synth.special import expanded
 from synth.units import format_quantity
 from tests.asking import instance_of
-from tests.conformance.cases import CASES, answer
+from tests.conformance.cases import CASES, front_of
 
 pytestmark = pytest.mark.slow
 
@@ -23,9 +23,9 @@ SHARE_FINITE = 0.6  # of all quantities of all designs tried
 
 @pytest.fixture(scope="module", params=CASES)
 def found(request):
-    """Return the first feasible case of a family with one design."""
-    case = next(iter(CASES[request.param].feasible.values()))
-    front = answer(request.param, case, points=1, gap=0.05)
+    """Return the first feasible case of a family with its front."""
+    name, case = next(iter(CASES[request.param].feasible.items()))
+    front = front_of(request.param, name)
     return request.param, case, front.question, front.designs[0]
 
 

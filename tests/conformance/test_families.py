@@ -21,8 +21,9 @@ from synth.search.refused_cells import not_refused
 from synth.special import expanded
 from synth.units import parse_unit
 from tests.asking import instance_of
-from tests.conformance.cases import CASES, answer, question, question_to
+from tests.conformance.cases import CASES, answer, front_of, question, question_to
 from tests.regimes import refereed
+from tests.repetitions import repetitions
 
 pytestmark = pytest.mark.slow
 
@@ -224,10 +225,9 @@ def test_limits_of_optional_requirements_are_not_asked_without_them():
 @pytest.fixture(scope="module", params=EXAMPLES, ids=lambda p: f"{p[0]}-{p[1]}")
 def example(request):
     family, name = request.param
-    case = CASES[family].feasible[name]
-    front = answer(family, case)
+    front = front_of(family, name)
     assert front.interrupted == ""
-    return family, case, front
+    return family, CASES[family].feasible[name], front
 
 
 def test_feasible_examples_are_answered_and_proven(example):
@@ -370,7 +370,7 @@ def test_tightening_never_improves_an_objective(example, optimum):
     family, case, _ = example
     objective = first_objective(family)
     assert objective.sense == "min"
-    for name, value in case.tighten.items():
+    for name, value in list(case.tighten.items())[: repetitions(2, len(case.tighten))]:
         tight = best(family, case, objective.name, requirements={name: value})
         if tight is not None:
             assert tight.values[objective.name] >= optimum * (1 - 1e-3), name

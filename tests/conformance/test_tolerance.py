@@ -10,7 +10,7 @@ from synth.nlp.ipopt import Task
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
-from tests.conformance.cases import CASES, answer
+from tests.conformance.cases import CASES, front_of
 from tests.regimes import refereed
 
 pytestmark = pytest.mark.slow
@@ -23,8 +23,7 @@ OTHERS = 3  # designs listed, and combinations one part away, that each design i
 
 @pytest.fixture(scope="module", params=EXAMPLES, ids=lambda p: f"{p[0]}-{p[1]}")
 def front(request):
-    family, name = request.param
-    found = answer(family, CASES[family].feasible[name], points=12)
+    found = front_of(*request.param)
     assert found.certificate.kind == "global"
     return found
 
