@@ -31,6 +31,7 @@ from synth.search.formulation import Formulation
 from synth.special import TABLE, recorded
 from synth.tuning import TUNING, CodeSizes, CompilingEffort, CompilingLimits
 from tests.asking import instance_of
+from tests.repetitions import repetitions
 from tests.tuned import tuned
 
 HERE = compiler.cache_folder() is not None and compiler._compiler() is not None
@@ -315,14 +316,14 @@ def random_case(seed, makers, boxes=60):
 
 @pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
-@settings(deadline=None, derandomize=True, max_examples=15)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(5, 15))
 def test_arithmetic_agrees_to_the_last_bit(seed, passes, capped):
     random_case(seed, ARITHMETIC).agree(capped, passes, rtol=0.0)
 
 
 @pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 4), st.booleans())
-@settings(deadline=None, derandomize=True, max_examples=15)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(5, 15))
 def test_random_programs_agree(seed, passes, capped):
     random_case(seed, SMOOTH).agree(capped, passes, 1e-12, 1e-12)
 

@@ -23,6 +23,7 @@ from synth.model.constraint import Goal
 from synth.model.program import Program
 from synth.tuning import CompilingEffort, CompilingLimits
 from tests.bounds.test_compiled_boxes import ARITHMETIC, SMOOTH, Case, limits_at, random_case, use_of
+from tests.repetitions import repetitions
 from tests.sample_problems.strut import NEEDED, RODS, Strut
 from tests.tuned import synthesize, tuned
 
@@ -90,7 +91,7 @@ def test_random_programs_give_the_bits_of_own_code(seed):
 
 @pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 4), st.booleans(), st.sampled_from([ARITHMETIC, SMOOTH]))
-@settings(deadline=None, derandomize=True, max_examples=25)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(8, 25))
 def test_more_random_programs_give_the_bits_of_own_code(seed, passes, capped, makers):
     same_bits(random_case(seed, makers), capped, passes)
 
