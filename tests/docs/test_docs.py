@@ -31,7 +31,7 @@ from synth.analysis.describe import describe
 from synth.question.spec_keys import FIELDS
 from synth.terminal import cli
 from synth.terminal import session as terminal
-from tests.terminal.entry import at_once
+from tests.terminal.entry import in_process
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -40,6 +40,7 @@ LANGUAGES = {"console", "python", "yaml", "csv", "sh", "text", "toml"}
 COMPARE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 FIGURES_VARY = "figures-vary"
 NUMBER = re.compile(r"\d+(\.\d+)?")
+SENT = re.compile(r" (2?)> (\S+)")  # an output that goes to a file
 LINK = re.compile(r"\[[^\]]*\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)")
 
 
@@ -120,11 +121,16 @@ class Reader:
 
     def done(self, command: str) -> subprocess.CompletedProcess[str]:
         """Do a command: what needs a shell in one, of the program itself all else in this process, which is faster."""
-        lexer = shlex.shlex(command, posix=True, punctuation_chars=True)
+        lexer = shlex.shlex(SENT.sub("", command), posix=True, punctuation_chars=True)
         lexer.whitespace_split, lexer.commenters = True, ""
         program, *words = lexer
         if program == "clutchsynth" and not any(set(word) <= set("();<>|&") for word in words):
-            return at_once(*words, folder=self.folder)
+            done = in_process(*words, folder=self.folder)
+            for number, name in SENT.findall(command):
+                stream = "stderr" if number else "stdout"
+                (self.folder / name).write_text(getattr(done, stream), encoding="utf-8")
+                setattr(done, stream, "")
+            return done
         return subprocess.run(
             command,
             shell=True,

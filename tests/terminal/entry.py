@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from synth.terminal import batch_commands
 from synth.terminal.cli import main
 
 ROOT = Path(__file__).parents[2]
@@ -40,3 +41,10 @@ def at_once(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[
         with pytest.raises(SystemExit) as end:
             main()
     return subprocess.CompletedProcess(texts, int(end.value.code or 0), out.getvalue(), err.getvalue())
+
+
+def in_process(*words: object, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    """Run it in this process, and the workers of a batch too."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(batch_commands, "_processes", lambda workers: None)
+        return at_once(*words, folder=folder)

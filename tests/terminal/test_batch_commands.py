@@ -14,7 +14,7 @@ import pytest
 
 import synth
 from synth.terminal import batch_commands as commands
-from tests.terminal.entry import at_once
+from tests.terminal.entry import in_process as clutchsynth
 
 RULES = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
 GOOD = {
@@ -29,13 +29,6 @@ GOOD = {
     "limits": "friction_surfaces == 10",
     "offset [mm]": "3",
 }
-
-
-def clutchsynth(*words: str | Path, folder: Path) -> CompletedProcess[str]:
-    """Run the entry point in this process, its workers too: imports would cost most."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(commands, "_processes", lambda workers: None)
-        return at_once(*words, folder=folder)
 
 
 def write(folder: Path, *rows: dict[str, Any], name: str = "rows.csv") -> Path:
