@@ -1,9 +1,10 @@
-"""Interval propagation over a whole question, node by node: what holds for every box of it."""
+"""Interval propagation node by node: over a whole question, for what holds in every box of it, or over many boxes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -35,8 +36,8 @@ class Leaves:
 
     Parameters
     ----------
-    low, high : array (variables,)
-    tables : pair of arrays (tables,)
+    low, high : array (variables,) or (variables, boxes)
+    tables : pair of arrays (tables,) or (tables, boxes)
         Least and largest value of every tabulated node.
     constants : list of float
         Values of the constant nodes.
@@ -54,7 +55,9 @@ class Leaves:
 def propagated_root(nodes: PropagatedNodes, leaves: Leaves) -> Root:
     """Return what holds of every node over the hull of everything."""
     with np.errstate(all="ignore"):
-        return _RootPropagation(nodes, leaves).root
+        found = _NodePropagation(nodes, leaves)
+        found.run(SWEEPS)
+        return found.root
 
 
 def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interval:
@@ -65,52 +68,99 @@ def forward_of(program: Program, node: Node, args: Sequence[Interval]) -> Interv
     return forward(*args) if forward else whole(*args)
 
 
-class _RootPropagation:
-    """Ends ``a`` and ``b`` of all nodes, tightened sweep by sweep."""
+def propagated_boxes(
+    nodes: PropagatedNodes, leaves: Leaves, cutoffs: Sequence[Any], sweeps: int
+) -> tuple[list[Any], list[Any], np.ndarray]:
+    """Return what holds of every node in each of many boxes.
 
-    def __init__(self, nodes: PropagatedNodes, leaves: Leaves) -> None:
-        self.nodes, self.program, self.right_sides = nodes, nodes.program, leaves.right_sides
+    Parameters
+    ----------
+    nodes : PropagatedNodes
+    leaves : Leaves
+        Ends with a column per box; after the variables those of the auxiliary variables.
+    cutoffs : list of array (boxes,)
+        Upper bounds of the objectives of the nodes, with their sign; infinite where there is none.
+    sweeps : int
+
+    Returns
+    -------
+    tuple
+        Lower and upper ends per node, a number or an array (boxes,) each, and which boxes hold nothing feasible.
+    """
+    with np.errstate(all="ignore"):
+        found = _NodePropagation(nodes, leaves, cutoffs)
+        found.run(sweeps)
+        return found.a, found.b, np.broadcast_to(found.crossed(), (leaves.low.shape[1],))
+
+
+class _NodePropagation:
+    """Ends ``a`` and ``b`` of all nodes, a number or one for each of many boxes, tightened sweep by sweep."""
+
+    def __init__(self, nodes: PropagatedNodes, leaves: Leaves, cutoffs: Sequence[Any] = ()) -> None:
+        self.nodes, self.program, self.right_sides, self.cutoffs = nodes, nodes.program, leaves.right_sides, cutoffs
         n = len(self.program.nodes)
-        self.a, self.b = np.full(n, -np.inf), np.full(n, np.inf)
+        self.a, self.b = [np.float64(-np.inf)] * n, [np.float64(np.inf)] * n
         for k, value in zip(nodes.constants, leaves.constants, strict=True):
-            self.a[k] = self.b[k] = value
+            self.a[k] = self.b[k] = np.float64(value)
         for k, x, y in zip(nodes.tables, *leaves.tables, strict=True):
             self.a[k], self.b[k] = x, y
         for k in nodes.variables:
             self.a[k], self.b[k] = leaves.low[nodes.position(k)], leaves.high[nodes.position(k)]
-        self.empty, self.narrowed = False, np.zeros(n, dtype=bool)
-        self.root = self._tightened()
+        carried = zip(
+            nodes.auxiliary,
+            leaves.low[nodes.layout.n_variables :],
+            leaves.high[nodes.layout.n_variables :],
+            strict=False,
+        )
+        self.carried = {k: (low, high) for k, low, high in carried}
+        self.empty: Any = False
+        self.narrowed = np.zeros(n, dtype=bool)
 
-    def _tightened(self) -> Root:
-        for sweep in range(SWEEPS):
+    def run(self, sweeps: int) -> None:
+        """Sweep forward, and back in between."""
+        for sweep in range(sweeps):
             for k in self.nodes.inner:
                 self._forward(k, sweep > 0)
-            if sweep == SWEEPS - 1:
+            if sweep == sweeps - 1:
                 break
             for constraint, constant in zip(self.nodes.constraints, self.right_sides, strict=True):
                 self._cut(constraint, constant)
+            for goal, cutoff in zip(self.nodes.goals, self.cutoffs, strict=False):
+                ends = (-np.inf, cutoff) if goal.sign > 0 else (-cutoff, np.inf)
+                self._narrow(goal.node, *ends)
             for k in reversed(self.nodes.inner):
                 self._backward(k)
-        a, b = self.a, self.b
-        empty = self.empty or bool(np.any(a > b + ROUNDING * np.abs(b)))
-        return Root(np.where(a > b, b, a), b, self.narrowed, empty)
+
+    def crossed(self) -> Any:
+        """Tell where nothing feasible is left."""
+        empty = self.empty
+        for a, b in zip(self.a, self.b, strict=True):
+            empty = empty | (a > b + ROUNDING * np.abs(b))
+        return empty
+
+    @property
+    def root(self) -> Root:
+        """What is known where there is but one box."""
+        a, b = np.array(self.a, dtype=float), np.array(self.b, dtype=float)
+        return Root(np.where(a > b, b, a), b, self.narrowed, bool(self.crossed()))
 
     def _forward(self, k: int, later: bool) -> None:
         node, a, b = self.program.nodes[k], self.a, self.b
-        low, high = forward_of(self.program, node, [(np.float64(a[j]), np.float64(b[j])) for j in node.args])
-        natural = float(low), float(high)
+        low, high = forward_of(self.program, node, [(a[j], b[j]) for j in node.args])
+        if k in self.carried:
+            low, high = np.fmax(low, self.carried[k][0]), np.fmin(high, self.carried[k][1])
         if later:
-            self.narrowed[k] = bool(a[k] > natural[0]) or bool(b[k] < natural[1])
-            natural = float(np.fmax(a[k], natural[0])), float(np.fmin(b[k], natural[1]))
-        a[k], b[k] = natural
+            self.narrowed[k] = bool(np.any(a[k] > low) or np.any(b[k] < high))
+            low, high = np.fmax(a[k], low), np.fmin(b[k], high)
+        # A plain number stays one: rules for powers ask for it.
+        a[k], b[k] = (np.float64(x) if np.ndim(x) == 0 else x for x in (low, high))
 
     def _backward(self, k: int) -> None:
         node, a, b = self.program.nodes[k], self.a, self.b
         backward = BACKWARD.get(node.op)
         if backward is None:
             return
-        args = [(np.float64(a[j]), np.float64(b[j])) for j in node.args]
-        for j, bound in zip(node.args, backward((np.float64(a[k]), np.float64(b[k])), *args), strict=True):
+        for j, bound in zip(node.args, backward((a[k], b[k]), *((a[j], b[j]) for j in node.args)), strict=True):
             if bound is not None:
                 self._narrow(j, *bound)
 
@@ -119,13 +169,13 @@ class _RootPropagation:
         low, high = (constant, constant) if w is None else (a[w], b[w])
         if constraint.sense in ("at_most", "equal"):
             top, bottom = loosened(high, constraint.scale, +1), loosened(a[v], constraint.scale, -1)
-            self.empty |= bool(a[v] > top)
+            self.empty = self.empty | (a[v] > top)
             self._narrow(v, -np.inf, top)
             if w is not None:
                 self._narrow(w, bottom, np.inf)
         if constraint.sense in ("at_least", "equal"):
             bottom, top = loosened(low, constraint.scale, -1), loosened(b[v], constraint.scale, +1)
-            self.empty |= bool(b[v] < bottom)
+            self.empty = self.empty | (b[v] < bottom)
             self._narrow(v, bottom, np.inf)
             if w is not None:
                 self._narrow(w, -np.inf, top)
