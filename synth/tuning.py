@@ -129,6 +129,43 @@ class LevelLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TogetherLimits:
+    """How boxes are bounded by all limits together, for which each takes a linear program of some milliseconds.
+
+    Parameters
+    ----------
+    after : int
+        Boxes that are bounded limit by limit before.
+    boxes : int
+        That a tree may look into.
+    soon : int
+        Boxes before it is judged whether the tree will close.
+    stays_open : float
+        Share of the boxes looked into: if more are open, it will not.
+    at_once : int
+        Boxes of one batch.
+    sweeps : int
+        Over the nodes of a box, to know their ranges.
+    tangents : tuple of float
+        Where sums are bounded from below, as places over the interval of the ratio of their terms.
+    yield_cost : float
+        What it costs in a linear program if all limits give way, as the objective per unit, both in logarithm.
+    others : float
+        Beside what blurs linear bounds most, how much it counts for splitting what blurs limits one by one.
+    """
+
+    after: int = 1_000_000
+    boxes: int = 10_000
+    soon: int = 250
+    stays_open: float = 0.4
+    at_once: int = 128
+    sweeps: int = 3
+    tangents: tuple[float, ...] = (0.1, 0.5, 0.9)
+    yield_cost: float = 1e3
+    others: float = 3e-3
+
+
+@dataclass(frozen=True, kw_only=True)
 class TreeLimits:
     """How far branch and bound goes, in boxes that are looked into unless another unit is told.
 
@@ -154,6 +191,8 @@ class TreeLimits:
         For what all this leaves open.
     by_levels : LevelLimits
         For fronts of two objectives that do not close soon.
+    together : TogetherLimits
+        For one best design, where limits one by one leave much open.
     coarse : float
         The gap with which first designs are looked for.
     coarse_boxes : int
@@ -207,6 +246,7 @@ class TreeLimits:
     few_combinations: int = 3000
     further: SearchEffort = field(default_factory=SearchEffort)
     by_levels: LevelLimits = field(default_factory=LevelLimits)
+    together: TogetherLimits = field(default_factory=TogetherLimits)
     coarse: float = 0.1
     coarse_boxes: int = 20_000
     first_boxes: int = 1_000

@@ -121,7 +121,8 @@ def test_imports_point_one_way() -> None:
 
 SOUND = {"intervals", "statements", "numpy_code", "contractor", "clusters", "boxes"}
 SOUND |= {"propagated_nodes", "root_propagation", "sweep_writer", "question_bounds", "propagation", "compiled_rules"}
-STEERING = {"influences", "branching"}
+SOUND |= {"log_forms", "log_relaxation"}
+STEERING = {"influences", "branching", "relaxed_branching"}
 BOTH = {"box_batches", "box_source", "compiled_boxes", "compiled_subtrees", "compiled_propagation", "bounding"}
 BOTH |= {"box_instructions", "interpreted_boxes"}
 # What kind of function a formula is: not of the search.

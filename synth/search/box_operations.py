@@ -179,6 +179,12 @@ class BoxOperations:
         keep[single] = not_refused(self.instance, self.combination(boxes.take(single)))
         return boxes.take(keep)
 
+    def snapped(self, boxes: Boxes) -> Boxes:
+        """Return the boxes that hold something makeable, with their ends on the grid."""
+        low, high = boxes.low.copy(), boxes.high.copy()
+        alive = self._snap(low, high)
+        return replace(boxes, low=low, high=high).take(alive)
+
     def _snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Move ends of gridded variables onto the grid, in place; tell which boxes hold something makeable."""
         # An active limit loosened by the margin must not cost a grid point or a pinned value.

@@ -20,6 +20,7 @@ from synth.search.fathoming import left_open
 from synth.search.formulation import Formulation
 from synth.search.primal_heuristics import PrimalHeuristics
 from synth.search.pruning import EpsilonCover, PruningRule, TabledPruningRule, reaches_beyond
+from synth.search.relaxed_boxes import RelaxedBoxes
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def branch_and_bound(
     node_limit: float = np.inf,
     enough: int | None = None,
     hopeless: Callable[[int, int], bool] = lambda looked, waiting: False,
+    together: RelaxedBoxes | None = None,
 ) -> TreeOutcome:
     """Cover everything that boxes may hold by known designs.
 
@@ -68,12 +70,15 @@ def branch_and_bound(
         Stop when more designs than this are known.
     hopeless : callable, optional
         Tells by how many boxes were looked into, and how many are open, whether to give up.
+    together : RelaxedBoxes, optional
+        Bounds boxes by all limits together as well.
 
     Returns
     -------
     TreeOutcome
     """
     tree, every = form.tuning.tree, reaches_beyond(rule, form.bounded)
+    at_once = tree.batch if together is None else tree.together.at_once
     form.boxes.focus(form.archive)
     heuristics, looked = PrimalHeuristics(form, rule, rng, every), 0
     boxes = boxes if every else form.boxes.lean(boxes)
@@ -90,8 +95,8 @@ def branch_and_bound(
         if hopeless(looked, len(queue) + sum(len(b) for b in fresh) + len(stuck)):
             given_up = True
             break
-        batch, queue = queue.take(slice(0, tree.batch)), queue.take(slice(tree.batch, None))
-        children, small, seen = further(form, batch, rule, heuristics, node_limit - looked)
+        batch, queue = queue.take(slice(0, at_once)), queue.take(slice(at_once, None))
+        children, small, seen = further(form, batch, rule, heuristics, node_limit - looked, together)
         looked += seen
         if len(small):
             stuck = Boxes.joined([stuck, small])
@@ -103,7 +108,12 @@ def branch_and_bound(
 
 
 def further(
-    form: Formulation, batch: Boxes, rule: TabledPruningRule, heuristics: PrimalHeuristics, node_limit: float
+    form: Formulation,
+    batch: Boxes,
+    rule: TabledPruningRule,
+    heuristics: PrimalHeuristics,
+    node_limit: float,
+    together: RelaxedBoxes | None = None,
 ) -> tuple[Boxes, Boxes, int]:
     """Tighten boxes, look for designs in them and split them.
 
@@ -115,6 +125,8 @@ def further(
     heuristics : PrimalHeuristics
     node_limit : float
         Boxes that may be looked into.
+    together : RelaxedBoxes, optional
+        As for :func:`branch_and_bound`.
 
     Returns
     -------
@@ -125,16 +137,20 @@ def further(
     cutoffs = rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell)
     batch = form.boxes.contract(batch, cutoffs, every_goal=heuristics.every_goal)
     batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
+    if together is not None and len(batch):
+        batch = together.tighten(batch, rule.cutoffs(form.objectives.phi_of(batch.bounds), batch.cell))
+        batch = batch.take(rule.possible_gain(form.objectives.phi_of(batch.bounds), batch.cell) > 0)
     if not len(batch):
         return none, none, looked
     heuristics.look(batch)
     stuck = []
-    for _ in range(2 if len(batch) < form.tuning.tree.small_batch else 1):
+    for _ in range(2 if together is None and len(batch) < form.tuning.tree.small_batch else 1):
         # A small batch costs as much as a larger one, so that it is split twice at once.
         batch, small = form.boxes.split(batch)
         if len(small):
             stuck.append(left_open(form, small, rule, heuristics))
-    grown = _grown(form, batch, rule, heuristics, node_limit - looked) if not heuristics.every_goal else None
+    alone = together is None and not heuristics.every_goal
+    grown = _grown(form, batch, rule, heuristics, node_limit - looked) if alone else None
     if grown is not None:
         looked += grown.looked
         batch = grown.halves
@@ -162,12 +178,14 @@ def best(
     rng: np.random.Generator,
     start: Candidate | None = None,
     node_limit: float = np.inf,
+    hopeless: Callable[[int, int], bool] = lambda looked, waiting: False,
+    together: RelaxedBoxes | None = None,
 ) -> tuple[Candidate | None, TreeOutcome]:
     """Find the least phi of one objective, and prove it within the tolerance of a rule.
 
     Parameters
     ----------
-    form, boxes, clock, rng, node_limit
+    form, boxes, clock, rng, node_limit, hopeless, together
         As for :func:`branch_and_bound`. Designs of the archive of the formulation are known already.
     rule : EpsilonCover
         Of one objective, as :func:`cover_of_one` makes it.
@@ -183,7 +201,7 @@ def best(
         rule.take(form.archive.combination, form.archive.variables, form.archive.phi)
     if start is not None:
         rule.take(*rows_of([start]))
-    outcome = branch_and_bound(form, boxes, rule, clock, rng, node_limit)
+    outcome = branch_and_bound(form, boxes, rule, clock, rng, node_limit, None, hopeless, together)
     return (rule.known[0] if len(rule.known) else None), outcome
 
 

@@ -16,11 +16,12 @@ import numpy as np
 import pytest
 
 import synth
+from synth.bounds.log_relaxation import LogRelaxation
 from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_groups import joint_key
 from synth.search.joint.levels import LevelProof
 from synth.tables.catalogs import Catalogs
-from synth.tuning import LevelLimits, SearchEffort
+from synth.tuning import LevelLimits, SearchEffort, TogetherLimits
 from tests.asking import pose
 from tests.certificates.__main__ import tried
 from tests.certificates.claims import PATIENT, Answer, answer, faults, refuted, run, signed, weak_reference
@@ -99,6 +100,39 @@ def test_what_is_proven_of_values_of_any_sign_is_proven_again(structure):
 def test_what_bounds_can_prove_is_proven(structure):
     kinds = Counter(answer(structure, seed).front.certificate.kind for seed in range(INSTANCES[structure]))
     assert kinds["global"] == INSTANCES[structure], f"{structure}: {dict(kinds)}"
+
+
+# -- all limits together -----------------------------------------------------------------------------
+
+TOGETHER = TogetherLimits(
+    after=3, soon=2000, boxes=1000
+)  # nearly every one of a single objective that limits matter to
+
+
+@pytest.fixture
+def relaxed(monkeypatch):
+    """Return how many boxes each call has bounded by all limits together."""
+    counts, run_all = [], LogRelaxation.run
+
+    def counted(relaxation, boxes, *arguments):
+        counts.append(len(boxes))
+        return run_all(relaxation, boxes, *arguments)
+
+    monkeypatch.setattr(LogRelaxation, "run", counted)
+    return counts
+
+
+@pytest.mark.parametrize("structure", [s for s in INSTANCES if s != "hard"])
+def test_one_best_by_all_limits_together_claims_nothing_that_is_wrong(relaxed, structure):
+    for seed in range(2):
+        made = make(structure, seed)
+        case = replace(made, objectives=dict(list(made.objectives.items())[:1]), points=1)
+        front = run(case, tuned(tree={"first_try": 3, "together": TOGETHER}), time_limit=PATIENT)
+        a = Answer(case, front, Reference(case))
+        wrong = faults(a)
+        assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+    if structure in ("posynomial", "signomial", "polynomials", "continuous"):
+        assert relaxed
 
 
 # -- fronts level by level ---------------------------------------------------------------------------

@@ -188,6 +188,7 @@ def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
 def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(objectives):
     trees = ("first_boxes", "coarse_boxes", "first_try", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")
     soon = dict.fromkeys(trees, 50 if len(objectives) > 1 else 1)
+    soon["together"] = replace(TUNING.tree.together, boxes=0)
     ask = {"objectives": objectives, "catalogs": {"rods": RODS}, "points": 5}
     proven = synthesize(tuned(tree=soon), Strut(), NEEDED, **ask)
     assert proven.certificate.kind == "global"  # what the first search leaves open is closed

@@ -127,13 +127,13 @@ def _ends(state: FrontState, k: int, trees: list[BestTree]) -> list[Level]:
     return [Level(nowhere, k, least, tolerance, lowest(own)) for own in corners]
 
 
-def best_by_turns(state: FrontState, k: int, plain: tuple[Formulation, Boxes], left: Boxes, tolerance: float) -> Boxes:
-    """Go on with two trees for what is best in one objective; return what the one has open that tells most.
+class BestByTurns:
+    """Two trees for what is best in one objective, which go on by turns.
 
     Parameters
     ----------
     state : FrontState
-        In infeasibility mode; afterwards in that of the tree that tells most.
+        In infeasibility mode.
     k : int
         Number of the objective.
     plain : tuple
@@ -143,15 +143,34 @@ def best_by_turns(state: FrontState, k: int, plain: tuple[Formulation, Boxes], l
     tolerance : float
         In phi.
     """
-    pair = BestTree(state, *plain, k, tolerance), BestTree(state, state.form, left, k, tolerance)
-    limits, task = state.task.limits, state.task
-    # Combinations that are few are solved one by one instead.
-    few = task.instance.combinations.count <= limits.few_combinations
-    budget = TurnBudget(
-        limits.boxes if task.thorough and not few else state.node_limit, replace(limits.further, seconds=0.0)
-    )
-    by_turns([lambda: pair[0], lambda: pair[1]], budget, limits.first_try, lambda: None)
-    most = max(pair, key=lambda t: float(t.form.objectives.phi_of(t.left.bounds)[:, k].min(initial=np.inf)))
-    if most.form is not state.form:
-        state.go_on_with(most.form)
-    return most.left
+
+    def __init__(
+        self, state: FrontState, k: int, plain: tuple[Formulation, Boxes], left: Boxes, tolerance: float
+    ) -> None:
+        self.state, self.k, self.looked = state, k, 0
+        self.pair = BestTree(state, *plain, k, tolerance), BestTree(state, state.form, left, k, tolerance)
+        limits, task = state.task.limits, state.task
+        # Combinations that are few are solved one by one instead.
+        few = task.instance.combinations.count <= limits.few_combinations
+        self.most = limits.boxes if task.thorough and not few else state.node_limit
+
+    @property
+    def closed(self) -> bool:
+        """Whether either tree has closed everything."""
+        return any(not t.open_boxes for t in self.pair)
+
+    def go_on(self, boxes: float) -> None:
+        """Look into so many boxes, or as many as are worth it in all."""
+        limits = self.state.task.limits
+        budget = TurnBudget(min(boxes, self.most - self.looked), replace(limits.further, seconds=0.0))
+        if not self.closed and budget.boxes > 0:
+            by_turns([lambda: self.pair[0], lambda: self.pair[1]], budget, limits.first_try, lambda: None)
+            self.looked += budget.looked
+
+    def left(self) -> Boxes:
+        """Return what the tree has open that tells most; the state goes on with its formulation."""
+        phi = [t.form.objectives.phi_of(t.left.bounds)[:, self.k].min(initial=np.inf) for t in self.pair]
+        most = self.pair[int(np.argmax(phi))]
+        if most.form is not self.state.form:
+            self.state.go_on_with(most.form)
+        return most.left

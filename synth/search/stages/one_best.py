@@ -9,10 +9,13 @@ import numpy as np
 from synth.bounds.boxes import Boxes
 from synth.search.archive import Archive, Candidate, rows_of
 from synth.search.branch_and_bound import TreeOutcome, best, cover_of_one
+from synth.search.formulation import Formulation
 from synth.search.front_state import FrontState
+from synth.search.proven_gap import Bound
 from synth.search.pruning import EpsilonCover
+from synth.search.relaxed_boxes import RelaxedBoxes
 from synth.search.resolution import ranges
-from synth.search.stages.best_by_turns import best_by_turns
+from synth.search.stages.best_by_turns import BestByTurns
 from synth.search.stages.trees import close_open_boxes
 
 
@@ -49,15 +52,44 @@ def best_in(state: FrontState, k: int) -> Candidate | None:
         if not outcome.closed:
             # What was settled with a coarser tolerance is not settled.
             open_plain = open_plain if coarse <= tolerance else plain.boxes.root()
-            left = best_by_turns(state, k, (plain, open_plain), outcome.open, tolerance)
+            turns = BestByTurns(state, k, (plain, open_plain), outcome.open, tolerance)
+            turns.go_on(limits.together.after)
+            worth = not turns.closed and state.task.thorough and limits.together.boxes > 0
+            closed_within = _closed_together(state, k, plain) if worth else None
+            if closed_within is None:
+                turns.go_on(np.inf)
+                left = turns.left()
+            else:
+                left, tolerance = state.form.boxes.nothing(), closed_within
             known = state.form.archive
             best_known = known[int(np.argmin(known.phi[:, k]))] if len(known) else None
+            if before == 0 and best_known is None and not len(left):
+                state.proof.open_combinations = 0.0
             return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, best_known), left)
     if not outcome.closed:
         return _close_best(state, _rule_for_best(state, k, no_cutoffs, tolerance, found), outcome.open)
     if before == 0 and found is None:
         state.proof.open_combinations = 0.0
     return found
+
+
+def _closed_together(state: FrontState, k: int, plain: Formulation) -> float | None:
+    """Return within which tolerance a tree of plain boxes closes that are bounded by all limits together; None if not.
+
+    Boxes may stay open because limits contradict each other only all together.
+    """
+    other, most, known = state.form, state.task.limits.together.boxes, state.form.archive
+    best_known = known[int(np.argmin(known.phi[:, k]))] if len(known) else None
+    state.go_on_with(plain)
+    _, outcome, tolerance = _best_within(state, k, np.full(len(plain.goals), np.inf), best_known, most, together=True)
+    if outcome.closed:
+        return tolerance
+    if state.task.m == 1:
+        # Known whatever becomes of the turns.
+        corners = plain.objectives.phi_of(outcome.open.bounds)[:, :1]
+        state.proof.bounds.append(Bound(np.array([tolerance]), corners))
+    state.go_on_with(other)
+    return None
 
 
 def better_in(
@@ -81,19 +113,27 @@ def better_in(
 
 
 def _best_within(
-    state: FrontState, k: int, fixed_cutoffs: np.ndarray, start: Candidate | None, node_limit: float
+    state: FrontState,
+    k: int,
+    fixed_cutoffs: np.ndarray,
+    start: Candidate | None,
+    node_limit: float,
+    together: bool = False,
 ) -> tuple[Candidate | None, TreeOutcome, float]:
-    """Return the best design found with so many boxes, how the search ended, and the tolerance it had."""
+    """Return the best design found with so many boxes, how the search ended, and the tolerance it had.
+
+    ``together``: boxes are bounded by all limits together as well, as long as it looks as if that will close.
+    """
     sizes = None if start is None else np.abs(start.phi)
     tolerance = float(state.form.objectives.tolerance(state.task.settings.gap, sizes)[k])
-    found, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit)
+    found, outcome = _tree(state, k, fixed_cutoffs, tolerance, start, node_limit, together)
     while found is not None and outcome.closed:
         # The gap is a share of the best value, whose size is known only now; a better one may be smaller again.
         finer = _finer(state, k, tolerance, [found])
         if finer is None:
             break
         tolerance = finer
-        found, outcome = _tree(state, k, fixed_cutoffs, tolerance, found, node_limit)
+        found, outcome = _tree(state, k, fixed_cutoffs, tolerance, found, node_limit, together)
     return found, outcome, tolerance
 
 
@@ -104,11 +144,18 @@ def _tree(
     tolerance: float,
     start: Candidate | None,
     node_limit: float,
+    together: bool,
 ) -> tuple[Candidate | None, TreeOutcome]:
     """Search one tree; where there is but one objective, what it leaves open speaks of all designs."""
     state.begin_tree(np.array([tolerance]) if state.task.m == 1 else None)
     rule = cover_of_one(state.form, k, tolerance, fixed_cutoffs)
-    found = best(state.form, state.pool, rule, state.clock, state.rng, start, node_limit)
+    form, limits = state.form, state.task.limits.together
+
+    def hopeless(looked: int, waiting: int) -> bool:
+        return together and looked >= limits.soon and waiting > limits.stays_open * looked
+
+    relaxed = RelaxedBoxes(form, k) if together else None
+    found = best(form, state.pool, rule, state.clock, state.rng, start, node_limit, hopeless, relaxed)
     state.end_tree()
     return found
 
