@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 
+NEEDLESS = "needless"  # the reason of what nobody waits for any more
+
 
 class Stopped(Exception):
     """The time limit is reached, or the user interrupted."""
@@ -71,7 +73,7 @@ def check() -> None:
     if time.monotonic() > end.time:
         raise Stopped("time limit")
     if end.needless():
-        raise Stopped("needless")
+        raise Stopped(NEEDLESS)
 
 
 def current() -> End:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections import deque
@@ -12,6 +13,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy.exc import OperationalError
 
+from synth.deadline import until
 from synth.errors import InputError
 from synth.jobs.executors import Cluster, Inline, Processes, is_lost
 from synth.jobs.job_settings import JOBS, RunnerSettings
@@ -84,6 +86,8 @@ class Runner:
             self.store.release_dead(self.job)
             return self._work()
         except KeyboardInterrupt:
+            if self.cancelled.is_set():
+                return "cancelled"
             self.store.tell(self.job, "interrupted", self.owner)
             return "interrupted"
         finally:
@@ -132,7 +136,9 @@ class Runner:
                 "code": code_digest(),
                 "tell": self._hear if isinstance(self.executor, Inline) else show,
             }
-            self.under_way[self.executor.submit(solve_unit, work)] = claim
+            with until(math.inf, self.cancelled.is_set):  # for what this process solves itself
+                future = self.executor.submit(solve_unit, work)
+            self.under_way[future] = claim
             free -= 1
 
     def _take(self, future: Future[Any], claim: Claim) -> None:

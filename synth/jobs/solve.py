@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from synth.deadline import NEEDLESS, Stopped, until
 from synth.errors import InputError
 
 if TYPE_CHECKING:
@@ -128,7 +129,6 @@ def answered_together(
 
 def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[str, dict[str, Any]]:
     """Search the designs for questions that are alike; what is not settled is left out, all of it if time is over."""
-    from synth.deadline import Stopped, until
     from synth.parametric.joint_search import JointSearch
 
     begin, each = time.monotonic(), list(questions.values())
@@ -137,7 +137,8 @@ def _settled(questions: Mapping[str, Question], tell: Progress | None) -> dict[s
     try:
         with until(math.inf if budget is None else begin + budget):
             fronts = JointSearch(each, tell, budget).settled()
-    except Stopped:
+    except Stopped as stop:
+        _give_up_unwanted(stop.reason)
         return {}
     settled = {key: front for key, front in zip(questions, fronts, strict=True) if front is not None}
     share = (time.monotonic() - begin) / max(len(settled), 1)
@@ -174,8 +175,7 @@ def answer(question: Mapping[str, Any], settings: Mapping[str, Any], shared: Sha
         # The rows were checked; what only the search can see is still said in its words.
         seconds = time.monotonic() - begin
         return {"status": "refused", "seconds": seconds, "layout": None, "content": {"explanation": str(refusal)}}
-    if front.interrupted == "interrupted":
-        raise KeyboardInterrupt  # whoever pressed Ctrl-C wants the batch to stop, not half an answer
+    _give_up_unwanted(front.interrupted)
     return record(front, time.monotonic() - begin)
 
 
@@ -198,9 +198,14 @@ def _experience(shared: Shared, question: str, settings: str) -> tuple[Sequence[
         front, branching = _posed(json.loads(question), json.loads(settings), shared).experience()
     except Exception:  # its own row tells why
         return (), None
-    if front.interrupted == "interrupted":
-        raise KeyboardInterrupt
+    _give_up_unwanted(front.interrupted)
     return front.designs, branching
+
+
+def _give_up_unwanted(reason: str) -> None:
+    """Raise KeyboardInterrupt where Ctrl-C or a cancelled job has stopped a search: nobody wants half an answer."""
+    if reason in ("interrupted", NEEDLESS):
+        raise KeyboardInterrupt
 
 
 def record(front: ParetoFront, seconds: float) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import synth
+from synth import deadline
 from synth.deadline import Stopped
 from synth.jobs import runner
 from synth.jobs.executors import Processes
@@ -18,7 +20,7 @@ from synth.jobs.job_settings import GroupSettings, JobSettings, RunnerSettings
 from synth.jobs.row_groups import RowGroups, neighbourhoods
 from synth.jobs.signs import show
 from synth.jobs.solve import ALONE, GROUP, Shared, answered_together, is_group, solve_unit
-from synth.jobs.store import Outcome, Store, digest
+from synth.jobs.store import CANCELLED, Outcome, Store, digest
 from synth.jobs.warm_starts import place
 from synth.parametric.joint_search import JointSearch
 from tests.jobs.asked import batch
@@ -250,6 +252,27 @@ def test_progress_shows_within_a_group(tmp_path: Path) -> None:
     assert max(state["found"] for state in states) > 1
     assert states[-1]["found"] == 0
     assert states[-1]["done"] == 20
+
+
+def test_a_job_that_is_cancelled_stops_within_a_group(
+    together: synth.BatchResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def endless(search: JointSearch) -> None:
+        with Store(f"sqlite:///{tmp_path / 'jobs.sqlite'}") as store:
+            (job,) = store.jobs()
+            store.set_state(job.id, CANCELLED, "cancelled")
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            deadline.check()
+            time.sleep(0.01)
+
+    monkeypatch.setattr(JointSearch, "settled", endless)
+    stopped = batch(SMALL, Rod, rows(), tmp_path, **SETTINGS)
+    assert stopped.stopped == "cancelled"
+    assert stopped.counts == {"not_solved": 20}
+    monkeypatch.undo()
+    again = batch(SMALL, Rod, rows(), tmp_path, **SETTINGS)
+    assert (again.folder / "designs.csv").read_bytes() == (together.folder / "designs.csv").read_bytes()
 
 
 def test_worker_processes_show_how_far_they_are() -> None:
