@@ -15,6 +15,7 @@ from problems.mechanics import magnetics
 from problems.mechanics import ring as ring_formulas
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
+from problems.multi_plate.requirements import PackOptions
 from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
@@ -103,13 +104,13 @@ class ElectromagneticClutch(DesignProblem):
         duty = friction.declare_duty(
             d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
         )
-        options = d.block(plate_pack.PackOptions)
-        wants = plate_pack.declare_pack_requirements(d, options=options, lubrication=lubrication)
+        options = d.block(PackOptions)
+        wants = plate_pack.declare_pack_requirements(d, duty=duty, options=options, lubrication=lubrication)
         ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
         magnet = magnet_blocks.declare_magnet(d)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
-        pack = plate_pack.declare_pack(d, options=options, wants=wants, ring=ring)
+        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
         plate_pack.refuse_impossible_pack(
             d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required

@@ -9,6 +9,7 @@ from __future__ import annotations
 from problems.friction.duty import (
     COMMON,
     Duty,
+    DutyOfPack,
     Size,
     declare_duty,
     declare_envelope,
@@ -34,6 +35,7 @@ __all__ = [
     "COMMON",
     "RING_OUTER_DIAMETER_MAX",
     "Duty",
+    "DutyOfPack",
     "Pair",
     "Ring",
     "Size",

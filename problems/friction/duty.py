@@ -207,7 +207,21 @@ class Duty(Block):
     )
 
 
-def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None) -> Duty:
+class DutyOfPack(Duty):
+    """A duty whose release gap follows from the pack where it is not given."""
+
+    plate_gap = Requirement(
+        "mm",
+        lower=0.05,
+        upper=3,
+        optional=True,
+        symbol="gap",
+        text="Release gap per surface; by default it grows with the diameter",
+        source=TYPICAL,
+    )
+
+
+def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[Duty] = Duty) -> Duty:
     """Declare the block duty and the refusals that concern it alone.
 
     Parameters
@@ -218,6 +232,8 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
         Row of cooling_options used when the user names none.
     lubrication : str or None
         dry or oil where the family is bound to one of them; the cooling must fit.
+    kind : subclass of Duty
+        The block to declare.
 
     Returns
     -------
@@ -230,7 +246,7 @@ def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | Non
         When the cooling does not go with the lubrication.
     """
     duty = d.block(
-        Duty,
+        kind,
         cooling=cooling_default,
         heat_transfer=lambda duty: d.row("cooling_options", duty.cooling).heat_transfer,
     )

@@ -283,6 +283,91 @@ def drag_torque(
     return surfaces * np.pi / 2 * viscosity * speed_difference * fourth_powers / gap
 
 
+def stroke(surfaces: Quantity, gap: Quantity, wear_depth: Quantity) -> Quantity:
+    """Way of the actuator that closes the released pack when its linings are worn, s = z (gap + d_w).
+
+    Parameters
+    ----------
+    surfaces : scalar, array or symbol
+        z [-].
+    gap : scalar, array or symbol
+        Release gap per surface [m].
+    wear_depth : scalar, array or symbol
+        Wear of one lining before it is replaced d_w [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        s [m].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    By hand, 10 surfaces of 0.3 mm gap and 0.4 mm wear:
+
+    >>> stroke(10, 0.3e-3, 0.4e-3)
+    0.007
+    """
+    return surfaces * (gap + wear_depth)
+
+
+def pack_inner_inertia(
+    density: Quantity,
+    plates_thickness: Quantity,
+    pack_length: Quantity,
+    web_thickness: Quantity,
+    outer_radius: Quantity,
+    spline_radius: Quantity,
+    rim_wall: Quantity,
+    shaft_radius: Quantity,
+) -> Quantity:
+    """Inertia of what turns with the inner plates: plates, rim and web of the hub.
+
+    J = rho pi/2 [t (r2**4 - a**4) + L (a**4 - (a - s)**4) + t_w ((a - s)**4 - r_b**4)].
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    plates_thickness : scalar, array or symbol
+        All inner plates together, end plates included t [m].
+    pack_length : scalar, array or symbol
+        Of the rim of the hub L [m].
+    web_thickness : scalar, array or symbol
+        t_w [m].
+    outer_radius, spline_radius : scalar, array or symbol
+        Outside r2 and mean spline radius a of the inner plates [m].
+    rim_wall : scalar, array or symbol
+        Rim inside the mean spline radius s [m].
+    shaft_radius : scalar, array or symbol
+        r_b [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        J [kg m2].
+
+    References
+    ----------
+    Inertia of rings, rho pi/2 t (ro**4 - ri**4).
+
+    Examples
+    --------
+    By hand, plates alone, 7850 pi/2 0.02 (0.1**4 - 0.05**4):
+
+    >>> pack_inner_inertia(7850, 0.02, 0.0, 0.0, 0.1, 0.05, 0.01, 0.02)
+    0.02312
+    """
+    rim_radius = spline_radius - rim_wall
+    plates = plates_thickness * (outer_radius**4 - spline_radius**4)
+    rim = pack_length * (spline_radius**4 - rim_radius**4)
+    web = web_thickness * (rim_radius**4 - shaft_radius**4)
+    return density * np.pi / 2 * (plates + rim + web)
+
+
 def squeeze_time(
     viscosity: Quantity,
     force: Quantity,

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import friction
+from problems import friction, practice
 from problems.friction import startup_curves
+from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
+from problems.multi_plate.requirements import PackOptions
 from problems.sources import S0
 from synth import DesignProblem
 from synth.declaration import Declaration
@@ -43,18 +45,29 @@ class MultiPlateClutch(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         lubrication = plate_pack.declare_lubrication(d)
+        scope = practice.declare_scope(d)
         duty = friction.declare_duty(
-            d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
+            d,
+            cooling_default="oil_bath" if lubrication == "oil" else "still_air",
+            lubrication=lubrication,
+            kind=friction.DutyOfPack if scope.rules else friction.Duty,
         )
-        options = d.block(plate_pack.PackOptions)
-        wants = plate_pack.declare_pack_requirements(d, options=options, lubrication=lubrication)
-        ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
+        options = d.block(PackOptions)
+        wants = plate_pack.declare_pack_requirements(
+            d, duty=duty, options=options, lubrication=lubrication, rules=scope.rules
+        )
+        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
+        body_wants = rules = None
+        if scope.rules or scope.complete:
+            body_wants = plate_body.declare_body_requirements(d, lubrication=lubrication, required=required)
+        if scope.rules:
+            rules = plate_body.declare_pack_rules(d, lubrication=lubrication)
+        ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
         force = self._declare_force(d)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
-        pack = plate_pack.declare_pack(d, options=options, wants=wants, ring=ring)
+        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
 
-        required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
         plate_pack.refuse_impossible_pack(
             d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
         )
@@ -82,17 +95,58 @@ class MultiPlateClutch(DesignProblem):
             pressure=torque.pressure,
             rubbing_radius=ring.outer_radius,
         )
-        size = plate_pack.pack_size(duty, wants, ring, pair, pack)
-        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size)
+        pack_size = plate_pack.pack_size(duty, wants, ring, pair, pack)
+        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=pack_size, rules=scope.rules)
+        body = None
+        if body_wants is not None:
+            body = plate_body.complete_body(
+                duty=duty,
+                wants=body_wants,
+                pack_wants=wants,
+                ring=ring,
+                pair=pair,
+                pack=pack,
+                force=force,
+                pack_size=pack_size,
+            )
+        size = body.size if body is not None and scope.complete else pack_size
         friction.declare_size(
             d,
             size=size,
-            mass_of="Plates with linings",
+            mass_of="The whole clutch" if scope.complete else "Plates with linings",
             outside="Outside of the drum",
             across="2 (b + s_drum)",
-            along="Length of the released pack, without actuator and end stops",
+            along="Drum with pack, bottom and actuator"
+            if scope.complete
+            else "Length of the released pack, without actuator and end stops",
         )
-        plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
+        drag = plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
+        if body is not None:
+            plate_body.declare_body(
+                d,
+                duty=duty,
+                pack_wants=wants,
+                ring=ring,
+                pair=pair,
+                pack=pack,
+                start=start,
+                body=body,
+                pack_size=pack_size,
+            )
+            if rules is not None:
+                plate_body.declare_rules(
+                    d,
+                    rules=rules,
+                    duty=duty,
+                    pack_wants=wants,
+                    ring=ring,
+                    pair=pair,
+                    pack=pack,
+                    start=start,
+                    drag=drag,
+                    body=body,
+                    cooled_area=pack_size.cooled_area,
+                )
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
         self._declare_objectives(d)

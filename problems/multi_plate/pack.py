@@ -13,138 +13,9 @@ from problems.friction.engagement import Pair, Startup, advise_frequent_switchin
 from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
 from problems.mechanics import guide_friction, heat, plates
 from problems.mechanics import ring as ring_formulas
-from problems.sources import S0, S1, TYPICAL
-from synth.declaration import Block, Declaration, Option, Requirement
-
-
-class PackOptions(Block):
-    """Options of a multi-plate pack."""
-
-    guide_model = Option(
-        ("series", "cz"),
-        "series",
-        symbol="guide",
-        text="series: friction in the plate guides is computed; cz: the lecture's factor surface_factor instead",
-        source=f"{S0}, eq. (2) to (5); {S1}, c_z",
-    )
-    guide_series = Option(
-        guide_friction.GUIDE_SERIES,
-        "geometric",
-        symbol="gs",
-        text="Torque sum: geometric (5), exponential_form (5'), lipka (5''), exponential_K (10), exact",
-        source=f"{S0}, eq. (5), (10) and appendix",
-    )
-    release_aid = Option(
-        table="release_aids",
-        default="none",
-        symbol="aid",
-        text="What separates the plates of the released pack",
-        source=f"{S0}, release of the plates",
-    )
-    spline_choice = Option(
-        ("free", "catalogue"),
-        "free",
-        symbol="spl",
-        text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
-        source="table splines",
-    )
-    shaft_position = Option(
-        ("horizontal", "vertical"),
-        "horizontal",
-        symbol="pos",
-        text="Position of the shaft",
-        source=f"{S0}, vertical shafts",
-    )
-
-
-class PackRequirements(Block):
-    """Requirements of a multi-plate pack, all in SI; None where an optional one is not given."""
-
-    surface_factor = Requirement(
-        "-",
-        lower=0.3,
-        upper=1,
-        symbol="c_z",
-        text="Surface-count factor, used with guide_model cz only; 0.75 belongs to ten surfaces",
-        source=f"{S1}, c_z",
-    )
-    guide_friction = Requirement(
-        "-",
-        0.1,
-        lower=0,
-        upper=0.5,
-        symbol="mu_guide",
-        text="Friction of the plates in their splines",
-        source=f"{S0}, mu1",
-    )
-    hub_bore_diameter = Requirement(
-        "mm",
-        lower=2,
-        upper=700,
-        optional=True,
-        symbol="d_hub_min",
-        text="Least mean diameter 2a of the inner spline: room for the shaft",
-        source="requirement of the drive",
-    )
-    drag_torque_limit = Requirement(
-        "N*m",
-        lower=0.001,
-        upper=1e4,
-        optional=True,
-        symbol="T_drag_max",
-        text="Largest drag of the released clutch",
-        source=f"{S0}, after-running",
-    )
-    oil_viscosity = Requirement(
-        "Pa*s",
-        lower=0,
-        upper=2,
-        symbol="eta_oil",
-        text=f"Dynamic viscosity of the oil, 0 when dry ({TYPICAL})",
-        source=TYPICAL,
-    )
-    lug_clearance = Requirement(
-        "mm",
-        3,
-        lower=0.1,
-        upper=30,
-        symbol="e_lug",
-        text="From the edge of the friction ring to the mean spline radius",
-        source=f"{S0}, example",
-    )
-    lug_count = Requirement(
-        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
-    )
-    lug_height = Requirement(
-        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
-    )
-    lug_pressure_limit = Requirement(
-        "N/mm2",
-        30,
-        lower=1,
-        upper=200,
-        symbol="p_lug_allow",
-        text=f"Pressure of the lugs on the spline flanks; 25 to 40 when hardened ({TYPICAL})",
-        source=TYPICAL,
-    )
-    drum_wall = Requirement(
-        "mm",
-        6,
-        lower=1,
-        upper=50,
-        symbol="s_drum",
-        text=f"Drum outside the mean radius of the outer spline ({TYPICAL})",
-        source=TYPICAL,
-    )
-    plate_effectiveness_min = Requirement(
-        "-",
-        0.5,
-        lower=0.05,
-        upper=1,
-        symbol="eta_min",
-        text="Least torque of the pack over that without guide friction; used with guide_model series",
-        source=f"{S0}, eq. (16)",
-    )
+from problems.multi_plate.requirements import PackOptions, PackRequirements, PracticePackRequirements
+from problems.sources import S0, S1
+from synth.declaration import Declaration
 
 
 @dataclass(frozen=True)
@@ -169,6 +40,9 @@ class Pack:
     inner_width: Any
     inner_lug_count: Any
     inner_lug_height: Any
+    outer_lug_count: Any
+    outer_lug_height: Any
+    gap: Any
     aid: ReleaseAid
 
 
@@ -201,17 +75,23 @@ def declare_lubrication(d: Declaration) -> str:
     )
 
 
-def declare_pack_requirements(d: Declaration, *, options: PackOptions, lubrication: str) -> PackRequirements:
+def declare_pack_requirements(
+    d: Declaration, *, duty: Duty, options: PackOptions, lubrication: str, rules: bool = False
+) -> PackRequirements:
     """Declare the requirements of a multi-plate pack and the refusals that concern them alone.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
+    duty : Duty
+        Block duty.
     options : PackOptions
         Options of the pack.
     lubrication : str
         dry or oil.
+    rules : bool
+        Whether the rules of practice count: lugs and gap then grow with the diameter.
 
     Returns
     -------
@@ -219,9 +99,13 @@ def declare_pack_requirements(d: Declaration, *, options: PackOptions, lubricati
         Symbols of the block.
     """
     series = options.guide_model == "series"
-    pack = d.block(
-        PackRequirements, surface_factor=1.0 if series else 0.75, oil_viscosity=0.02 if lubrication == "oil" else 0.0
-    )
+    oil = lubrication == "oil"
+    defaults = {"surface_factor": 1.0 if series else 0.75, "oil_viscosity": 0.02 if oil else 0.0}
+    if rules:
+        further = {"gap_base": 0.1 if oil else 0.3, "drag_speed": duty.driver_speed}
+        pack: PackRequirements = d.block(PracticePackRequirements, **defaults, **further)
+    else:
+        pack = d.block(PackRequirements, **defaults)
     if series:
         d.refuse(
             "double_guide_loss",
@@ -236,13 +120,15 @@ def declare_pack_requirements(d: Declaration, *, options: PackOptions, lubricati
     return pack
 
 
-def declare_pack(d: Declaration, *, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
+def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
     """Declare the plates of a pack and their splines.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
+    duty : Duty
+        Block duty.
     options : PackOptions
         Options of the pack.
     wants : PackRequirements
@@ -298,7 +184,8 @@ def declare_pack(d: Declaration, *, options: PackOptions, wants: PackRequirement
         inner_spline_radius = ring.inner_radius - wants.lug_clearance
         inner_mean_diameter = ring.mean_diameter - wants.lug_clearance
         inner_width = ring.width + wants.lug_clearance
-        lug_count, lug_height = wants.lug_count, wants.lug_height
+        lug_count, lug_height = wants.lugs(ring)
+    outer_lug_count, outer_lug_height = wants.lugs(ring)
     aid_row = None if options.release_aid == "none" else d.row("release_aids", options.release_aid)
     d.derive(
         "outer_plates",
@@ -340,6 +227,9 @@ def declare_pack(d: Declaration, *, options: PackOptions, wants: PackRequirement
         inner_width=inner_width,
         inner_lug_count=lug_count,
         inner_lug_height=lug_height,
+        outer_lug_count=outer_lug_count,
+        outer_lug_height=outer_lug_height,
+        gap=wants.gap(duty, ring),
         aid=ReleaseAid()
         if aid_row is None
         else ReleaseAid(aid_row.force_fraction, aid_row.area_factor, aid_row.drag_factor),
@@ -585,7 +475,7 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
         "lug_pressure_outer",
         "N/mm2",
         plates.lug_pressure(
-            outer_torque, pack.outer_spline_radius, wants.lug_count, wants.lug_height, pack.outer_thickness
+            outer_torque, pack.outer_spline_radius, pack.outer_lug_count, pack.outer_lug_height, pack.outer_thickness
         ),
         symbol="p_lo",
         needs="guide_jams",
@@ -628,14 +518,14 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
     )
 
 
-def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> None:
-    """Declare the drag of the released pack and its limit."""
+def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: Ring, pack: Pack) -> Any:
+    """Declare the drag of the released pack and its limit; return the drag [N m]."""
     drag = d.derive(
         "drag_torque",
         "N*m",
         pack.aid.drag_factor
         * plates.drag_torque(
-            pack.surfaces, wants.oil_viscosity, duty.driver_speed, ring.mean_diameter, ring.ratio, duty.plate_gap
+            pack.surfaces, wants.oil_viscosity, wants.released_speed(duty), ring.mean_diameter, ring.ratio, pack.gap
         ),
         symbol="T_drag",
         text="Drag of the released clutch with full oil films; 0 when dry",
@@ -650,6 +540,7 @@ def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: R
             text="The released clutch does not run after",
             source=f"{S0}, after-running",
         )
+    return drag
 
 
 def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack) -> PackSize:
@@ -669,7 +560,7 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
         ring.width + wants.lug_clearance,
     )
     diameter = plates.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
-    length = plates.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, duty.plate_gap)
+    length = plates.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, pack.gap)
     return PackSize(
         mass=steel + plates.lining_mass(pair.part.density, lining, z * ring.area),
         diameter=diameter,
@@ -679,8 +570,10 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
     )
 
 
-def declare_pack_temperature(d: Declaration, *, duty: Duty, pair: Pair, start: Startup, size: PackSize) -> None:
-    """Declare the peak temperature of a pack and its limit."""
+def declare_pack_temperature(
+    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, size: PackSize, rules: bool = False
+) -> None:
+    """Declare the peak temperature of a pack and its limit; a remark on the mean one where it is no rule."""
     declare_heated_body(d, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area, body="The steel plates")
     rise = d.derive(
         "peak_temperature_rise",
@@ -701,6 +594,8 @@ def declare_pack_temperature(d: Declaration, *, duty: Duty, pair: Pair, start: S
         source="Neale, Tribology Handbook, Table 7.4",
     )
     advise_frequent_switching(d, duty=duty, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area)
+    if rules:
+        return
     mean_rise = heat.mean_temperature_rise(
         start.friction_work, duty.engagements_per_hour, duty.heat_transfer, size.cooled_area
     )

@@ -1,0 +1,99 @@
+"""What an experienced engineer adds to the models: rules of practice, shaft and hub, and what is counted as mass.
+
+Most of these figures stand in no source that could be opened. They are defaults that the user may widen one by one,
+and say so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from problems.mechanics import shaft as shaft_formulas
+from synth.declaration import Block, Declaration, Requirement
+
+UNSOURCED = "practice, unsourced"
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What a question asks for beside the formulas of the sources.
+
+    Attributes
+    ----------
+    rules : bool
+        Whether the rules of practice are limits.
+    complete : bool
+        Whether mass, length and volume are those of the complete clutch.
+    """
+
+    rules: bool
+    complete: bool
+
+
+def declare_scope(d: Declaration) -> Scope:
+    """Declare the options practice and mass_scope; they come early, because defaults of others depend on them."""
+    rules = d.option(
+        "practice",
+        ("on", "off"),
+        "off",
+        symbol="prac",
+        text="on: what an experienced engineer demands beside the formulas is a limit, each with a requirement that "
+        "widens it; off: the sources alone",
+        source=UNSOURCED,
+    )
+    scope = d.option(
+        "mass_scope",
+        ("complete", "parts"),
+        "complete" if rules == "on" else "parts",
+        symbol="scope",
+        text="complete: mass, length and volume are those of the whole clutch; parts: of what its formulas size",
+        source="geometry",
+    )
+    return Scope(rules=rules == "on", complete=scope == "complete")
+
+
+class ShaftRequirements(Block):
+    """The shaft of a clutch and the hub on it, all in SI."""
+
+    shaft_shear_allow = Requirement(
+        "N/mm2",
+        20,
+        lower=1,
+        upper=400,
+        symbol="tau_s",
+        text=f"Shear stress from which the default of shaft_diameter follows ({UNSOURCED}; twelve shafts of real units "
+        "run at 6 to 25)",
+        source=UNSOURCED,
+    )
+    shaft_diameter = Requirement(
+        "mm",
+        lower=1,
+        upper=1000,
+        symbol="d_s",
+        text="Shaft; by default as shaft_shear_allow needs it",
+        source="torsion of a solid shaft",
+    )
+    hub_factor = Requirement(
+        "-",
+        1.5,
+        lower=1.05,
+        upper=5,
+        symbol="k_b",
+        text=f"Outside of a keyed steel hub over its bore ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+    @property
+    def hub_diameter(self) -> Any:
+        """Outside of the hub on the shaft [m]."""
+        return self.hub_factor * self.shaft_diameter
+
+    def boss_mass(self, density: Any) -> Any:
+        """Mass of one boss [kg] of a density [kg/m3]."""
+        return shaft_formulas.boss_mass(density, self.shaft_diameter, self.hub_factor)
+
+
+def shaft_for(torque: Any) -> Any:
+    """Return the default of shaft_diameter [m] for a torque [N m], as a function of the block."""
+    return lambda block: shaft_formulas.shaft_diameter(torque, block.shaft_shear_allow)
