@@ -57,10 +57,11 @@ class Duty(Block):
         source=f"{S0}, cooling of the plates",
     )
     allow_obsolete = Option(
-        ("no", "yes"),
+        ("no", "historical", "yes"),
         "no",
         symbol="obs",
-        text="yes: also friction pairs that are not allowed in new designs (asbestos), to re-compute old machines",
+        text="historical: also friction pairs that are built no more (cork, leather, wood, felt; without practice they "
+        "are never left out); yes: also those not allowed in new designs (asbestos), to re-compute old machines",
         source="table friction_materials",
     )
     load_torque = Requirement(

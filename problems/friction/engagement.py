@@ -26,7 +26,9 @@ class Pair:
     hourly_allow: Any
 
 
-def declare_friction_pair(d: Declaration, *, family: str, duty: Duty, lubrication: str | None) -> Pair:
+def declare_friction_pair(
+    d: Declaration, *, family: str, duty: Duty, lubrication: str | None, rules: bool = False
+) -> Pair:
     """Declare the slot friction_pair of a family and its remarks.
 
     Parameters
@@ -39,6 +41,8 @@ def declare_friction_pair(d: Declaration, *, family: str, duty: Duty, lubricatio
         Block duty.
     lubrication : str or None
         dry or oil; None accepts both.
+    rules : bool
+        Whether the rules of practice count: what is built no more is then left out where a table tells.
 
     Returns
     -------
@@ -47,8 +51,10 @@ def declare_friction_pair(d: Declaration, *, family: str, duty: Duty, lubricatio
     """
     conditions = [f"'{family}' in family_hint"]
     conditions.append(f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')")
-    if duty.allow_obsolete == "no":
+    if duty.allow_obsolete != "yes":
         conditions.append("new_design_allowed == 1")
+    if rules and duty.allow_obsolete == "no" and d.has_column("friction_materials", "status"):
+        conditions.append("status == 'current'")
     part = d.part(
         "friction_pair",
         "friction_materials",

@@ -65,7 +65,9 @@ class MultiPlateClutch(DesignProblem):
         ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
         force = self._declare_force(d)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
+        pair = friction.declare_friction_pair(
+            d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
+        )
         pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
 
         plate_pack.refuse_impossible_pack(
@@ -149,7 +151,7 @@ class MultiPlateClutch(DesignProblem):
                 )
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
-        self._declare_objectives(d)
+        self._declare_objectives(d, scope=scope)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the steel plates over repeated engagements."""
@@ -176,8 +178,14 @@ class MultiPlateClutch(DesignProblem):
             source=f"{S0}, F0",
         )
 
-    def _declare_objectives(self, d: Declaration) -> None:
+    def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
+        # With the rules of practice a pump presses as hard as its piston allows; least force is then no aim.
         d.objective("mass")
-        d.objective("actuation_force")
+        d.objective("actuation_force", default=not scope.rules)
+        d.objective("length", default=scope.rules)
         for name in ("outer_diameter", "volume", "friction_work", "drag_torque"):
             d.objective(name, default=False)
+        if scope.rules or scope.complete:
+            d.objective("wear_life", "max", default=False)
+            for name in ("stroke", "inner_inertia"):
+                d.objective(name, default=False)

@@ -162,7 +162,7 @@ class PracticePackRequirements(PackRequirements):
     lug_count = Requirement(
         "-",
         lower=3,
-        upper=400,
+        upper=200,
         optional=True,
         symbol="n_lug",
         text="Lugs of a plate that carry; by default the share lug_share of teeth of lug_module all around",

@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 ca.GlobalOptions.setNumpyMode(-1)
 
 
+SWITCHED = {"yes": "on", "no": "off"}  # YAML does not tell a bare on from yes
+
+
 class BlockField(Protocol):
     """What may stand in a :class:`Block`: it declares itself under the name of the attribute."""
 
@@ -349,6 +352,8 @@ class Declaration:
         chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
         if isinstance(chosen, bool):
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
+        if chosen not in labels and isinstance(chosen, str):
+            chosen = SWITCHED.get(chosen, chosen)
         if chosen not in labels:
             raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
         self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen)
@@ -362,6 +367,10 @@ class Declaration:
         """Return a text of a catalogue table; empty where a user's own table does not have the column."""
         found = self.catalogs.table(table)
         return found.text(column)[found.row_index(designation)] if found.has(column) else ""
+
+    def has_column(self, table: str, column: str) -> bool:
+        """Tell whether a catalogue table has a column: a user's own may lack those that are not required."""
+        return self.catalogs.table(table).has(column)
 
     def numbers(self, table: str, column: str) -> np.ndarray:
         """Return a column of a catalogue table in SI, not-a-number where a row has no value."""

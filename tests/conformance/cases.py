@@ -515,6 +515,14 @@ CASES: dict[str, Family] = {
             "dry": {"lubrication": "dry", "cooling": "fan"},
             "forced_oil": {"cooling": "through_oil", "release_aid": "wavy_rings", "shaft_position": "vertical"},
             "obsolete": {"allow_obsolete": "yes", "release_aid": "sine_plates"},
+            "practice": {"practice": "on"},
+            "practice_dry": {"practice": "on", "lubrication": "dry", "mass_scope": "parts"},
+            "practice_catalogue": {
+                "practice": "on",
+                "spline_choice": "catalogue",
+                "actuator": "external",
+                "friction_basis": "worst_case",
+            },
         },
         requirements=HOIST,
         optional={
@@ -527,6 +535,45 @@ CASES: dict[str, Family] = {
             "acceleration_limit": "40 rad/s2",
             "hub_bore_diameter": "60 mm",
             "drag_torque_limit": "20 N*m",
+            "plate_gap": "0.4 mm",
+        },
+        needed={"practice=on": {"wear_life_min": "20000"}},
+        designs={
+            "practice": Design(
+                {
+                    "ring_outer_diameter": "160 mm",
+                    "ring_inner_diameter": "118 mm",
+                    "actuation_force": "13.55 kN",
+                    "ramp_time": "0.7 s",
+                },
+                {"friction_surfaces": 12},
+                {"friction_pair": "paper_wet", "inner_plate": "core 2", "outer_plate": "core 1.6"},
+            ),
+            "practice_dry": Design(
+                {
+                    "ring_outer_diameter": "256 mm",
+                    "ring_inner_diameter": "188 mm",
+                    "actuation_force": "13.035 kN",
+                    "ramp_time": "0.7 s",
+                },
+                {"friction_surfaces": 2},
+                {"friction_pair": "metal_ceramic_bronze_dry", "inner_plate": "core 3", "outer_plate": "core 3"},
+            ),
+            "practice_catalogue": Design(
+                {
+                    "ring_outer_diameter": "170 mm",
+                    "ring_inner_diameter": "125 mm",
+                    "actuation_force": "26.6 kN",
+                    "ramp_time": "0.7 s",
+                },
+                {"friction_surfaces": 6},
+                {
+                    "friction_pair": "graphitic_wet",
+                    "inner_plate": "core 2.5",
+                    "outer_plate": "core 3.5",
+                    "inner_spline": "DIN5464 20x112x125",
+                },
+            ),
         },
         feasible={
             "hoist": Case(

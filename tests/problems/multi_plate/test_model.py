@@ -393,6 +393,7 @@ def test_defaults_follow_the_options():
     assert oil.declaration.requirements["surface_factor"].default == 1.0
     assert [o.name for o in cz.objectives.values() if o.default] == ["mass", "actuation_force"]
     assert [o.name for o in cz.objectives.values() if not o.default] == [
+        "length",
         "outer_diameter",
         "volume",
         "friction_work",
