@@ -352,8 +352,8 @@ class Declaration:
         chosen = self._asked_options.get(name, self._asked_options.get(symbol, default))
         if isinstance(chosen, bool):
             chosen = "yes" if chosen else "no"  # YAML reads a bare yes or no as a truth value
-        if chosen not in labels and isinstance(chosen, str):
-            chosen = SWITCHED.get(chosen, chosen)
+        if isinstance(chosen, str) and chosen not in labels and SWITCHED.get(chosen) in labels:
+            chosen = SWITCHED[chosen]
         if chosen not in labels:
             raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
         self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen)

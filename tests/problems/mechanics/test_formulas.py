@@ -6,7 +6,7 @@ from functools import partial
 import pytest
 
 from problems.cone import formulas as cone
-from problems.mechanics import disc, guide_friction, heat, motors, plates, ring, startup
+from problems.mechanics import disc, guide_friction, heat, motors, plates, ring, shaft, startup, wear
 from tests.problems.formula_checks import assert_homogeneous, assert_same_on_symbols_and_arrays, name_of, positional
 
 RANGES = {
@@ -212,6 +212,24 @@ CASES = [
         {"surfaces": "-", "viscosity": "Pa s", "speed_difference": "1/s", **DM_C, "gap": "m"},
         "N m",
     ),
+    (plates.stroke, {"surfaces": "-", "gap": "m", "wear_depth": "m"}, "m"),
+    (
+        plates.pack_inner_inertia,
+        {
+            "density": "kg/m3",
+            "plates_thickness": "m",
+            "pack_length": "m",
+            "web_thickness": "m",
+            "outer_radius": "m",
+            "spline_radius": "m",
+            "rim_wall": "m",
+            "shaft_radius": "m",
+        },
+        "kg m2",
+    ),
+    (shaft.shaft_diameter, {"torque": "N m", "shear_stress": "Pa"}, "m"),
+    (shaft.boss_mass, {"density": "kg/m3", "diameter": "m", "hub_factor": "-"}, "kg"),
+    (wear.wear_life, {"area": "m2", "depth": "m", "wear_rate": "m3/J", "friction_work": "J"}, "-"),
     (
         plates.squeeze_time,
         {
@@ -337,7 +355,7 @@ def test_no_formula_is_left_out():
     covered = {name_of(case[0]) for case in CASES} | OTHERWISE_TESTED
     # Lambdas stand for functions with several results or a free number of arguments.
     covered |= {"plate_torque", "first_phase_push_force", "constant_torque_slip"}
-    for module in (ring, guide_friction, startup, heat, plates, motors, disc, cone):
+    for module in (ring, guide_friction, startup, heat, plates, motors, disc, cone, shaft, wear):
         public = {
             name
             for name, member in inspect.getmembers(module, inspect.isfunction)
