@@ -15,6 +15,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from tests.asking import instance_of
 from tests.conformance.cases_magnetic import magnetic
+from tests.repetitions import repetitions
 
 
 @dataclass(frozen=True)
@@ -771,6 +772,16 @@ CASES: dict[str, Family] = {
     ),
 }
 CASES |= magnetic(Family, Case)
+
+
+# Family, option set, and whether optional requirements are given; of most sets the models with all of them say it all.
+STRUCTURES = [
+    (family, name, optional)
+    for family, data in CASES.items()
+    for number, name in enumerate(data.option_sets)
+    for optional in (False, True)
+    if optional or number < repetitions(1, len(data.option_sets))
+]
 
 
 def question(family: str, options: Mapping[str, str], optional: bool, **settings: Any) -> Instance:

@@ -18,7 +18,7 @@ from synth.model.model import Model
 from synth.model.program import OP_SELECT, OP_SPECIAL
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
-from tests.conformance.cases import CASES, known_design, question
+from tests.conformance.cases import CASES, STRUCTURES, known_design, question
 
 pytestmark = pytest.mark.slow
 
@@ -120,15 +120,9 @@ class Claims:
 
 POINTS = 200
 SHARE_JUDGED = 5 / 9  # of the pairs of a node and an input that moves
-QUESTIONS = [
-    (family, name, optional)
-    for family, data in CASES.items()
-    for name in data.option_sets
-    for optional in (False, True)
-]
 
 
-@pytest.fixture(scope="module", params=QUESTIONS, ids=lambda q: f"{q[0]}-{q[1]}-{'all' if q[2] else 'needed'}")
+@pytest.fixture(scope="module", params=STRUCTURES, ids=lambda q: f"{q[0]}-{q[1]}-{'all' if q[2] else 'needed'}")
 def traced(request):
     family, options, optional = request.param
     rng = np.random.default_rng(1)

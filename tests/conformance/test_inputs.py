@@ -15,14 +15,10 @@ from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.results import Design
 from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
-from tests.conformance.cases import CASES, question
+from tests.conformance.cases import CASES, STRUCTURES, question
 
-STRUCTURES = [  # of each family one that is fast to run
-    pytest.param(f, s, optional, marks=[] if number == 0 and optional else pytest.mark.slow)
-    for f, data in CASES.items()
-    for number, s in enumerate(data.option_sets)
-    for optional in (False, True)
-]
+FIRST = {(family, next(iter(data.option_sets)), True) for family, data in CASES.items()}
+QUESTIONS = [pytest.param(*asked, marks=[] if asked in FIRST else pytest.mark.slow) for asked in STRUCTURES]
 
 
 def by_hand(instance: Instance, parts: Any, counts: Any, choices: Any) -> list[float]:
@@ -57,7 +53,7 @@ def from_design(instance: Instance, design: Design) -> list[float]:
     )
 
 
-@pytest.mark.parametrize(("family", "structure", "optional"), STRUCTURES, ids=lambda x: str(x))
+@pytest.mark.parametrize(("family", "structure", "optional"), QUESTIONS, ids=lambda x: str(x))
 def test_all_readers_agree_on_random_designs(family: str, structure: str, optional: bool) -> None:
     instance = question(family, CASES[family].option_sets[structure], optional)
     model, combinations = instance.model, instance.combinations

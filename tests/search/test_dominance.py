@@ -171,7 +171,7 @@ GOALS = ["mass", "actuation_force", "outer_diameter", "volume"]
 
 def front_by(tuning: Tuning, m: int) -> tuple[list[list[float]], str, int]:
     """Return the objectives of a front, its certificate and the boxes that it took."""
-    front = synthesize(tuning, "disc_clutch", DRIVE, objectives=GOALS[:m], points=10, gap=0.1)
+    front = synthesize(tuning, "disc_clutch", DRIVE, objectives=GOALS[:m], points=10, gap=0.2)
     values = [[design.values[name] for name in GOALS] for design in front.designs]
     return values, front.certificate.kind, front.statistics["boxes"]
 
