@@ -92,7 +92,7 @@ def test_a_run_imports_nothing_that_its_question_does_not_need(tmp_path: Path) -
 
 
 def test_families_are_listed_with_their_titles() -> None:
-    done = clutchsynth("families")
+    done = at_once("families")
     assert done.returncode == 0
     listed = dict(line.split(maxsplit=1) for line in done.stdout.splitlines())
     assert set(listed) == set(synth.families())
@@ -139,7 +139,7 @@ def test_describe_lists_quantities_on_the_way_where_they_are_asked_for() -> None
 
 
 def test_the_lecture_design_comes_out_as_printed_in_its_source() -> None:
-    done = clutchsynth("check", LECTURE)
+    done = at_once("check", LECTURE)
     assert done.returncode == 0
     assert done.stderr == ""
     for name, printed in {
@@ -357,7 +357,7 @@ def test_ctrl_c_saves_what_was_found(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_time_limit_saves_what_was_found(tmp_path: Path) -> None:
-    done = clutchsynth(
+    done = at_once(
         "run", HOIST, "-o", tmp_path / "out", "--points", "500", "--gap", "1e-6", "--no-grid", "--time-limit", "1 s"
     )
     assert done.returncode == 4

@@ -112,8 +112,9 @@ def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, 
     assert {float(row["yield"]) for row in designs} == {1.0}
     assert all(row["proof"] in ("proven", "bounded") for row in rows(folder / "robust.csv"))
     assert "utilisation: torque_capacity (friction low, load_torque high)" in designs[0]
-    assert at_once("check", folder / "design_01.yaml").returncode == 0
-    assert "torque_capacity (friction low," in at_once("check", folder / "design_01.yaml").stdout
+    checked = at_once("check", folder / "design_01.yaml")
+    assert checked.returncode == 0
+    assert "torque_capacity (friction low," in checked.stdout
     done = at_once("verify", folder)
     assert done.returncode == 0, done.stdout
     # The question repeats what scatters: nothing needs to be said again.
