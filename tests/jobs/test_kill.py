@@ -15,9 +15,10 @@ import sqlalchemy as sa
 
 from synth.jobs.batch import DATABASE
 from synth.jobs.store import Store, file_url
+from tests.repetitions import repetitions
+from tests.terminal.entry import COMMAND, in_process
 
 ROOT = Path(__file__).parents[2]
-COMMAND = [sys.executable, "-c", "from synth.terminal.cli import main; main()"]
 ROWS = """id,family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits
 {}"""
 ROW = "{},multi_plate_clutch,{},254,30,cz,2,friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2,friction_surfaces == 10"  # noqa: E501
@@ -36,7 +37,7 @@ def small_table(folder: Path, count: int) -> Path:
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes of POSIX")
 def test_a_batch_that_is_killed_again_and_again_ends_with_the_same_bytes(tmp_path: Path, database: str) -> None:
-    kills = 14 if database.startswith("sqlite") else 8
+    kills = repetitions(8, 14) if database.startswith("sqlite") else repetitions(6, 8)
     done = subprocess.run(
         [sys.executable, "-m", "tests.jobs.stages", str(tmp_path), database, str(kills), "7"],
         cwd=ROOT,
@@ -87,8 +88,8 @@ def exists(process: int) -> bool:
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, number: signal.Signals) -> None:
     table = small_table(tmp_path, 3)
-    command = [*COMMAND, "batch", str(table), "-o", str(tmp_path / "out"), "--points", "1", "--objective", "mass", "-q"]
-    process = subprocess.Popen([*command, "--workers", "1"], stderr=subprocess.PIPE, text=True)
+    words = ["batch", str(table), "-o", str(tmp_path / "out"), "--points", "1", "--objective", "mass", "-q"]
+    process = subprocess.Popen([*COMMAND, *words, "--workers", "1"], stderr=subprocess.PIPE, text=True)
     try:
         file = tmp_path / "out" / DATABASE
         deadline = time.monotonic() + 60
@@ -108,7 +109,7 @@ def test_workers_go_with_their_master_and_the_command_goes_on(tmp_path: Path, nu
     assert not [worker for worker in workers if exists(worker)]
     if number == signal.SIGKILL:
         assert not (tmp_path / "out" / "designs.csv").exists()
-        again = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        again = in_process(*words)
         assert again.returncode == 0, again.stderr
         assert len((tmp_path / "out" / "designs.csv").read_text().splitlines()) == 4
     else:
