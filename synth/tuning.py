@@ -88,7 +88,7 @@ class SearchEffort:
     most_stuck : int
         Boxes that are open but too small to be split, after which it ends: limits leave a sliver that never closes.
     behind : float
-        Of two ways of bounding that have turns, the share of the effort of that which leaves more open.
+        Of two ways of bounding that have turns, the share of the effort of that which closes more slowly.
     """
 
     seconds: float = 60.0

@@ -49,19 +49,15 @@ def test_the_same_cutoff_stands_once_with_the_most_that_is_to_beat() -> None:
 
 
 class Work:
-    """A tree of which each box closes a share of itself, and leaves boxes open."""
+    """A tree that closes when it has looked into so many boxes; until then what is open falls as a power of them."""
 
-    def __init__(self, needed: float, leaves: float) -> None:
-        self.needed, self.leaves, self.done, self.asked = needed, leaves, 0.0, list[float]()
+    def __init__(self, needed: float, power: float) -> None:
+        self.needed, self.power, self.done, self.asked = needed, power, 0.0, list[float]()
         self.finished = False
 
     @property
     def extent(self) -> float:
-        return max(self.needed - self.done, 0.0)
-
-    @property
-    def open_boxes(self) -> int:
-        return int(self.leaves * self.done)
+        return 5.0 * (1 + self.done) ** -self.power if self.done < self.needed else 0.0
 
     def finish(self, effort: SearchEffort) -> bool:
         self.finished = True
@@ -87,9 +83,9 @@ def test_what_closes_soon_has_one_turn() -> None:
     assert (len(first.asked), len(second.asked)) == (1, 0)
 
 
-def test_the_tree_that_leaves_less_open_has_most_of_the_effort_and_the_other_stays_alive() -> None:
-    good, bad = Work(1e5, 0.1), Work(1e12, 0.6)
-    for pair in ((good, bad), (Work(1e12, 0.6), Work(1e5, 0.1))):
+def test_the_tree_that_closes_faster_has_most_of_the_effort_and_the_other_stays_alive() -> None:
+    good, bad = Work(1e5, 0.9), Work(1e12, 0.4)
+    for pair in ((good, bad), (Work(1e12, 0.4), Work(1e5, 0.9))):
         budget = turns(*pair)
         wasted = max(pair, key=lambda w: w.needed).done
         assert budget.looked < 1.6e5 + 2e5
@@ -99,7 +95,7 @@ def test_the_tree_that_leaves_less_open_has_most_of_the_effort_and_the_other_sta
 
 def test_turns_end_with_the_boxes_and_the_tree_ahead_goes_on_against_time() -> None:
     assert turns(Work(1e12, 0.5), Work(1e12, 0.4), boxes=5000).looked == 5000
-    ahead, behind = Work(1e15, 0.4), Work(1e15, 0.5)
+    ahead, behind = Work(1e15, 0.5), Work(1e15, 0.4)
     assert turns(behind, ahead, boxes=5000, seconds=60.0).spent
     assert (ahead.finished, behind.finished) == (True, False)
 
@@ -137,6 +133,6 @@ def test_turns_end_where_neither_tree_has_boxes_to_split() -> None:
     by_turns([lambda: less, lambda: little], budget, 100, lambda: None)
     assert budget.looked < 10_000
     # One of them alone does not end the turns of the other.
-    ahead = Work(1e5, 0.1)
+    ahead = Work(1e5, 0.9)
     by_turns([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
     assert not ahead.extent

@@ -62,11 +62,6 @@ class LevelTree:
         """How much of everything its open boxes hold; nothing where all levels are proven."""
         return self.tree.form.boxes.extent(self.tree.left) if self.proof.unproven.any() else 0.0
 
-    @property
-    def open_boxes(self) -> int:
-        """How many boxes are open."""
-        return len(self.tree.left)
-
     def finish(self, effort: SearchEffort) -> bool:
         """Go on, what promises most first; tell whether its time was over."""
         left, spent = self.tree.finish(self.proof.unproven, effort)
