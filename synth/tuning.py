@@ -120,10 +120,10 @@ class LevelLimits:
         Of exchanging designs for better ones, and of looking for more beside one for each that is asked for.
     """
 
-    soon: int = 100_000
+    soon: int = 40_000
     stays_open: float = 0.5
     first: int = 5_000
-    first_of_one: int = 20_000
+    first_of_one: int = 5_000
     picture: int = 8
     rounds: int = 8
 

@@ -6,9 +6,8 @@ import numpy as np
 
 from synth.search.branch_and_bound import TreeOutcome
 from synth.search.front_state import FrontState
-from synth.search.large_neighbourhood import large_neighbourhood_search
 from synth.search.pruning import EpsilonCover
-from synth.search.stages.first_designs import seek_beside
+from synth.search.stages.first_designs import few_known, many_combinations
 from synth.search.stages.levels import seek_levels
 from synth.search.stages.trees import close_open_boxes, cover_everything
 
@@ -31,10 +30,13 @@ def cover_front(state: FrontState) -> None:
 def _first_cover(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
     """Cover a front of two objectives at once, but not for long, least where designs are scarce."""
     limits = state.task.limits
-    scarce = state.task.instance.combinations.count > limits.few_combinations and _search_neighbourhoods(state)
-    rule = state.fine_cover()
-    at_once = limits.scarce_front if scarce else limits.whole_front
-    return _at_once(state, rule, min(state.node_limit, at_once))
+    if many_combinations(state) and not len(state.form.archive):
+        at_gap = state.cover_within(state.rule.tolerance)
+        cover_everything(state, at_gap, min(state.node_limit, limits.whole_front), enough=0)
+    if few_known(state) and state.infeasibility_mode:
+        state.begin_again(infeasibility=False)
+    at_once = limits.scarce_front if few_known(state) else limits.whole_front
+    return _at_once(state, state.fine_cover(), min(state.node_limit, at_once))
 
 
 def _cover_of_many(state: FrontState) -> tuple[EpsilonCover, TreeOutcome]:
@@ -55,18 +57,3 @@ def _at_once(state: FrontState, rule: EpsilonCover, node_limit: float) -> tuple[
 def _scarce(state: FrontState) -> bool:
     """Tell whether boxes hardly close: because unknowns are many, or designs few."""
     return state.node_limit < state.task.limits.boxes or len(state.form.archive) < state.task.settings.points
-
-
-def _search_neighbourhoods(state: FrontState) -> bool:
-    """Look for more where few designs are known; tell whether they are still few, but not none."""
-    scarce = state.task.tuning.heuristics.primal.scarce
-    if not len(state.form.archive):
-        at_gap = state.cover_within(state.rule.tolerance)
-        cover_everything(state, at_gap, min(state.node_limit, state.task.limits.whole_front), enough=0)
-    if not 0 < len(state.form.archive) < scarce:
-        return False
-    if state.infeasibility_mode:
-        state.begin_again(infeasibility=False)
-    large_neighbourhood_search(state.form, state.rule.columns, state.rule.tolerance, state.clock, state.rng)
-    seek_beside(state, state.fine_cover())
-    return len(state.form.archive) < scarce

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from synth.search.front_state import FrontState
+from synth.search.large_neighbourhood import large_neighbourhood_search
 from synth.search.one_exchange import OneExchange
 from synth.search.pruning import EpsilonCover
 from synth.search.stages.trees import cover_everything
@@ -48,3 +49,20 @@ def _look_round(state: FrontState) -> bool:
 def seek_beside(state: FrontState, rule: EpsilonCover) -> None:
     """Look for designs beside those that are known."""
     OneExchange(state.form, rule, state.rng).improve(state.clock)
+
+
+def many_combinations(state: FrontState) -> bool:
+    """Tell whether combinations are more than are solved one by one."""
+    return state.task.instance.combinations.count > state.task.limits.few_combinations
+
+
+def few_known(state: FrontState) -> bool:
+    """Tell whether of many combinations so few designs are known, but not none, that it is worth looking harder."""
+    return many_combinations(state) and 0 < len(state.form.archive) < state.task.tuning.heuristics.primal.scarce
+
+
+def search_neighbourhoods(state: FrontState) -> None:
+    """Look for designs in a few combinations near to those known, where these are few."""
+    if few_known(state):
+        large_neighbourhood_search(state.form, state.rule.columns, state.rule.tolerance, state.clock, state.rng)
+        seek_beside(state, state.fine_cover())

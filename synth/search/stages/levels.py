@@ -16,6 +16,7 @@ from synth.search.polishing import polish_extremes
 from synth.search.proven_gap import LevelBound
 from synth.search.pruning import NonImprovement, PruningRule
 from synth.search.stages.best_by_turns import prove_end
+from synth.search.stages.first_designs import search_neighbourhoods
 from synth.search.stages.spreading import different
 from synth.search.stages.trees import leave_open
 
@@ -23,7 +24,9 @@ from synth.search.stages.trees import leave_open
 def seek_levels(state: FrontState) -> None:
     """Go on level by level where a front was not covered soon: its ends, and designs that spread between them."""
     state.by_levels = True
-    _prove_ends(state)
+    if not _prove_ends(state):
+        # Designs are hard to find, or boxes hard to close: better designs help with both.
+        search_neighbourhoods(state)
     if len(state.form.archive):
         first = state.form.archive.phi[:, CAPPED]
         wanted = state.task.more_than_asked + state.task.limits.by_levels.picture
@@ -50,7 +53,8 @@ def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
         phi = phi[~proven_by_levels(state, phi)]
         if not len(phi):
             return ends_proven
-        if not _prove(state, phi[:, CAPPED], phi[:, SOUGHT], staircase):
+        within = phi[:, CAPPED] - state.rule.tolerance[CAPPED] + state.task.tuning.tolerances.rounded
+        if not _prove(state, within, phi[:, SOUGHT], staircase):
             break
     return False
 
