@@ -20,6 +20,7 @@ from synth.bounds.log_relaxation import LogRelaxation
 from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_groups import joint_key
 from synth.search.joint.levels import LevelProof
+from synth.search.stages import choosing
 from synth.tables.catalogs import Catalogs
 from synth.tuning import LevelLimits, SearchEffort, TogetherLimits
 from tests.asking import pose
@@ -224,6 +225,54 @@ def test_levels_that_are_given_up_claim_nothing_that_is_wrong(levels, effort, po
     a = Answer(case, run(case, tuned(tree=LEVELS | given_up)), reference(structure, seed))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+
+
+@pytest.fixture
+def fills(monkeypatch):
+    """Return how many designs were known before and after each time that more were looked for between levels."""
+    counts, fill = [], choosing.fill_levels
+
+    def counted(state):
+        before = len(state.form.archive)
+        result = fill(state)
+        counts.append((before, len(state.form.archive)))
+        return result
+
+    monkeypatch.setattr(choosing, "fill_levels", counted)
+    return counts
+
+
+@pytest.mark.parametrize(
+    ("structure", "seed", "points", "enough"),
+    [("discrete", 2, 8, True), ("posynomial", 1, 8, True), ("discrete", 2, 20, False), ("gridded", 1, 20, False)],
+)
+def test_what_lies_between_levels_is_found_until_it_is_enough_or_all(fills, structure, seed, points, enough):
+    case = of_two(structure, seed, points)
+    a = Answer(case, run(case, tuned(tree=LEVELS), time_limit=PATIENT), reference(structure, seed))
+    assert any(before < after for before, after in fills)
+    wrong = faults(a)
+    assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+    assert a.front.certificate.kind == "global"
+    assert (len(a.front.designs) == points) == enough
+    assert a.front.complete or enough
+
+
+@pytest.mark.parametrize(("structure", "seed"), [("discrete", 2), ("gridded", 1)])
+def test_what_lies_between_levels_and_stays_open_is_not_claimed(monkeypatch, structure, seed):
+    told, fill = [], choosing.fill_levels
+
+    def without_effort(state):
+        state.budget.boxes = state.budget.seconds = 0.0
+        told.append(fill(state))
+        return told[-1]
+
+    monkeypatch.setattr(choosing, "fill_levels", without_effort)
+    case = of_two(structure, seed, 20)
+    a = Answer(case, run(case, tuned(tree=LEVELS), time_limit=PATIENT), reference(structure, seed))
+    assert told == [False]
+    wrong = faults(a)
+    assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+    assert not a.front.complete
 
 
 @pytest.mark.parametrize("seconds", [0.05, 0.15, 0.5])
