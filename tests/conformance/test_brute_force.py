@@ -12,10 +12,12 @@ import pytest
 import synth
 from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
+from tests.repetitions import repetitions
 
 pytestmark = pytest.mark.slow
 
 GAP = 1e-3
+RAMPS = repetitions(4, 6)  # ramp times of each pair of rings
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 SETTINGS = {
     "parts": {
@@ -46,7 +48,7 @@ FAMILY = synth.load("multi_plate_clutch")
 class Enumeration:
     """All makeable designs of an instance that are feasible, with what is needed to compare them."""
 
-    def __init__(self, requirements, limits, ramps=6, forces=(1.0, 1.03, 1.1, 1.25, 1.6, 2.2)):
+    def __init__(self, requirements, limits, ramps=RAMPS, forces=(1.0, 1.03, 1.1, 1.25, 1.6, 2.2)):
         self.instance = instance = instance_of(
             FAMILY, requirements, as_catalogs(None), parts=SETTINGS["parts"], limits=limits
         )
