@@ -25,6 +25,7 @@ from synth.search.refused_cells import not_refused
 from synth.special import recorded
 from synth.tuning import TUNING
 from tests.asking import instance_of
+from tests.repetitions import repetitions
 from tests.sample_problems.strut import designs_of, strut_form
 from tests.tuned import tuned
 
@@ -180,7 +181,7 @@ class Question:
 
 @given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
 @example(8564, 1, False)  # a limit settles the sign of a variable that boxes have with both signs
-@settings(deadline=None, derandomize=True, max_examples=120)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(60, 120))
 def test_a_box_with_a_feasible_point_survives_and_keeps_it(seed, passes, capped):
     question = Question(seed)
     constraints, goals, caps, kept = question.limits()
@@ -208,7 +209,7 @@ def test_the_random_questions_are_worth_asking():
 
 @pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 3))
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(20, 40))
 def test_bounds_of_objectives_hold_at_every_point_of_a_box(seed, passes):
     question = Question(seed, boxes=10)
     goals = [Goal(node, sign) for node in question.program.outputs[:4] for sign in (1, -1)]
@@ -232,7 +233,7 @@ def test_bounds_of_objectives_hold_at_every_point_of_a_box(seed, passes):
 
 @pytest.mark.slow
 @given(st.integers(0, 10**6))
-@settings(deadline=None, derandomize=True, max_examples=50)
+@settings(deadline=None, derandomize=True, max_examples=repetitions(25, 50))
 def test_a_box_of_one_point_survives_its_own_values(seed):
     question = Question(seed, boxes=1)
     question.low = question.high = question.point

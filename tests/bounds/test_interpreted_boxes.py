@@ -80,7 +80,8 @@ def test_every_rule_gives_the_bits_of_own_code(first, range_):
     case.low = np.where(around, np.minimum(case.low, point[:n]), case.low)
     case.high = np.where(around, np.maximum(case.high, point[:n]), case.high)
     assert same_bits(case, False, 3) > 0
-    same_bits(case, True, 2)
+    if first == 0:  # caps narrow what goals are made of, which is the same in all
+        same_bits(case, True, 2)
 
 
 @pytest.mark.parametrize("seed", range(4))
