@@ -179,6 +179,9 @@ def test_a_page_that_is_wrong_is_noticed(tmp_path: Path, monkeypatch: pytest.Mon
     page.write_text(
         "```yaml\n# a.yaml\nx: 1\n```\n```console\n$ cat a.yaml\n# a.yaml\n...1\n$ false\n$ echo $?\n1\n```\n"
         "```python\nx = 2\n```\n```python\n>>> x\n2\n```\n"
+        "```console\n$ clutchsynth --version > said.txt 2> complaints.txt\n\n$ cat said.txt\nclutchsynth ...\n"
+        "$ clutchsynth run nothing.yaml -o out > said.txt 2> complaints.txt\n$ echo $?\n2\n"
+        "$ cat said.txt complaints.txt\nclutchsynth: spec: got 'nothing.yaml'...\n```\n"
     )
     right = blocks(page)
     reader = Reader(page, tmp_path)

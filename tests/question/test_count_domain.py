@@ -146,8 +146,9 @@ def test_studies_and_explanations_keep_to_a_set():
 
 @pytest.mark.parametrize("restriction", ["limits", "fix"])
 def test_a_batch_takes_sets_for_all_rows_in_cells_and_in_columns(restriction, tmp_path):
-    rows, duty = tmp_path / "rows.csv", "600,254,30"
-    header = f"load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],{restriction},z"
+    rows, duty = tmp_path / "rows.csv", "600,254,30,300,230,2"
+    pinned = "ring_outer_diameter [mm],ring_inner_diameter [mm],ramp_time [s]"  # the force is all that is left to find
+    header = f"load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],{pinned},{restriction},z"
     lines = [f'{duty},"friction_surfaces: [8, 12]",', f"{duty},,"]
     if restriction == "limits":  # a column pins: what is fixed elsewhere as well would be told
         lines.append(f'{duty},"friction_surfaces: [4, 10, 16]","[16, 10, 12]"')
