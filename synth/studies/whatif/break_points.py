@@ -132,6 +132,7 @@ class _Wanted:
     objective: str
     values: tuple[Value, ...]
     alone: str = ""  # what the one design is made of, in words
+    hint: bool = False  # a good design will do, as it only tells where to look
 
 
 class _Oracle:
@@ -219,8 +220,8 @@ class _Oracle:
         for (w, _), (design, proven) in zip(
             alone, search.best_with([(k, self.made[w.alone]) for w, k in alone]), strict=True
         ):
-            if proven:
-                self.known[w] = _Best(design, True)
+            if proven or (w.hint and design is not None):
+                self.known[w] = _Best(design, proven)
 
     def _question(self, w: _Wanted, alone: bool = False) -> Question:
         slots, pins = dict[str, list[str]](), dict[str, Any]()
@@ -316,8 +317,8 @@ class _Between:
         while high - low > self._narrow(low, high):
             parts = self.oracle.limits.parts
             inner = [low + (high - low) * k / parts for k in range(1, parts)]
-            yield [self._wanted(x, d) for x in inner for d in (holder, rival) if d is not None]
-            beaten = [self._beats(self._own(rival, x), self._own(holder, x)) for x in inner]
+            yield [self._wanted(x, d, hint=True) for x in inner for d in (holder, rival) if d is not None]
+            beaten = [self._beats(self._own(rival, x, True), self._own(holder, x, True)) for x in inner]
             k = beaten.index(True) if True in beaten else len(inner)
             low, high = [low, *inner][k], [*inner, high][k]
         return low, high
@@ -330,13 +331,13 @@ class _Between:
             before = self._own(holder, low)
         return (before if holder is not None else None), self._best(high).design
 
-    def _wanted(self, value: float, alone: Design | None = None) -> _Wanted:
+    def _wanted(self, value: float, alone: Design | None = None, hint: bool = False) -> _Wanted:
         along, words = self.oracle.along, ""
         if alone is not None:
             words = _words(alone)
             self.oracle.made.setdefault(words, alone)
         values = tuple(value if k == along else v for k, v in enumerate(self.one.values))
-        return _Wanted(self.objective, values, words)
+        return _Wanted(self.objective, values, words, hint)
 
     def _stands(self, design: Design | None, value: float) -> bool:
         return design is None or self.oracle.steps.stands(self._wanted(value).values, design)
@@ -344,8 +345,8 @@ class _Between:
     def _best(self, value: float) -> _Best:
         return self.oracle.known[self._wanted(value)]
 
-    def _own(self, design: Design | None, value: float) -> Design | None:
-        return None if design is None else self.oracle.known[self._wanted(value, design)].design
+    def _own(self, design: Design | None, value: float, hint: bool = False) -> Design | None:
+        return None if design is None else self.oracle.known[self._wanted(value, design, hint)].design
 
     def _beats(self, one: Design | None, other: Design | None) -> bool:
         """Tell whether a design is better than another by more than counts as equal; none is worse than any."""
