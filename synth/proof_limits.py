@@ -28,6 +28,21 @@ class ProofLimits:
         Below this many boxes are split more than once at a time: a smaller batch costs as much as a larger one.
     sweeps : int
         In which the ranges of all inputs are cut to what the limits leave, before anything is split.
+    few_guided : int
+        The same of a guided tree, which is split well from the first: it needs few boxes, and most by far are its own.
+    at_once : int
+        Boxes that a proof of all regions at once looks into before guided trees go on beside it.
+    at_once_each : int
+        So many more for each region: fronts of many designs, whose boxes close, take about as many.
+    turn : int
+        Boxes of each tree in its first turn; every turn has twice as many as the one before.
+    behind : float
+        What the proof of all regions at once gets of a turn of a guided tree.
+    around : float
+        How far from a design limits and objectives are taken as straight to see which of them hold it in its place:
+        by logarithm, or as a share of a range.
+    faint : float
+        By how much the other ones count when a box is split, beside the one that counts most.
     tries : int
         Designs in the middle of boxes that are looked at in each round, those that most likely refute the claim.
     row_tolerance : float
@@ -57,6 +72,13 @@ class ProofLimits:
     first: int = 1024
     few: int = 2048
     sweeps: int = 6
+    few_guided: int = 256
+    at_once: int = 40_000
+    at_once_each: int = 1_000
+    turn: int = 20_000
+    behind: float = 0.25
+    around: float = 1e-2
+    faint: float = 1e-12
     tries: int = 4
     row_tolerance: float = 1.01 * TOLERANCE
     guard_tolerance: float = 1e-12

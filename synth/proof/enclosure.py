@@ -103,6 +103,9 @@ class Encloser(Ranges):
         For that first run: ranges of instructions that every feasible design keeps.
     slopes : bool
         False: only ranges.
+    lifted : mapping, optional
+        Instructions whose value counts as an input with ends of its own; ``made`` then holds what the instruction
+        itself makes of the inputs, which a design has equal to it.
     """
 
     def __init__(
@@ -112,8 +115,11 @@ class Encloser(Ranges):
         known: Scouted | None = None,
         certain: Mapping[int, Pair] | None = None,
         slopes: bool = True,
+        lifted: Mapping[int, Enclosed] | None = None,
     ) -> None:
         super().__init__(tape, program)
+        self.lifted = lifted or {}
+        self.made: dict[int, Enclosed] = {}
         self.known, self.certain, self.with_slopes = known, certain or {}, slopes
         self.record = Scouted()
         self._inner: dict[int, Program] = {}
@@ -136,6 +142,8 @@ class Encloser(Ranges):
                 found[k] = inputs[int(node.constant)]
             else:
                 found[k] = self._settled(node, [found[a] for a in node.args], (*prefix, k))
+            if not prefix and k in self.lifted:
+                self.made[k], found[k] = found[k], replace(self.lifted[k])
             if cuts is not None:
                 self._narrow(k, node, found, cuts)
         return found
@@ -489,7 +497,13 @@ class Encloser(Ranges):
     ) -> None:
         v = found[k]
         args = [found[a] for a in node.args]
-        if all(a.narrow[0] is a.range[0] and a.narrow[1] is a.range[1] for a in args):
+        if k in self.made:
+            made = self.made[k]
+            made.narrow = made.uncut = self.meet(self.range_of(node, [a.narrow for a in args]), made.range)
+            self._mark(made.sign, *made.narrow)
+            v.narrow = self.meet(made.narrow, v.range)
+            self._mark(v.sign, *v.narrow)
+        elif all(a.narrow[0] is a.range[0] and a.narrow[1] is a.range[1] for a in args):
             v.narrow = v.range
         else:
             v.narrow = self.meet(self.range_of(node, [a.narrow for a in args]), v.range)
@@ -523,6 +537,7 @@ class Encloser(Ranges):
         """Return the narrow ranges after the cuts were carried back from results to what they are made of."""
         now = {k: found[k].narrow for k in order}
         changed = {k for k in order if now[k][0] is not found[k].uncut[0] or now[k][1] is not found[k].uncut[1]}
+        changed |= self.made.keys()
 
         def put(k: int, pair: Pair | None) -> None:
             if pair is None or is_thin(found[k].range):

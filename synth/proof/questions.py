@@ -9,7 +9,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Coordinate:
-    """One input that moves: a variable, a ladder (makeable values, counts, choices) or a column of a slot."""
+    """One input that moves: a variable, a ladder (makeable values, counts, choices) or a column of a slot.
+
+    A value inside of the formulas that boxes carry along counts as a variable.
+    """
 
     kind: str  # variable, ladder, column
     group: int  # number of the variable, ladder or slot
@@ -51,8 +54,9 @@ class Point:
 
 @dataclass(frozen=True)
 class ProofOutcome:
-    """How a proof ended: closed, or refuted by a design, or neither."""
+    """How a proof ended: closed, or refuted by a design, or neither; ``open_regions`` are those not proven."""
 
     closed: bool
     nodes: int
     witness: Point | None = None
+    open_regions: tuple[int, ...] = ()

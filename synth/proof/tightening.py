@@ -54,8 +54,18 @@ class _Step:
         floors = [self._do("add", x, level) for x, level in zip(floors, levels, strict=False)]
         return [worst, *(x for x, _ in ends), *(x for _, x in ends), *floors]
 
-    def sloped(self, rows: Sequence[ProofRow], levels: Sequence[Ref], widths: Sequence[Ref], groups: int) -> list[Expr]:
-        """Return what slopes tell: as ``narrowed``, then how much each group spreads the rows, and the middle."""
+    def sloped(
+        self,
+        rows: Sequence[ProofRow],
+        levels: Sequence[Ref],
+        widths: Sequence[Ref],
+        groups: int,
+        emphasis: Sequence[Expr],
+    ) -> list[Expr]:
+        """Return what slopes tell: as ``narrowed``, then how much each group spreads the rows, and the middle.
+
+        ``emphasis``: how much each row counts when it is told what to split.
+        """
         do = self._do
         worst: Expr = -INF
         middle: Expr = -INF
@@ -63,7 +73,7 @@ class _Step:
         floors = []
         self._up: list[Expr] = [INF] * len(self._ends)
         self._down: list[Expr] = [INF] * len(self._ends)
-        for number, row in enumerate(rows):
+        for number, (row, counts) in enumerate(zip(rows, emphasis, strict=True)):
             reach = {k: do("multiply", self._e.largest(s), self._halves[k]) for k, s in row.slopes.items()}
             total: Expr = 0.0
             for r in reach.values():
@@ -75,6 +85,7 @@ class _Step:
             if reach:
                 # A row near to be broken all over the box, in relation to its spread, is the one to work on.
                 weight = do("exp", do("divide", do("multiply", 4.0, least), do("fmin", total, FAR)))
+                weight = do("multiply", weight, counts)
                 for k, r in reach.items():
                     group = self._groups[k]
                     scores[group] = do("add", scores[group], do("multiply", weight, r))

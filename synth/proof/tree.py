@@ -30,8 +30,9 @@ from synth.model.program import Program
 from synth.proof.clusters import FAR, TINY, Clusters
 from synth.proof.enclosure import Enclosed, Encloser, NodeComparison
 from synth.proof.interval_arithmetic import INF, LOOSE
+from synth.proof.multipliers import StraightRows, lifted_value
 from synth.proof.questions import Coordinate, LimitSides, Point, ProofOutcome
-from synth.proof.tape import Ref, Tape
+from synth.proof.tape import Expr, Ref, Tape
 from synth.proof.tightening import ProofRow, _Step
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.instance import Instance
@@ -87,10 +88,19 @@ class ProofTree:
     objectives : mapping
         Names and senses.
     limits : ProofLimits
+    guided : bool
+        Boxes begin with the whole question, carry an inner value that objectives see (``lifted_value``), and are split
+        where the limits that hold a design in its place are spread (``synth.proof.multipliers``).
     """
 
-    def __init__(self, instance: Instance, objectives: Mapping[str, str], limits: ProofLimits = PROOF) -> None:
-        self.instance, self.limits = instance, limits
+    def __init__(
+        self,
+        instance: Instance,
+        objectives: Mapping[str, str],
+        limits: ProofLimits = PROOF,
+        guided: bool = False,
+    ) -> None:
+        self.instance, self.limits, self.guided = instance, limits, guided
         self._senses = [1 if sense == "min" else -1 for sense in objectives.values()]
         model = instance.model
         sides: list[Any] = [model.quantity_sx[name] for name in objectives]
@@ -100,7 +110,10 @@ class ProofTree:
         self.program = Program(model.inputs, sides, model.calls)
         self._used = set(self.program.needed(self.program.outputs))
         self._coordinates: list[Coordinate] = []
-        self._variables: list[int] = []  # numbers of those that are continuous
+        self._variables: list[
+            int
+        ] = []  # numbers of those that are continuous, then instructions that are carried along
+        self._lifted: dict[int, int] = {}  # instructions that boxes carry along, and their coordinates
         self._ladders: list[np.ndarray] = []
         self._tables: list[np.ndarray] = []  # per slot with columns that matter: values (rows, columns)
         self._rows: list[np.ndarray] = []  # per such slot: the rows that are left
@@ -211,17 +224,15 @@ class ProofTree:
     # -- the root box --------------------------------------------------------------------------
 
     def _root(self) -> list[Enclosed]:
-        result = []
-        for given in self._inputs:
-            if isinstance(given, int):
-                c = self._coordinates[given]
-                pair = (c.low, c.high)
-                middle = math.sqrt(c.low * c.high) if c.log else 0.5 * (c.low + c.high)
-                sign = 1 if c.low > 0 else -1 if c.high < 0 else 0
-                result.append(Enclosed(pair, (middle, middle), c.log, {given: (1.0, 1.0)}, sign, pair, pair, c.least))
-            else:
-                result.append(Enclosed.constant(given))
-        return result
+        return [self._whole(x) if isinstance(x, int) else Enclosed.constant(x) for x in self._inputs]
+
+    def _whole(self, k: int) -> Enclosed:
+        """Return a coordinate over all of its range."""
+        c = self._coordinates[k]
+        pair = (c.low, c.high)
+        middle = math.sqrt(c.low * c.high) if c.log else 0.5 * (c.low + c.high)
+        sign = 1 if c.low > 0 else -1 if c.high < 0 else 0
+        return Enclosed(pair, (middle, middle), c.log, {k: (1.0, 1.0)}, sign, pair, pair, c.least)
 
     def _tighten_root(self) -> bool:
         """Cut the ranges of all inputs to what the limits leave; tell whether anything is left."""
@@ -274,7 +285,10 @@ class ProofTree:
 
     def _record(self) -> None:
         """Record the work on a batch of boxes: narrow ranges, then slopes; both give tightened ends."""
-        scout = Encloser(Tape(), self.program, certain=self._certain)
+        if self.guided:
+            self._carry_along()
+        lifted = {node: self._whole(k) for node, k in self._lifted.items()}
+        scout = Encloser(Tape(), self.program, certain=self._certain, lifted=lifted)
         seen = scout.run(self.program.nodes, self._order, self._root())
         self.positive = [seen[g].sign > 0 and sense > 0 for g, sense in zip(self._goals, self._senses, strict=True)]
         tape = Tape()
@@ -293,7 +307,8 @@ class ProofTree:
         masks = {void: tape.leaf() for void in dict.fromkeys(x.void for x in self._limits if x.void)}
         self._masks = list(masks)
 
-        encloser = Encloser(tape, self.program, known=scout.record)
+        lifted = {node: leaves[k] for node, k in self._lifted.items()}
+        encloser = Encloser(tape, self.program, known=scout.record, lifted=lifted)
         cuts = self._cuts()
         for goal, sense, cap in zip(self._goals, self._senses, caps, strict=True):
             cuts.setdefault(goal, []).append(NodeComparison(cap, sense, loose=0.0))
@@ -302,6 +317,9 @@ class ProofTree:
         rows = [self._goal_row(encloser, found, k, levels[k]) for k in range(len(self._goals))]
         for limit in self._limits:
             rows += self._limit_rows(encloser, found, limit, masks)
+        for node, made in encloser.made.items():
+            same = LimitSides(node, node, "equal", 0.0)
+            rows += [self._limit_row(encloser, *two, same, None) for two in ((made, found[node]), (found[node], made))]
         for k in self._refusals:
             surely = encloser.do("subtract", found[k].narrow[0], 0.5)
             rows.append(ProofRow(surely, surely, surely, {}))
@@ -312,8 +330,28 @@ class ProofTree:
         handed = [x for pair in ends for x in pair] + levels + caps + list(masks.values())
         back = encloser.carried_back(self.program.nodes, self._order, found)
         place = {x: self.program.input_nodes[k] for k, x in enumerate(self._inputs) if isinstance(x, int)}
+        place |= {k: node for node, k in self._lifted.items()}
         self._narrowing = tape.kernel(handed, step.narrowed(rows, levels, [back[place[k]] for k in range(len(ends))]))
-        self._sloping = tape.kernel(handed + middles + halves + widths, step.sloped(rows, levels, widths, self._groups))
+        handed += middles + halves + widths
+        self._emphasised = len(rows)
+        emphasis: list[Expr] = [tape.leaf(1) for _ in rows] if self.guided else [1.0] * len(rows)
+        told = step.sloped(rows, levels, widths, self._groups, emphasis)
+        self._sloping = tape.kernel(handed + (emphasis if self.guided else []), told)
+        if self.guided:
+            self._straight = StraightRows(tape, rows, handed, len(self._coordinates))
+
+    def _carry_along(self) -> None:
+        """Let boxes carry an inner value with ends of its own, if there is one that objectives see."""
+        void = {k for k, x in enumerate(self._inputs) if isinstance(x, int) and self._lacks(x)}
+        moving = {k for k, x in enumerate(self._inputs) if isinstance(x, int)}
+        node = lifted_value(self.program, self._goals, self._certain, moving, void)
+        if node is not None:
+            low, high = (float(x) for x in self._certain[node])
+            pad = self.limits.pad
+            self._lifted[node] = len(self._coordinates)
+            self._variables.append(node)
+            inner = Coordinate("variable", len(self._variables) - 1, 0, low * (1 - pad), high * (1 + pad))
+            self._coordinates.append(inner)
 
     @property
     def _groups(self) -> int:
@@ -385,8 +423,17 @@ class ProofTree:
         deadline : float
             On the clock of ``time.monotonic``.
         """
-        if self.empty:
-            return ProofOutcome(True, 0)
+        growth = self.growth(ends, confirm)
+        growth.go_on(INF, deadline)
+        return growth.outcome
+
+    def growth(
+        self, ends: np.ndarray, confirm: Callable[[Point], bool], near: Sequence[Sequence[Point]] = ()
+    ) -> ProofGrowth:
+        """Return a proof that is about to begin; see ``prove``.
+
+        ``near``: per region, designs by which boxes are split where the tree is guided.
+        """
         with np.errstate(all="ignore"):
             logs = np.where(ends > 0, np.log(np.maximum(ends, TINY)), -INF)  # nothing positive lies below 0
             levels = np.where(self.positive, logs, ends)
@@ -394,36 +441,49 @@ class ProofTree:
             spread = [np.ptp(x[~np.isnan(x)]) if not np.isnan(x).all() else 0.0 for x in finite.T]
             scale = np.array([x if x > 0 else 1.0 for x in spread])
             regions = Clusters(levels, np.zeros(levels.shape[1], dtype=bool), scale)
-            return self._grow(regions, confirm, deadline)
+            emphasis = self._emphasis(regions, levels, near) if self.guided and not self.empty else None
+        return ProofGrowth(self, regions, emphasis, confirm)
 
-    def _grow(self, regions: Clusters, confirm: Callable[[Point], bool], deadline: float) -> ProofOutcome:
-        limits, tries = self.limits, self.limits.tries
-        pool, nodes, stuck = [self._begin(regions)], 0, 0
-        while pool:
-            if time.monotonic() > deadline or nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
-                return ProofOutcome(False, nodes)
-            batch = _batch(pool, limits.chunk)
-            nodes += len(batch)
-            boxes, scores, middle = self._tightened(batch, regions)
-            if not len(boxes):
-                continue
-            widths = self._widths(boxes, regions)
-            small = ~np.any(widths > 0, axis=0) | self._single(boxes)
-            # Once more: what is too small to be split has been tightened only now.
-            left = self._tightened(boxes.take(small), regions)[0] if small.any() else boxes.take(small)
-            single = self._single(left)
-            hopeful = np.argsort(middle)[:tries]
-            few = [left.take(np.flatnonzero(~single)[:tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
-            # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
-            for point in map(self._point, ProofBoxes.joined([left.take(single), *few]).each()):
-                if confirm(point):
-                    return ProofOutcome(False, nodes, point)
-            stuck += int(np.count_nonzero(~single))
-            if stuck > limits.most_stuck:
-                return ProofOutcome(False, nodes)
-            if not small.all():
-                pool.append(self._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
-        return ProofOutcome(not stuck, nodes)
+    def _emphasis(self, regions: Clusters, levels: np.ndarray, near: Sequence[Sequence[Point]]) -> np.ndarray:
+        """Return how much each row counts (rows, clusters of regions), by the designs near the regions."""
+        found = np.zeros((self._emphasised, len(regions.first)))
+        for node in reversed(range(len(regions.first))):  # what a cluster is split into comes after it
+            if regions.left[node] < 0:
+                k = regions.first[node]
+                for point in near[k]:
+                    found[:, node] += self._straight.multipliers(*self._around(point, levels[k]))
+            else:
+                found[:, node] = found[:, regions.left[node]] + found[:, regions.right[node]]
+        most = found.max(axis=0)
+        return np.where(most > 0, found / np.where(most > 0, most, 1.0), 1.0) + self.limits.faint
+
+    def _around(self, point: Point, levels: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+        """Return what a kernel takes of a small box around a design, and half of its widths; its parts stay."""
+        inputs = [*point.variables, *point.data]
+        values = np.ones(len(self._coordinates))
+        free = np.zeros(len(self._coordinates), dtype=bool)
+        for k, given in enumerate(self._inputs):
+            if isinstance(given, int):
+                values[given] = 1.0 if math.isnan(inputs[k]) else inputs[k]
+                free[given] = k < len(self.instance.model.variables)
+        nodes = list(self._lifted)
+        for node, value in zip(nodes, self.program.compile(nodes)(inputs) if nodes else [], strict=True):
+            values[self._lifted[node]], free[self._lifted[node]] = value, True
+        low, high = values.copy(), values.copy()
+        around = self.limits.around
+        for k, c in enumerate(self._coordinates):
+            if free[k]:
+                reach = abs(values[k]) * around if c.log else (c.high - c.low) * around
+                low[k], high[k] = max(c.low, values[k] - reach), min(c.high, values[k] + reach)
+        low, high = np.minimum(low, values), np.maximum(high, values)
+        log = np.array([c.log for c in self._coordinates], dtype=bool)
+        middle = np.where(log, np.sqrt(np.abs(low * high)), 0.5 * (low + high))
+        halves = 0.5 * np.where(log, np.log(high / low), high - low)
+        lacking = [float(any(math.isnan(inputs[self._inputs.index(x)]) for x in void)) for void in self._masks]
+        ends = [np.exp(x) if p else s * x for x, p, s in zip(levels, self.positive, self._senses, strict=True)]
+        told = [x for pair in zip(low, high, strict=True) for x in pair] + [*levels, *ends]
+        box = [np.array([x]) for x in told] + [np.array([x > 0]) for x in lacking]
+        return box + [np.array([x]) for x in (*middle, *halves, *np.zeros(len(levels)))], halves
 
     def _begin(self, regions: Clusters) -> ProofBoxes:
         """Return boxes that cover everything, split blindly to a useful number."""
@@ -431,7 +491,7 @@ class ProofTree:
         real += [c.high for c in self._coordinates if c.kind == "variable"]
         whole = [0] * len(self._ladders) + [len(v) - 1 for v in self._ladders] + [0] * (len(self._tables) + 1)
         boxes = ProofBoxes(np.array(real, dtype=float).reshape(-1, 1), np.array(whole, dtype=np.int64).reshape(-1, 1))
-        while len(boxes) < self.limits.first:
+        while len(boxes) < (1 if self.guided else self.limits.first):
             widths = self._widths(boxes, regions)
             if not np.any(widths > 0):
                 break
@@ -440,14 +500,18 @@ class ProofTree:
             boxes = ProofBoxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
         return boxes
 
-    def _tightened(self, boxes: ProofBoxes, regions: Clusters) -> tuple[ProofBoxes, np.ndarray, np.ndarray]:
+    def _tightened(
+        self, boxes: ProofBoxes, regions: Clusters, emphasis: np.ndarray | None = None
+    ) -> tuple[ProofBoxes, np.ndarray, np.ndarray]:
         """Return what is left of boxes, how much each group spreads the rows, and the largest row at the middle."""
         result = self._narrowing.run(self._handed(boxes, regions, False))
         boxes, _ = self._placed(boxes, regions, result)
         if not len(boxes):
             return boxes, np.zeros((self._groups, 0)), np.zeros(0)
         count = len(boxes)
-        result = self._sloping.run(self._handed(boxes, regions, True))
+        result = self._sloping.run(
+            [*self._handed(boxes, regions, True), *(() if emphasis is None else emphasis[:, boxes.whole[-1]])]
+        )
         boxes, kept = self._placed(boxes, regions, result)
         scores = np.array([np.broadcast_to(x, count)[kept] for x in result[-self._groups - 1 : -1]])
         # A spread without a bound counts as large, but not so that widths no longer matter.
@@ -545,7 +609,8 @@ class ProofTree:
     def _single(self, boxes: ProofBoxes) -> np.ndarray:
         """Tell which boxes are a single design in all that the question sees; regions may be many."""
         v, m = len(self._variables), len(self._ladders)
-        single: np.ndarray = np.all(boxes.real[:v] == boxes.real[v:], axis=0)
+        own = v - len(self._lifted)  # what is carried along follows from the rest
+        single: np.ndarray = np.all(boxes.real[:own] == boxes.real[v : v + own], axis=0)
         single &= np.all(boxes.whole[:m] == boxes.whole[m : 2 * m], axis=0)
         for slot, nodes in zip(self._slots, boxes.whole[2 * m : -1], strict=True):
             single &= slot.left[nodes] < 0
@@ -553,13 +618,14 @@ class ProofTree:
 
     def _split(self, boxes: ProofBoxes, scores: np.ndarray, widths: np.ndarray, regions: Clusters) -> ProofBoxes:
         """Return boxes split where the rows are spread most, once, or more often where there are few."""
+        few = self.limits.few_guided if self.guided else self.limits.few
         while True:
             score = np.where(widths > 0, scores + 1e-9 * widths, -1.0)
             group = np.argmax(score, axis=0)
             fixed = score.max(axis=0) < 0
             scores[group, np.arange(len(boxes))] *= 0.5
             boxes = ProofBoxes.joined([boxes.take(fixed), self._halved(boxes.take(~fixed), group[~fixed], regions)])
-            if len(boxes) >= self.limits.few or fixed.any():
+            if len(boxes) >= few or fixed.any():
                 return boxes
             scores, widths = np.concatenate([scores, scores], axis=1), self._widths(boxes, regions)
 
@@ -616,6 +682,95 @@ class ProofTree:
                 if entry.kind == "part" and entry.name == slot.slot:
                     values[k] = float(slot.columns["|".join(entry.columns)][row])
         return Point(np.array(values[:first]), values[first:], digits)
+
+
+class ProofGrowth:
+    """A proof under way: some regions, and the boxes in which they are not proven yet to hold nothing.
+
+    Parameters
+    ----------
+    tree : ProofTree
+    regions : Clusters
+    emphasis : array (rows, clusters of regions), optional
+        Of a guided tree: how much each row counts when a box is split.
+    confirm : callable
+        Takes a design that may refute the claim and tells whether it does.
+    """
+
+    def __init__(
+        self, tree: ProofTree, regions: Clusters, emphasis: np.ndarray | None, confirm: Callable[[Point], bool]
+    ) -> None:
+        self._tree, self._regions, self._emphasis, self._confirm = tree, regions, emphasis, confirm
+        self._pool = [] if tree.empty else [tree._begin(regions)]
+        self._stuck: list[np.ndarray] = []  # clusters of regions of boxes that are too small to be split
+        self.nodes = 0
+        self.witness: Point | None = None
+        self.given_up = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether the regions are proven to be empty."""
+        return not self._pool and not self._stuck and self.witness is None
+
+    @property
+    def under_way(self) -> bool:
+        """Whether going on may still tell something."""
+        return bool(self._pool) and not self.given_up and self.witness is None
+
+    @property
+    def outcome(self) -> ProofOutcome:
+        """How far it is."""
+        return ProofOutcome(self.closed, self.nodes, self.witness, tuple(sorted(self.open_regions)))
+
+    @property
+    def open_regions(self) -> set[int]:
+        """The regions of which boxes are left."""
+        clusters = [boxes.whole[-1] for boxes in self._pool] + self._stuck
+        waiting = np.unique(np.concatenate(clusters)).tolist() if clusters else []
+        found: set[int] = set()
+        while waiting:
+            node = waiting.pop()
+            if self._regions.left[node] < 0:
+                found.add(int(self._regions.first[node]))
+            else:
+                waiting += [int(self._regions.left[node]), int(self._regions.right[node])]
+        return found
+
+    def go_on(self, boxes: float, deadline: float) -> None:
+        """Look into so many boxes more, as far as there are any and time allows."""
+        with np.errstate(all="ignore"):
+            most = self.nodes + boxes
+            while self.under_way and self.nodes < most and time.monotonic() <= deadline:
+                self._step()
+
+    def _step(self) -> None:
+        tree, regions, limits, pool = self._tree, self._regions, self._tree.limits, self._pool
+        if self.nodes > limits.most_nodes or sum(map(len, pool)) > limits.most_open:
+            self.given_up = True
+            return
+        batch = _batch(pool, limits.chunk)
+        self.nodes += len(batch)
+        boxes, scores, middle = tree._tightened(batch, regions, self._emphasis)
+        if not len(boxes):
+            return
+        widths = tree._widths(boxes, regions)
+        small = ~np.any(widths > 0, axis=0) | tree._single(boxes)
+        # Once more: what is too small to be split has been tightened only now.
+        left = boxes.take(small)
+        left = tree._tightened(left, regions, self._emphasis)[0] if small.any() else left
+        single = tree._single(left)
+        hopeful = np.argsort(middle)[: limits.tries]
+        few = [left.take(np.flatnonzero(~single)[: limits.tries]), boxes.take(hopeful[middle[hopeful] <= 0])]
+        # One point is settled by its evaluation, also where a formula does not exist and ranges tell nothing.
+        for point in map(tree._point, ProofBoxes.joined([left.take(single), *few]).each()):
+            if self._confirm(point):
+                self.witness = point
+                return
+        if not single.all():
+            self._stuck.append(left.whole[-1, ~single])
+        self.given_up = sum(map(len, self._stuck)) > limits.most_stuck
+        if not small.all():
+            pool.append(tree._split(boxes.take(~small), scores[:, ~small], widths[:, ~small], regions))
 
 
 def _between(values: np.ndarray, low: float, high: float, snap: float) -> np.ndarray:

@@ -33,6 +33,7 @@ from synth.errors import InputError
 from synth.feasibility import Status, holds, residual, utilisation
 from synth.files import read_bytes
 from synth.model.problem import DesignProblem
+from synth.proof.levels import prove_regions
 from synth.proof.questions import Point, ProofOutcome
 from synth.proof.tree import NO_SCALE, ProofTree, void_without
 from synth.proof_limits import PROOF, ProofLimits
@@ -146,6 +147,8 @@ class VerificationRun:
         self.open: list[str] = []
         self.proven: float | None = None
         self.nodes = 0
+        self._points: dict[int | None, Point | None] = {}
+        self._guided_tree: ProofTree | None = None
 
     def find(self, sentence: str) -> None:
         """Note what is not as claimed."""
@@ -241,7 +244,7 @@ class VerificationRun:
 
     def _design(self, design: Design) -> None:
         label = f"design {design.rank}"
-        point = self._point(design, label)
+        point = self._points[design.rank] = self._point(design, label)
         if point is None:
             return
         values, limits, remarks = self._evaluate(point)
@@ -467,13 +470,14 @@ class VerificationRun:
             return
         gap = front.certificate.gap or 0.0
         if front.complete:
-            outcome = self._prove(uncovered(self._thresholds(gap)))
+            outcome = self._prove(uncovered(self._thresholds(gap)), gap)
             if self._judge(outcome, "the front is complete", "feasible and no listed design covers it"):
                 self.proven = gap
                 return
-        outcome = self._prove(self._thresholds(gap))
-        self.proven, decisive = (gap, outcome) if outcome.closed else self._smallest_gap(gap, outcome)
-        self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "")
+        first = self._prove(self._thresholds(gap), gap)
+        self.proven, decisive = (gap, first) if first.closed else self._smallest_gap(gap, first)
+        left = f"{len(first.open_regions)} of {len(front.designs)} designs stay open"
+        self._judge(decisive, f"no design improves a listed one by more than {percent(gap)}", "", left)
 
     def _measured(self, resolution: Mapping[str, float], gap: float) -> bool:
         """Read what a gap is a share of: the value, or what makes it the amount that the certificate tells."""
@@ -485,11 +489,34 @@ class VerificationRun:
                 self.find(f"the certificate does not tell by how much {name} must be better to count")
         return not unclear.any()
 
-    def _prove(self, ends: np.ndarray) -> ProofOutcome:
-        """Prove that no feasible design lies below any of the ends (rows) in all objectives."""
-        outcome = self.tree.prove(ends, lambda point: self._lies_below(point, ends), self.deadline)
+    def _prove(self, ends: np.ndarray, gap: float | None = None) -> ProofOutcome:
+        """Prove that no feasible design lies below any of the ends (rows) in all objectives.
+
+        ``gap``: what ends were computed with, where they are those of the designs of this front.
+        """
+
+        def confirm(point: Point) -> bool:
+            return self._lies_below(point, ends)
+
+        near = [] if gap is None else self._next_to(ends, gap)
+        if any(near):
+            outcome = prove_regions(self.tree, self._guided, ends, near, confirm, self.deadline)
+        else:
+            outcome = self.tree.prove(ends, confirm, self.deadline)
         self.nodes += outcome.nodes
         return outcome
+
+    def _guided(self) -> ProofTree:
+        """Return the tree that proves regions one by one, made once."""
+        if self._guided_tree is None:
+            self._guided_tree = ProofTree(self.instance, self.front.frame.objectives, self.limits, guided=True)
+        return self._guided_tree
+
+    def _next_to(self, ends: np.ndarray, gap: float) -> list[list[Point]]:
+        """Return, per region, the designs that bound it; they tell the proof what to look at."""
+        bounding = np.all(self._thresholds(gap)[None, :, :] <= ends[:, None, :], axis=2)
+        points = [self._points[design.rank] for design in self.front.designs]
+        return [[p for p, near in zip(points, row, strict=True) if near and p is not None] for row in bounding]
 
     def _lies_below(self, point: Point, ends: np.ndarray) -> bool:
         """Tell whether a design is feasible, read as ``evaluate`` does, and lies below an end in all objectives."""
@@ -532,26 +559,30 @@ class VerificationRun:
             gap = 2 * refuted
             if gap > self.limits.widest_gap or time.monotonic() > self.deadline:
                 return None, decisive
-            outcome = self._prove(self._thresholds(gap))
+            outcome = self._prove(self._thresholds(gap), gap)
             if outcome.closed:
                 break
             decisive, refuted = (outcome if decisive.witness is None else decisive), max(refuted, gap)
         for _ in range(self.limits.narrowings):
             between = math.sqrt(refuted * gap)
-            outcome = self._prove(self._thresholds(between))
+            outcome = self._prove(self._thresholds(between), between)
             if outcome.closed:
                 gap = between
             else:
                 decisive, refuted = (outcome if decisive.witness is None else decisive), between
         return gap, decisive
 
-    def _judge(self, outcome: ProofOutcome, claim: str, what: str) -> bool:
-        """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open."""
+    def _judge(self, outcome: ProofOutcome, claim: str, what: str, left: str = "") -> bool:
+        """Tell whether a proof closed; else note the design that refutes the claim, or that the claim stays open.
+
+        ``left``: what is open.
+        """
         point = outcome.witness
         if point is not None:
             self.find(f"the claim that {claim} is wrong: {self._told(point)} is {what or self._gain(point)}")
         elif not outcome.closed:
-            self.open.append(f"the claim that {claim} could not be proven again with {outcome.nodes} boxes")
+            told = f"the claim that {claim} could not be proven again with {outcome.nodes} boxes"
+            self.open.append(told + (f": {left}" if left else ""))
         return outcome.closed
 
     def _gain(self, point: Point) -> str:

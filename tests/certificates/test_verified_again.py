@@ -1,7 +1,12 @@
 """Fronts of random problems hold when they are checked again: nothing that was proven is refuted or left open."""
 
+import time
+from dataclasses import replace
+
 import pytest
 
+from synth.proof_limits import PROOF
+from synth.verification.verify import checked
 from tests.certificates.structures import STRUCTURES, make
 from tests.certificates.test_global_claims import run
 
@@ -19,3 +24,11 @@ def test_a_front_of_a_random_problem_holds_when_it_is_checked_again(structure, s
     front = run(make(structure, seed))
     check = front.verify(time_limit=60)
     assert (check.findings, check.open) == ((), ())
+
+
+@pytest.mark.parametrize("structure", [s for s in STRUCTURES if s not in ("hard", "mismatch")])
+def test_it_holds_by_levels_alone_as_well(structure):
+    front = run(make(structure, SEED + 1))
+    levels = replace(PROOF, at_once=0, at_once_each=0, behind=0.0)
+    check = checked(front, None, None, time.monotonic() + 60, levels)
+    assert (check.findings, check.open) == ([], [])

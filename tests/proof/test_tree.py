@@ -92,10 +92,13 @@ def holding(tree, boxes, point):
             slot, node = tree._slots[c.group], boxes.whole[2 * ladders + c.group]
             low, high = slot.low[c.column, node], slot.high[c.column, node]
             found &= slot.lacking[c.column, node] if math.isnan(x) else (low <= x) & (high >= x)
+    for node, k in tree._lifted.items():
+        x, group = float(tree.program.compile([node])(inputs)[0]), tree._coordinates[k].group
+        found &= (boxes.real[group] <= x * (1 + 1e-9)) & (boxes.real[count + group] >= x * (1 - 1e-9))
     return found
 
 
-ONE_SPLIT = ProofLimits(few=1)  # each box is split once at a time, however few there are
+ONE_SPLIT = ProofLimits(few=1, few_guided=1)  # each box is split once at a time, however few there are
 
 
 def is_kept(tree, point, signed, rounds):
@@ -105,9 +108,10 @@ def is_kept(tree, point, signed, rounds):
         levels = np.where(tree.positive, np.log(ends), ends)
         regions = Clusters(levels, np.zeros(len(signed), dtype=bool), np.ones(len(signed)))
         boxes = tree._begin(regions)
+        emphasis = np.ones((tree._emphasised, len(regions.first))) if tree.guided and not tree.empty else None
         for _ in range(rounds):
             boxes = boxes.take(holding(tree, boxes, point))
-            boxes, scores, _ = tree._tightened(boxes, regions)
+            boxes, scores, _ = tree._tightened(boxes, regions, emphasis)
             kept = holding(tree, boxes, point)
             if not kept.any():
                 return False
@@ -130,8 +134,9 @@ def sample(instance, variables, combinations):
     return wide, result.values, feasible
 
 
+@pytest.mark.parametrize("guided", [False, True])
 @pytest.mark.parametrize("seed", range(12))
-def test_no_feasible_design_of_a_random_problem_is_lost(seed):
+def test_no_feasible_design_of_a_random_problem_is_lost(seed, guided):
     problem = Anything(seed)
     instance = instance_of(problem, {}, THINGS_CATALOG)
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values()}
@@ -142,7 +147,7 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed):
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
     good = np.flatnonzero(feasible & np.isfinite(signed).all(axis=1))
-    tree = ProofTree(instance, senses, ONE_SPLIT)
+    tree = ProofTree(instance, senses, ONE_SPLIT, guided)
     assert not (tree.empty and len(good))
     for k in good[np.argsort(signed[good].sum(axis=1))][:8]:
         point = Point(x[k], [float(column[k]) for column in data], {})
@@ -150,8 +155,9 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("guided", [False, True])
 @pytest.mark.parametrize("family", CASES)
-def test_no_feasible_design_of_a_family_is_lost(family):
+def test_no_feasible_design_of_a_family_is_lost(family, guided):
     case = CASES[family]
     instance = instance_of(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
     rng = np.random.default_rng(1)
@@ -169,7 +175,10 @@ def test_no_feasible_design_of_a_family_is_lost(family):
         result = instance.model.evaluate(x, data)
         values, feasible = result.values, result.feasible
     senses = {o.name: o.sense for o in instance.model.declaration.objectives.values() if o.default}
-    tree = ProofTree(instance, senses, ONE_SPLIT)
+    if guided and family == "multi_plate_clutch":
+        senses = {"mass": "min", "friction_work": "min"}  # of which one sees the torque alone
+    tree = ProofTree(instance, senses, ONE_SPLIT, guided)
+    assert not tree._lifted if not guided else tree._lifted or family != "multi_plate_clutch"
     signs = np.array([1.0 if s == "min" else -1.0 for s in senses.values()])
     signed = np.stack([values[name] for name in senses], axis=1) * signs
     good = np.flatnonzero(feasible)

@@ -118,7 +118,7 @@ def test_a_fault_of_the_proof_is_one_of_the_program(saved: Path, monkeypatch: py
     def broken(*arguments: object) -> None:
         raise KeyError("a node")
 
-    monkeypatch.setattr("synth.proof.tree.ProofTree.prove", broken)
+    monkeypatch.setattr("synth.proof.tree.ProofTree.growth", broken)
     done = at_once("verify", saved)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.startswith("clutchsynth: internal error, KeyError: 'a node'\n")

@@ -6,6 +6,7 @@ import copy
 import dataclasses
 import json
 import math
+import time
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,13 @@ import pytest
 
 import synth
 from synth.proof.questions import Point
+from synth.proof_limits import PROOF
 from synth.results import ParetoFront, PartRow
 from synth.results.loading import load_front, unchecked_front
 from synth.results.verification import Verdict
 from synth.tables.catalogs import Catalogs
 from synth.verification.pareto_regions import uncovered
-from synth.verification.verify import VerificationRun
+from synth.verification.verify import VerificationRun, checked
 from tests.asking import instance_of
 from tests.repetitions import repetitions
 from tests.sample_problems.strut import NEEDED, RODS, Strut
@@ -355,6 +357,16 @@ def test_whatever_is_changed_is_found_even_with_a_new_checksum(front, what, tmp_
     assert not any("checksum" in sentence for sentence in found)
 
 
+@pytest.mark.parametrize("what", ["complete", "a design that can be improved", "a smaller gap"])
+def test_a_front_that_is_wrong_is_refuted_by_levels_alone(front, what):
+    levels = dataclasses.replace(PROOF, at_once=0, at_once_each=0, behind=0.0)
+    tamper, words = TAMPERINGS[what]
+    own = checked(tamper(front), STRUT, RODS_TABLE, time.monotonic() + 60, levels)
+    assert any(words in sentence for sentence in own.findings)
+    right = checked(front, STRUT, RODS_TABLE, time.monotonic() + 60, levels)
+    assert (right.findings, right.open, right.proven) == ([], [], front.certificate.gap)
+
+
 def test_the_gap_that_can_be_proven_is_told(front):
     verification = certified(front, gap=1e-6).verify(STRUT, RODS_TABLE)
     assert not verification.holds
@@ -372,6 +384,7 @@ def test_a_proof_without_time_is_not_taken_for_one(front):
     assert (verification.verdict, verification.holds) == (Verdict.NOT_PROVEN, False)
     assert verification.findings == ()
     assert "could not be proven again with 0 boxes" in verification.open[-1]
+    assert "5 of 5 designs stay open" in verification.open[-1]
     assert verification.proven_gap is None
     assert verification.sentence().startswith("not proven again: 5 designs are as saved, nothing refutes the claim")
 
@@ -513,7 +526,7 @@ def test_what_contradicts_itself_is_said_in_one_sentence(saved, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.prove", "VerificationRun._ranking"]
+    "place", ["_evaluator", "ProofLimits.agree", "uncovered", "ProofTree.growth", "VerificationRun._ranking"]
 )
 @pytest.mark.parametrize("fault", [KeyError, TypeError, ValueError, AttributeError, IndexError])
 def test_a_fault_of_the_check_is_not_taken_for_one_of_the_front(place, fault, saved, monkeypatch):
