@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import friction
+from problems import friction, practice
+from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
@@ -36,9 +37,22 @@ class DiscClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry")
-        ring = friction.declare_ring(d, ratio_min=0.11, ratio_max=0.13)
-        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring)
+        scope = practice.declare_scope(d)
+        duty = friction.declare_duty(
+            d,
+            cooling_default="still_air",
+            lubrication="dry",
+            kind=friction.DutyOfDiscs if scope.rules else friction.Duty,
+        )
+        required = friction.sizing_torque(duty)
+        body_wants = wants = None
+        if scope.rules or scope.complete:
+            body_wants = disc_body.declare_body_requirements(d, required=required)
+            wants = disc_body.declare_disc_requirements(d, body=body_wants)
+        rules = d.block(disc_body.DiscRules) if scope.rules else None
+        least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
+        ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants)
         force = d.variable(
             "actuation_force",
             "N",
@@ -49,12 +63,11 @@ class DiscClutch(DesignProblem):
             source=f"{S1}, F",
         )
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry")
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
 
-        required = friction.sizing_torque(duty)
         torques = friction.declare_torque(
             d, duty=duty, pair=pair, required=required, torque_low=torque(pair.mu_low), torque_high=torque(pair.mu_high)
         )
@@ -71,22 +84,35 @@ class DiscClutch(DesignProblem):
             pressure=force / ring.area,
             rubbing_radius=ring.outer_radius,
         )
-        size = disc_pack.disc_size(duty, ring, pair, pack)
+        pack_size = disc_pack.disc_size(duty, ring, pair, pack)
+        size, mass_of = pack_size, "Pressure plates, linings and cores"
+        along = "Length of the released discs and pressure plates"
+        body = None
+        if body_wants is not None:
+            body = disc_body.complete_body(duty=duty, wants=body_wants, ring=ring, pack=pack, pack_size=pack_size)
+        if body is not None and scope.complete:
+            size, mass_of, along = body.size, "The whole clutch", "The whole clutch"
         friction.declare_size(
             d,
             size=size,
-            mass_of="Pressure plates, linings and cores, without flywheel, springs and cover",
+            mass_of=f"{mass_of}, without flywheel" + ("" if scope.complete else ", springs and cover"),
             outside="Outside of the cover",
             across="2 (r2 + s_cover)",
-            along="Length of the released discs and pressure plates, without flywheel, springs and cover",
+            along=f"{along}, without flywheel" + ("" if scope.complete else ", springs and cover"),
         )
+        if body is not None:
+            disc_body.declare_body(d, ring=ring, pair=pair, pack=pack, start=start, body=body, pack_size=pack_size)
+        if rules is not None:
+            disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
         disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
-        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=size)
+        disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=pack_size)
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         d.objective("mass")
         d.objective("actuation_force")
-        for name in ("outer_diameter", "volume", "friction_work", "disc_inertia"):
+        for name in ("outer_diameter", "length", "volume", "friction_work", "disc_inertia"):
             d.objective(name, default=False)
+        if body is not None:
+            d.objective("wear_life", "max", default=False)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""

@@ -77,7 +77,7 @@ class DiscPack:
     plate_thickness: Any
 
 
-def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring) -> DiscPack:
+def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring, wants: DiscRequirements | None = None) -> DiscPack:
     """Declare requirements and unknowns of a disc pack, and the limit of its bore.
 
     Parameters
@@ -88,13 +88,16 @@ def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring) -> DiscPack:
         Block duty.
     ring : Ring
         Block ring.
+    wants : DiscRequirements, optional
+        Requirements that are declared already.
 
     Returns
     -------
     DiscPack
         Symbols of the block.
     """
-    wants = d.block(DiscRequirements)
+    if wants is None:
+        wants = d.block(DiscRequirements)
     discs = d.count(
         "discs",
         1,

@@ -9,6 +9,7 @@ from __future__ import annotations
 from problems.friction.duty import (
     COMMON,
     Duty,
+    DutyOfDiscs,
     DutyOfPack,
     Size,
     declare_duty,
@@ -35,6 +36,7 @@ __all__ = [
     "COMMON",
     "RING_OUTER_DIAMETER_MAX",
     "Duty",
+    "DutyOfDiscs",
     "DutyOfPack",
     "Pair",
     "Ring",

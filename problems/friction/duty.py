@@ -222,6 +222,14 @@ class DutyOfPack(Duty):
     )
 
 
+class DutyOfDiscs(Duty):
+    """A duty of discs by the rules of practice, which come free although they run out."""
+
+    plate_gap = Requirement(
+        "mm", 0.5, lower=0.05, upper=3, symbol="gap", text=f"Release gap per surface ({TYPICAL})", source=TYPICAL
+    )
+
+
 def declare_duty(d: Declaration, *, cooling_default: str, lubrication: str | None, kind: type[Duty] = Duty) -> Duty:
     """Declare the block duty and the refusals that concern it alone.
 

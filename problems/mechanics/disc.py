@@ -235,3 +235,124 @@ def worn_pressure(force: Quantity, mean_diameter: Quantity, ring_ratio: Quantity
     378940.
     """
     return force / (2 * np.pi * radius * mean_diameter * ring_ratio)
+
+
+COVER_LEAST, COVER_RATIO = 3e-3, 60.0  # least thickness of a cover [m], outside diameter over thickness: practice
+SPRING_RATIO = 90.0  # ring diameter over thickness of a diaphragm spring: practice
+SPRING_ROOM = 0.12  # length of a dished diaphragm spring with its bearing over ring diameter: practice
+
+
+def cover_thickness(diameter: Quantity) -> Quantity:
+    """Thickness of the pressed cover, t_c = max(3 mm, D/60).
+
+    Parameters
+    ----------
+    diameter : scalar, array or symbol
+        Outside of the clutch D [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        t_c [m].
+
+    References
+    ----------
+    Engineering practice, unsourced.
+
+    Examples
+    --------
+    >>> float(cover_thickness(0.24)), float(cover_thickness(0.1))
+    (0.004, 0.003)
+    """
+    return np.maximum(COVER_LEAST, diameter / COVER_RATIO)
+
+
+def hub_mass(density: Quantity, discs: Quantity, hub_radius: Quantity, shaft_diameter: Quantity) -> Quantity:
+    """Mass of the hubs of the discs, as long as the shaft is thick, n_d rho pi (r_hub**2 - (d_s/2)**2) d_s.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    discs : scalar, array or symbol
+        n_d [-].
+    hub_radius : scalar, array or symbol
+        r_hub [m].
+    shaft_diameter : scalar, array or symbol
+        d_s [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; the length is engineering practice.
+
+    Examples
+    --------
+    By hand, 7850 pi (0.03**2 - 0.02**2) 0.04:
+
+    >>> hub_mass(7850, 1, 0.03, 0.04)
+    0.49323
+    """
+    return density * np.pi * discs * (hub_radius**2 - (shaft_diameter / 2) ** 2) * shaft_diameter
+
+
+def cover_mass(density: Quantity, diameter: Quantity, length: Quantity) -> Quantity:
+    """Mass of the cover, a ring face of 60 % of the disc and a shell, rho t_c (0.6 pi D**2/4 + pi D L).
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    diameter, length : scalar, array or symbol
+        Outside D and length L of discs and pressure plates [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; the share of 60 % is engineering practice.
+
+    Examples
+    --------
+    By hand, 7850 0.004 (0.6 pi 0.24**2/4 + pi 0.24 0.03):
+
+    >>> float(cover_mass(7850, 0.24, 0.03))
+    1.56255
+    """
+    return density * cover_thickness(diameter) * (0.15 * np.pi * diameter**2 + np.pi * diameter * length)
+
+
+def diaphragm_spring_mass(density: Quantity, outer_radius: Quantity) -> Quantity:
+    """Mass of a diaphragm spring, three quarters of a disc of 0.9 r2, rho pi 0.75 (0.9 r2)**2 2 r2/90.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    outer_radius : scalar, array or symbol
+        Of the friction ring r2 [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; the proportions are engineering practice.
+
+    Examples
+    --------
+    By hand, 7850 pi 0.75 0.09**2 0.2/90:
+
+    >>> diaphragm_spring_mass(7850, 0.1)
+    0.33294
+    """
+    return density * np.pi * 0.75 * (0.9 * outer_radius) ** 2 * (2 * outer_radius / SPRING_RATIO)

@@ -174,6 +174,17 @@ def sound_levers(rng: np.random.Generator, instance: Instance, count: int) -> np
 HOIST = {"load_torque": "600 N*m", "driver_speed": "26.6 rad/s", "driven_inertia": "30 kg*m2"}
 
 CAR = {"load_torque": "60 N*m", "driver_speed": "1500 rpm", "driven_inertia": "0.7 kg*m2"}
+CAR_DISC = Design(
+    {
+        "ring_outer_diameter": "215 mm",
+        "ring_inner_diameter": "145 mm",
+        "pressure_plate_thickness": "11 mm",
+        "actuation_force": "6.1 kN",
+        "ramp_time": "0.5 s",
+    },
+    {"discs": 1},
+    {"friction_pair": "sinter_bronze_dry"},
+)
 CONE = {"load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2"}
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
 INDEXER = {"required_torque": "20 N*m", "bore_diameter": "12 mm"}
@@ -301,8 +312,13 @@ CASES: dict[str, Family] = {
             "default": {},
             "active": {"load_kind": "active", "cooling": "fan"},
             "worst_case": {"friction_basis": "worst_case", "allow_obsolete": "yes"},
+            "practice": {"practice": "on"},
+            "practice_worst_case": {"practice": "on", "friction_basis": "worst_case", "mass_scope": "parts"},
         },
         requirements=CAR,
+        needed={"practice=on": {"wear_life_min": "10000", "top_speed": "6000 1/min"}},
+        constants={"problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
+        designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC),
         optional={
             "startup_torque": "120 N*m",
             "overload_torque": "600 N*m",

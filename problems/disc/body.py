@@ -1,0 +1,260 @@
+"""The complete disc clutch around its discs, and what an engineer demands of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from problems.disc.pack import DiscPack, DiscRequirements
+from problems.friction.duty import Duty, Size
+from problems.friction.engagement import Pair, Startup
+from problems.friction.ring import Ring
+from problems.mechanics import disc, plates
+from problems.mechanics.wear import wear_life
+from problems.practice import UNSOURCED, ShaftRequirements, shaft_for
+from problems.sources import DRIVE
+from synth.declaration import Block, Declaration, Requirement
+
+FEW_STARTS = 20_000  # engagements: what lasts less is remarked
+RUNOUT = "run-out limit of a disc 0.7 mm (Mazda), 0.6 mm (Porsche 911 SC)"
+
+
+class DiscBodyRequirements(ShaftRequirements):
+    """What a complete disc clutch has around its discs, all in SI."""
+
+    wear_depth_limit = Requirement(
+        "mm",
+        1.0,
+        lower=0.01,
+        upper=50,
+        symbol="d_w_max",
+        text="Wear of one lining before it is replaced, where less than its wearable_depth (eight car discs: 1.0 mm)",
+        source="Porsche 964, drive plate wear: 1.0 to 0.3 mm",
+    )
+
+
+class DiscRules(Block):
+    """Rules for discs, all in SI."""
+
+    plate_stiffness_ratio = Requirement(
+        "-",
+        20,
+        lower=2,
+        upper=500,
+        symbol="k_plate",
+        text=f"Ring diameter over thickness of a pressure plate at most ({UNSOURCED}; car plates of 10 to 15 mm at 200 "
+        "to 240 mm: thinner ones cone)",
+        source=UNSOURCED,
+    )
+    disc_runout = Requirement(
+        "mm",
+        0.7,
+        lower=0,
+        upper=10,
+        symbol="e_run",
+        text="Run-out of a disc, half of which the release gap must exceed",
+        source=RUNOUT,
+    )
+    pressure_use_min = Requirement(
+        "-",
+        0.2,
+        lower=0,
+        upper=1,
+        symbol="u_p_min",
+        text="Least share of p_allow that is used (linings of car discs: 0.35 to 0.5)",
+        source=UNSOURCED,
+    )
+    wear_life_min = Requirement(
+        "-",
+        lower=1,
+        upper=1e12,
+        optional=True,
+        symbol="N_w_min",
+        text="Least engagements until the linings are worn",
+        source=DRIVE,
+    )
+    top_speed = Requirement(
+        "1/min",
+        lower=0.1,
+        upper=100000,
+        optional=True,
+        symbol="omega_top",
+        text="Highest speed of the disc",
+        source=DRIVE,
+    )
+    rim_speed_limit = Requirement(
+        "m/s",
+        80,
+        lower=5,
+        upper=500,
+        symbol="v_rim",
+        text=f"Highest speed of the rim of a disc ({UNSOURCED}; organic rings)",
+        source=UNSOURCED,
+    )
+
+
+@dataclass(frozen=True)
+class DiscBody:
+    """What is around the discs, and the whole size."""
+
+    wants: DiscBodyRequirements
+    size: Size
+
+
+def declare_body_requirements(d: Declaration, *, required: Any) -> DiscBodyRequirements:
+    """Declare the requirements of the complete clutch, whose shaft carries the sizing torque M_req [N m]."""
+    return d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required))
+
+
+def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> DiscRequirements:
+    """Declare the requirements of discs whose hub follows from the shaft."""
+    return d.block(DiscRequirements, disc_hub_radius=body.hub_diameter / 2)
+
+
+def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: DiscPack, pack_size: Size) -> DiscBody:
+    """Return what is around the discs: hub, cover and diaphragm spring; the flywheel stays outside.
+
+    Parameters
+    ----------
+    duty : Duty
+        Block duty.
+    wants : DiscBodyRequirements
+        Requirements of the complete clutch.
+    ring : Ring
+        Block ring.
+    pack : DiscPack
+        The discs.
+    pack_size : Size
+        Mass and room of discs and pressure plates.
+
+    Returns
+    -------
+    DiscBody
+        The whole size.
+    """
+    rho, shaft = duty.steel_density, wants.shaft_diameter
+    added = (
+        disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, shaft)
+        + disc.cover_mass(rho, pack_size.diameter, pack_size.length)
+        + disc.diaphragm_spring_mass(rho, ring.outer_radius)
+    )
+    length = pack_size.length + disc.cover_thickness(pack_size.diameter) + disc.SPRING_ROOM * 2 * ring.outer_radius
+    return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
+
+
+def declare_body(
+    d: Declaration, *, ring: Ring, pair: Pair, pack: DiscPack, start: Startup, body: DiscBody, pack_size: Size
+) -> None:
+    """Name what a complete clutch adds to its discs: parts of the mass, and wear.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    ring : Ring
+        Block ring.
+    pair : Pair
+        Slot friction_pair.
+    pack : DiscPack
+        The discs.
+    start : Startup
+        What one engagement costs.
+    body : DiscBody
+        What is around the discs.
+    pack_size : Size
+        Mass and room of discs and pressure plates.
+    """
+    d.derive(
+        "part_mass", "kg", pack_size.mass, symbol="m_part", text="Pressure plates, linings and cores", source="geometry"
+    )
+    d.derive(
+        "pack_length",
+        "mm",
+        pack_size.length,
+        symbol="L_pk",
+        text="Released discs and pressure plates",
+        source="geometry",
+    )
+    life = d.derive(
+        "wear_life",
+        "-",
+        wear_life(
+            pack.surfaces * ring.area,
+            np.minimum(pair.part.wearable_depth, body.wants.wear_depth_limit),
+            pair.part.wear_rate,
+            start.friction_work,
+        ),
+        symbol="N_w",
+        text="Engagements until the linings are worn",
+        source="wear volume in proportion to friction work (Archard)",
+    )
+    d.advise(
+        "few_starts",
+        life < FEW_STARTS,
+        "the linings last for less than 20 000 engagements",
+        source=UNSOURCED,
+    )
+
+
+def declare_rules(d: Declaration, *, rules: DiscRules, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
+    """Declare the limits that an engineer adds to discs.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : DiscRules
+        What the limits go by.
+    duty : Duty
+        Block duty.
+    ring : Ring
+        Block ring.
+    pair : Pair
+        Slot friction_pair.
+    pack : DiscPack
+        The discs.
+    """
+    d.at_least(
+        "pressure_plate_stiffness",
+        pack.plate_thickness,
+        2 * ring.outer_radius / rules.plate_stiffness_ratio,
+        "mm",
+        text="The pressure plate does not cone",
+        source=UNSOURCED,
+    )
+    d.at_least(
+        "release_clearance",
+        duty.plate_gap,
+        rules.disc_runout / 2,
+        "mm",
+        text="The disc comes free although it runs out",
+        source=RUNOUT,
+    )
+    d.at_least(
+        "pressure_use",
+        d.derived["surface_pressure"].sx,
+        rules.pressure_use_min * pair.part.p_allow,
+        "N/mm2",
+        text="The lining is used",
+        source=UNSOURCED,
+    )
+    if rules.top_speed is not None:
+        d.at_most(
+            "rim_speed",
+            plates.sliding_speed(rules.top_speed, ring.outer_radius),
+            rules.rim_speed_limit,
+            "m/s",
+            text="The disc does not burst",
+            source=UNSOURCED,
+        )
+    if rules.wear_life_min is not None:
+        d.at_least(
+            "wear_life",
+            d.derived["wear_life"].sx,
+            rules.wear_life_min,
+            "-",
+            text="The linings last long enough",
+            source=DRIVE,
+        )
