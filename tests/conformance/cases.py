@@ -552,9 +552,8 @@ CASES: dict[str, Family] = {
             "acceleration_limit": "40 rad/s2",
             "hub_bore_diameter": "60 mm",
             "drag_torque_limit": "20 N*m",
-            "plate_gap": "0.4 mm",
         },
-        needed={"practice=on": {"wear_life_min": "20000"}},
+        needed={"practice=on": {"wear_life_min": "20000", "plate_gap": "0.4 mm"}},
         designs={
             "practice": Design(
                 {
