@@ -234,6 +234,7 @@ def use_of(op, a, b):
     return ca.SX.binary(op, a, b) if op in TWO else ca.SX.unary(op, a)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("range_", "capped"), RANGES)
 def test_every_rule_agrees(range_, capped):
     rng = np.random.default_rng(3)
@@ -419,6 +420,7 @@ def compare(form, boxes, caps, passes, every, monkeypatch):
     np.testing.assert_allclose(found.scores, expected.scores, 1e-5, 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("grid", [False, True])
 @pytest.mark.parametrize(
     "options",

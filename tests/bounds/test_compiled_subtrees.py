@@ -122,6 +122,7 @@ def lost(boxes, points, combinations, form):
     return ~held
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", [CodeSizes().tree_beside, 40])
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_design_of_use_is_lost_even_where_there_is_no_room_for_more_boxes(kind, room):

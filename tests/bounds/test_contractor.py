@@ -179,6 +179,7 @@ class Question:
         return contraction(contractor, self.data, self.trees, self.cell, self.low, self.high, caps, passes)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6), st.integers(1, 3), st.booleans())
 @example(8564, 1, False)  # a limit settles the sign of a variable that boxes have with both signs
 @settings(deadline=None, derandomize=True, max_examples=repetitions(60, 120))
@@ -450,6 +451,7 @@ def test_halves_of_boxes_hold_what_the_box_held():
         assert held.any(axis=1).all()
 
 
+@pytest.mark.slow
 def test_compiled_code_finds_what_numpy_finds(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     at_once = tuned(compiling={"boxes": 0})
@@ -531,6 +533,7 @@ def family(request):
     return found
 
 
+@pytest.mark.slow
 def test_boxes_around_feasible_designs_survive(family):
     form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(5)
     lower, upper = family.instance.ranges.lower, family.instance.ranges.upper
@@ -548,6 +551,7 @@ def test_boxes_around_feasible_designs_survive(family):
                 assert_kept(form.boxes.contract(boxes, caps, passes), points, phi, form)
 
 
+@pytest.mark.slow
 def test_boxes_that_carry_inner_nodes_keep_the_designs_that_have_these_values(family):
     form, points, phi, rng = family.form, family.points, family.phi, np.random.default_rng(6)
     auxiliary = form.bounding.question.auxiliary

@@ -55,6 +55,7 @@ def same_bits(case, capped, passes):
     return len(own.boxes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("range_", [(-2.0, 2.0), pytest.param((0.2, 2.5), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("first", range(0, len(FORWARD) + 6, MOST_VARIABLES // 2))
 def test_every_rule_gives_the_bits_of_own_code(first, range_):
@@ -84,6 +85,7 @@ def test_every_rule_gives_the_bits_of_own_code(first, range_):
         same_bits(case, True, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_random_programs_give_the_bits_of_own_code(seed):
     for passes, capped in ((1, False), (3, True)):
@@ -143,6 +145,7 @@ def kinds(folder):
     return {path.name.rpartition("_")[0] for path in folder.glob("*.so")}
 
 
+@pytest.mark.slow
 def test_own_code_beside_a_search_changes_no_byte(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     never, folder = front(np.inf), tmp_path / "clutchsynth"
@@ -157,6 +160,7 @@ def test_own_code_beside_a_search_changes_no_byte(tmp_path, monkeypatch):
     assert front(0)["designs.csv"] == never["designs.csv"]
 
 
+@pytest.mark.slow
 def test_own_code_that_is_kept_is_used_from_the_beginning(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     never, folder = front(np.inf), tmp_path / "clutchsynth"
@@ -169,6 +173,7 @@ def test_own_code_that_is_kept_is_used_from_the_beginning(tmp_path, monkeypatch)
     assert kinds(folder) == {"boxes", "nlp_general"}
 
 
+@pytest.mark.slow
 def test_what_own_code_would_be_used_for_is_noted_for_programs_to_come(tmp_path):
     program = "from tests.bounds.test_interpreted_boxes import front; import numpy; front(numpy.inf)"
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}

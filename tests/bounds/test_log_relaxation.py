@@ -16,6 +16,7 @@ from tests.asking import pose
 from tests.certificates.kinks import KINKS
 from tests.certificates.signs import SIGNS
 from tests.certificates.structures import STRUCTURES, RandomProblem, make
+from tests.repetitions import repetitions
 
 SETTINGS = TUNING.tree.together
 TIE = TUNING.tolerances.tie
@@ -99,13 +100,15 @@ def lost(form, seed, boxes=24):
     return wrong, boxes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("structure", KINDS)
 def test_no_design_is_lost(structure):
-    forms = {seed: formulation(structure, seed) for seed in range(2)}
+    forms = {seed: formulation(structure, seed) for seed in range(repetitions(1, 2))}
     results = [lost(form, seed) for seed, form in forms.items() if form is not None]
     assert [sentence for wrong, _ in results for sentence in wrong] == []
 
 
+@pytest.mark.slow
 def test_designs_are_looked_for_in_most_structures():
     tried = [lost(form, 0, boxes=2)[1] for form in (formulation(s, 0) for s in KINDS) if form is not None]
     assert sum(n > 0 for n in tried) > 0.6 * len(tried)

@@ -9,6 +9,7 @@ from synth.proof_limits import PROOF
 from synth.verification.verify import checked
 from tests.certificates.structures import STRUCTURES, make
 from tests.certificates.test_global_claims import run
+from tests.repetitions import repetitions
 
 pytestmark = pytest.mark.slow  # hundreds of searches
 
@@ -26,7 +27,7 @@ def test_a_front_of_a_random_problem_holds_when_it_is_checked_again(structure, s
     assert (check.findings, check.open) == ((), ())
 
 
-@pytest.mark.parametrize("structure", [s for s in STRUCTURES if s not in ("hard", "mismatch")])
+@pytest.mark.parametrize("structure", [s for s in STRUCTURES if s not in ("hard", "mismatch")][:: repetitions(2, 1)])
 def test_it_holds_by_levels_alone_as_well(structure):
     front = run(make(structure, SEED + 1))
     levels = replace(PROOF, at_once=0, at_once_each=0, behind=0.0)

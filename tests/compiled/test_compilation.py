@@ -203,6 +203,7 @@ def wanted(monkeypatch, tmp_path):
     return begun
 
 
+@pytest.mark.slow
 def test_under_a_short_time_limit_nothing_is_compiled(wanted, tmp_path):
     limited = ask(effort=NOT_WITHIN_A_YEAR, time_limit=1e6)
     assert not wanted
@@ -212,6 +213,7 @@ def test_under_a_short_time_limit_nothing_is_compiled(wanted, tmp_path):
         assert limited.files()["designs.csv"] == ask(effort=NOT_WITHIN_A_YEAR).files()["designs.csv"]
 
 
+@pytest.mark.slow
 def test_a_short_time_limit_keeps_no_other_question_from_compiling(wanted):
     problem = Strut()
     ask(problem, NOT_WITHIN_A_YEAR, time_limit=1e6)
@@ -267,6 +269,7 @@ def test_ctrl_c_while_the_compiler_works_is_heard(never_done, monkeypatch):
     assert not list(never_done.glob("*"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(compiler._compiler() is None, reason="no C compiler")
 def test_what_is_done_meanwhile_leaves_no_trace_in_a_result(tmp_path, monkeypatch):
     monkeypatch.delenv("CLUTCHSYNTH_NATIVE", raising=False)

@@ -82,6 +82,7 @@ def posed(request: Request) -> Question | str:
         return str(error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", CASES)
 @settings(max_examples=8, deadline=None)
 @given(st.data())

@@ -276,6 +276,7 @@ def test_every_column_of_the_results_is_documented() -> None:
         assert f"`{kind}`" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", [point.name for point in entry_points(group="clutchsynth.problems")])
 def test_every_family_has_a_worked_example(family: str) -> None:
     page = text_of(f"docs/{family}.md")

@@ -90,6 +90,7 @@ def test_a_case_runs_in_a_process_of_its_own() -> None:
     assert result["memory"] > 0
 
 
+@pytest.mark.slow
 def test_the_command_prints_a_table_and_writes_its_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -119,6 +120,7 @@ def test_a_question_to_a_family_is_measured() -> None:
     assert {q.family for q in QUESTIONS} <= set(synth.families())
 
 
+@pytest.mark.slow
 def test_a_batch_is_measured() -> None:
     found = batch.measure(2, 1, "tiny", None)
     assert (found["rows"], found["with designs"], found["global"]) == (2, 1, 2)

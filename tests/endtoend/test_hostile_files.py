@@ -92,6 +92,7 @@ READERS: dict[str, tuple[str, list[str]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", NO_FILES)
 @pytest.mark.parametrize("reader", READERS)
 def test_what_is_no_file_of_a_sensible_size_is_refused(place: Path, reader: str, make: Callable[[Path], None]) -> None:
@@ -138,6 +139,7 @@ DAMAGES: dict[str, Callable[[str], str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", DAMAGES)
 @pytest.mark.parametrize("reader", ["verify", "prices", "near-equals", "rate"])
 def test_a_damaged_front_is_refused(place: Path, reader: str, damage: str) -> None:
@@ -205,6 +207,7 @@ def cells_cut(path: Path) -> None:
         connection.execute("UPDATE batch_job SET content = '{'")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "damage", [emptied, without_tables, garbage, damaged, cells_cut, *(make for make in NO_FILES if make is not huge)]
 )
@@ -229,6 +232,7 @@ def test_a_damaged_database_is_told_in_one_sentence(
 ESCAPES = "\x1b[2J\x1b]0 owned\x07\u202eevil"
 
 
+@pytest.mark.slow
 def test_escapes_from_the_input_reach_neither_terminal_nor_files(place: Path) -> None:
     shipped = Path(__import__("catalogs").__file__).parent / "core_plates.csv"
     table = shipped.read_text()

@@ -100,6 +100,7 @@ DOORS: list[Callable[[str], Any]] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", HUGE, ids=["word", "words", "unit"])
 @pytest.mark.parametrize("door", range(len(DOORS)))
 def test_a_message_repeats_little_of_the_input(door: int, text: str) -> None:

@@ -167,6 +167,7 @@ print(at, ended)
 """
 
 
+@pytest.mark.slow
 @POSIX
 def test_a_process_that_is_killed_at_any_moment_leaves_the_old_files_or_the_new_ones(tmp_path: Path) -> None:
     command = [sys.executable, "-c", WRITER, str(tmp_path), json.dumps(OLD), json.dumps(FRESH)]

@@ -149,6 +149,7 @@ def test_a_front_of_three_objectives_reaches_beyond_the_extremes():
     assert front.complete
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", [2, 3])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_discrete_front_is_found_whole(seed, objectives):

@@ -176,6 +176,7 @@ def test_bad_input_is_told_before_anything_is_written(
 # ---- faults ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_row_that_fails_keeps_its_error_and_the_others_run(
     plain: synth.BatchResult, monkeypatch: pytest.MonkeyPatch, database: str
 ) -> None:
@@ -274,6 +275,7 @@ def test_cancelling_stops_and_resuming_goes_on(tmp_path: Path) -> None:
     job.close()
 
 
+@pytest.mark.slow
 def test_two_processes_may_work_on_one_job(tmp_path: Path) -> None:
     job = job_of(tmp_path, 12)
     other = Store(file_url(tmp_path / "jobs.sqlite"))

@@ -135,6 +135,7 @@ def together(tmp_path_factory: pytest.TempPathFactory) -> synth.BatchResult:
     return batch(SMALL, Rod, rows(), tmp_path_factory.mktemp("together"), **SETTINGS)
 
 
+@pytest.mark.slow
 def test_rows_in_groups_have_the_answers_that_they_have_alone(together: synth.BatchResult, tmp_path: Path) -> None:
     assert all(GROUP in content for content in contents(together))
     alone = batch(JobSettings(groups=GroupSettings(least=99)), Rod, rows(), tmp_path, **SETTINGS)
@@ -174,6 +175,7 @@ def test_workers_do_not_change_a_byte(together: synth.BatchResult, tmp_path: Pat
     assert without_seconds(other) == without_seconds(together)
 
 
+@pytest.mark.slow
 def test_a_batch_that_is_stopped_within_a_group_ends_with_the_same_bytes(
     together: synth.BatchResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -315,6 +317,7 @@ def test_an_error_in_one_question_is_its_own() -> None:
     assert [ALONE in found[key] for key in asked] == [False, True, True, False]
 
 
+@pytest.mark.slow
 def test_an_error_of_the_search_leaves_all_to_be_asked_alone(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, together: synth.BatchResult
 ) -> None:
@@ -368,6 +371,7 @@ def test_a_group_that_fails_once_is_tried_again_and_gives_the_same_bytes(
     assert min(times) > 1
 
 
+@pytest.mark.slow
 def test_a_group_that_fails_again_and_again_is_answered_row_by_row(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, together: synth.BatchResult
 ) -> None:

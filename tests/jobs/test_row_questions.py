@@ -236,6 +236,7 @@ def test_a_mapping_that_does_not_fit_is_refused(tmp_path: Path, text: str, words
 # ---- the example ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_example_asks_all_that_registered_families_can_answer() -> None:
     found = questioner(EXAMPLE, None)
     rows = list(found.rows())

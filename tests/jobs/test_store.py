@@ -180,6 +180,7 @@ def test_a_question_that_fails_is_tried_alone_and_at_last_keeps_its_error(store:
     assert any("attempt 1" in text and "boom 1" in text for text in events)
 
 
+@pytest.mark.slow
 def test_units_of_a_process_that_died_are_free_at_once(store: Store) -> None:
     store.create(job(), rows(2), 1)
     gone = subprocess.run(
@@ -265,6 +266,7 @@ def test_what_is_no_database_is_not_waited_for(tmp_path: Path, monkeypatch: pyte
         Store(file_url(file))
 
 
+@pytest.mark.slow
 def test_two_processes_may_open_a_new_database_at_once(database: str) -> None:
     program = f"from synth.jobs.store import Store; Store({database!r}).close()"
     both = [subprocess.Popen([sys.executable, "-c", program]) for _ in range(2)]

@@ -201,6 +201,7 @@ def test_the_check_of_a_design_reads_limits_as_the_question_does(asked):
             assert (x.name in design.violated) == (not result.holds[x.name][k]), x.name
 
 
+@pytest.mark.slow
 def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
     form = Formulation(asked.instance, {}, 0, execution=Execution(compiled=False))
     result, refused = asked.result, ~not_refused(form.instance, asked.combinations)
@@ -214,6 +215,7 @@ def test_the_screens_of_the_search_read_limits_as_the_question_does(asked):
     assert np.all(kept[feasible])
 
 
+@pytest.mark.slow
 def test_rows_of_the_solver_are_residuals_or_their_logarithms(asked):
     form = Formulation(asked.instance, asked.chosen, len(asked.chosen), execution=Execution(compiled=False))
     result, goals, logs = asked.result, len(form.goals), form.continuous.rows.log_constraints
@@ -273,6 +275,7 @@ def test_what_explains_keeps_the_same_limits_where_nothing_gives_way(asked):
         np.testing.assert_array_equal(relaxed.holds[x.name], result.holds[x.name], err_msg=x.name)
 
 
+@pytest.mark.slow
 def test_limits_posed_at_a_corner_are_what_a_rating_finds_there(asked):
     if not asked.instance.model.variables:
         pytest.skip("nothing that has a tolerance")

@@ -90,6 +90,7 @@ def close(found, wanted, relative):
         return (found == wanted) | (np.isnan(found) & np.isnan(wanted)) | (np.abs(found / wanted - 1) <= relative)
 
 
+@pytest.mark.slow
 def test_numpy_code_equals_casadi_on_the_multi_plate_family(traced):
     outputs = traced.outputs()
     reference = traced.casadi(outputs)

@@ -106,6 +106,7 @@ def test_the_combinations_left_are_those_of_a_plain_loop(text):
         assert {slot.table.designations[k] for k in slot.rows} == set(rows)  # none without a partner
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", CONDITIONS)
 def test_the_front_is_that_of_all_allowed_pairs_proven_and_verified(text, tmp_path):
     front = synthesized(text, points=100)

@@ -129,6 +129,7 @@ def box(x: Sequence[Any], d: Sequence[Any]) -> tuple[list[Row], list[Any]]:
     return [("at_least", volume, d[0]), ("at_most", x[2], d[1])], [surface, x[2]]
 
 
+@pytest.mark.slow
 @EVERY
 def test_the_method_has_the_numbers_that_it_is_given(code):
     converged = {}
@@ -538,6 +539,7 @@ def test_ipopt_finds_nothing_better(kind, count):
     assert solution.converged[holds].mean() > 0.95
 
 
+@pytest.mark.slow
 @NEEDS_COMPILER
 @pytest.mark.parametrize("kind", ["chebyshev", "single", "pinned"])
 @pytest.mark.parametrize("code", ["general", OWN])
@@ -556,6 +558,7 @@ def test_compiled_and_not_compiled_give_the_same(code, kind):
     np.testing.assert_allclose(np.minimum(violation, 1e3), np.minimum(compiled.violation, 1e3), atol=1e-9)
 
 
+@pytest.mark.slow
 @EVERY
 @pytest.mark.parametrize("kind", ["chebyshev", "single"])
 def test_the_answers_do_not_depend_on_the_number_of_threads(code, kind):
@@ -594,6 +597,7 @@ def small_functions() -> Any:
     return Small(3, 2, box).solver.functions
 
 
+@pytest.mark.slow
 @NEEDS_COMPILER
 def test_compiled_code_is_kept_and_used_again(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))

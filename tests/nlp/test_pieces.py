@@ -200,12 +200,13 @@ QUICK = (either_limit, bent, step, clipped)  # for the referee
 STARTS = 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind", [pytest.param(k, marks=[] if k in QUICK else [pytest.mark.slow]) for k in KINDS], ids=lambda k: k.__name__
 )
 def test_answers_to_random_problems_are_optima_and_no_regime_has_a_better_one(kind):
     feasible, best, solved = 0, 0, []
-    seeds = 6 if kind in QUICK else repetitions(3, 6)
+    seeds = 6 if kind in QUICK else repetitions(2, 6)
     codes: tuple[Code, ...] = ("arrays", "general") if HAS_COMPILER else ("arrays",)
     for seed in range(seeds):
         known: float | None = None

@@ -175,6 +175,7 @@ def check_ropes(
             assert made_of(front.designs[0]) in own.made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("problem", "grid"),
     [(FREE, True), (MAKEABLE, True), (MAKEABLE, False), (GIVEN, True)],
@@ -184,6 +185,7 @@ def test_loads_are_answered_as_alone(problem: DesignProblem, grid: bool) -> None
     check_ropes(problem, loads(5, 12.3, 40, 301), grid=grid)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [MAKEABLE, GIVEN], ids=["makeable", "no_variable"])
 def test_what_is_infeasible_is_left_to_be_asked_alone(problem: DesignProblem) -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
@@ -199,6 +201,7 @@ def test_questions_that_are_all_infeasible_have_no_answer() -> None:
     assert JointSearch(asked(GIVEN, loads(100, 200, 300), catalogs=weak)).answers() == [None] * 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("problem", "objective"),
     [(FREE, "gain"), (GIVEN, "gain"), (MAKEABLE, "loss")],
@@ -309,6 +312,7 @@ def check_settled(questions: Sequence[Question], expected: Sequence[float | None
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
 @pytest.mark.parametrize("at", [(10, 29, 31, 89, 91, 95, 300), (91, 300), (5, 12)], ids=["some", "none", "all"])
 def test_questions_without_a_design_are_settled_too(problem: DesignProblem, at: tuple[int, ...]) -> None:
@@ -439,6 +443,7 @@ def lightest(question: Question) -> float | None:
     return min(found, default=None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at_once", [True, False], ids=["compiled", "not_compiled"])
 @pytest.mark.parametrize("grid", [True, False], ids=["grid", "no_grid"])
 def test_struts(grid: bool, at_once: bool) -> None:
@@ -674,6 +679,7 @@ def test_what_may_move_belongs_to_the_question() -> None:
         assert other.designs[0].values == pytest.approx(one.designs[0].values, rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", [FREE, MAKEABLE, GIVEN], ids=["free", "makeable", "no_variable"])
 @pytest.mark.parametrize("infeasibility", [False, True])
 def test_what_holds_for_many_questions_is_found_once(

@@ -184,6 +184,7 @@ class Traced:
         return ~np.any([np.isnan(np.broadcast_to(v, count)) for v in values.values()], axis=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_every_value_lies_in_its_range_and_at_center_plus_slopes(seed):
     traced, rng = Traced(seed), np.random.default_rng(seed)

@@ -100,6 +100,7 @@ class Claim:
 PAIRS = [("effort", "gain"), ("effort", "drift"), ("gain", "drift")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", PAIRS, ids="-".join)
 @pytest.mark.parametrize("seed", range(4))
 def test_levels_close_where_enumeration_finds_nothing_better(seed, names):
@@ -111,6 +112,7 @@ def test_levels_close_where_enumeration_finds_nothing_better(seed, names):
     assert outcome.nodes > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", PAIRS, ids="-".join)
 @pytest.mark.parametrize("seed", range(4))
 def test_a_design_that_is_worse_than_told_is_refuted_by_levels(seed, names):
@@ -139,6 +141,7 @@ def test_boxes_carry_what_an_objective_sees():
     assert not Claim(0, ("effort", "drift")).guided._lifted
 
 
+@pytest.mark.slow
 def test_what_stays_open_is_told_and_what_is_proven_of_others_stays():
     left = []
     for most in (0, 20, 40, 80, 160, 320, 640, 1_000_000):

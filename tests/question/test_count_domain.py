@@ -117,6 +117,7 @@ def test_a_given_design_may_miss_a_set():
     assert design.limits["plates in [1, 4]"] == (2, 1)  # the nearest of the set
 
 
+@pytest.mark.slow
 def test_studies_and_explanations_keep_to_a_set():
     study = synth.whatif(
         Strut(),
@@ -144,6 +145,7 @@ def test_studies_and_explanations_keep_to_a_set():
     assert {way.design.values["plates"] for way in explained.ways} <= {2.0, 3.0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("restriction", ["limits", "fix"])
 def test_a_batch_takes_sets_for_all_rows_in_cells_and_in_columns(restriction, tmp_path):
     rows, duty = tmp_path / "rows.csv", "600,254,30,300,230,2"

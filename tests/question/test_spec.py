@@ -59,6 +59,7 @@ def test_a_key_with_nothing_under_it_counts_as_not_written(tmp_path: Path) -> No
     assert spec.settings() == SearchSettings()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "words"),
     [

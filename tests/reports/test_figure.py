@@ -122,6 +122,7 @@ def test_nothing_leaves_the_page_or_covers_anything_else() -> None:
     assert_readable(sample(marks=[], spans=[], source="", panels=sample().attrs["panels"][:1]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motor", [None, "IEC4P-15kW"])
 def test_the_figures_of_a_design_can_be_read(motor: str | None) -> None:
     design = yaml.safe_load((ROOT / "examples" / "lecture_design.yaml").read_text())
@@ -278,6 +279,7 @@ def test_a_column_that_is_not_there_is_named() -> None:
         figure_svg(sample(panels=[{"label": "torque [N*m]", "columns": ["torque [N*m]"]}]))
 
 
+@pytest.mark.slow
 def test_the_drawing_depends_on_the_frame_alone() -> None:
     svg = figure_svg(sample())
     with mpl.rc_context({"font.size": 30, "lines.linewidth": 9, "svg.fonttype": "none"}):
@@ -335,6 +337,7 @@ def test_whole_numbers_without_a_unit_are_counted() -> None:
     assert all(float(place).is_integer() for place in axis.get_xticks())
 
 
+@pytest.mark.slow
 def test_a_study_says_what_it_does_not_draw() -> None:
     problem, table = Ropes(thick="given"), ropes((10, 2), (20, 1), (35, 0.5), most=[20, 60, 60])
     loads = ", ".join(f"{10 + k}" for k in range(9)) + ", 300 kN"

@@ -70,6 +70,7 @@ def test_the_interval_holds_the_exact_yield():
     assert told["yield_high"] - told["yield_low"] < 0.02
 
 
+@pytest.mark.slow
 def test_intervals_of_independent_draws_cover_the_yield_as_often_as_they_say():
     # Each seed gives other points; scrambled ones fill the range evenly, so that hardly any interval misses.
     exact = (0.36 - 100 / (2500 * 0.148)) / 0.12

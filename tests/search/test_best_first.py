@@ -185,6 +185,7 @@ def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
     assert front.statistics["boxes"] > TUNING.tree.boxes_of_many  # more than a first search
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", [["mass"], ["mass", "flexibility"]])
 def test_what_is_left_open_tells_the_gap_and_that_the_budget_is_spent(objectives):
     trees = ("first_boxes", "coarse_boxes", "first_try", "whole_front", "boxes", "boxes_of_many", "boxes_of_few_parts")

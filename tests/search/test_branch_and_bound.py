@@ -44,6 +44,7 @@ def cutoff_by_hand(known, tolerance, lower, k):
     return min(cutoffs, default=np.inf)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3, 4])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)
@@ -112,6 +113,7 @@ def steps_by_hand(designs, tolerance, proven, m):
     return steps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [1, 2, 3, 4])
 @given(st.integers(0, 10**6))
 @settings(deadline=None, derandomize=True, max_examples=60)

@@ -60,6 +60,7 @@ def some_numbers(rng: np.random.Generator, shape: tuple[int, int], *rare: float)
     return numbers
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compiled", COMPILED)
 @pytest.mark.parametrize(("form", "m"), [(CornerTable, 3), (CoverSets, 3), (CoverSets, 4), (CoverSets, 5)])
 @given(st.integers(0, 10**6))

@@ -55,6 +55,7 @@ def no_larger_ends(new, old):
     return bool(np.all(own.min(axis=0) <= given.min(axis=0) * (1 + 1e-8))) and not beaten.any()
 
 
+@pytest.mark.slow
 def test_a_front_is_improved_until_it_is_proven(unproven):
     better = unproven.improve()
     assert better.certificate.kind == "global"

@@ -44,6 +44,7 @@ def test_the_stiffest_beam_has_no_cover_that_only_weighs(points):
     assert stiffest["cover"] == pytest.approx(0.002)
 
 
+@pytest.mark.slow
 def test_the_parts_that_an_objective_does_not_see_are_the_lightest():
     requirements = {
         "load_torque": "200 N*m",
@@ -117,6 +118,7 @@ def polished_alone(form, own, traded, order, parts):
     return own
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", FORMS)
 @pytest.mark.parametrize("parts", [True, False])
 @pytest.mark.parametrize(("traded", "order"), [(0, [0, 1, 2]), (1, [1, 0]), (2, [0, 1, 2]), (2, [1])])

@@ -139,6 +139,7 @@ def light():
     return lightest(DUTY)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["load_torque", "guide_friction", "lug_clearance"])
 def test_requirements_of_a_light_clutch(light, name):
     expected = central(lightest, "mass", lambda factor: {**DUTY, name: DUTY[name] * factor})
@@ -164,6 +165,7 @@ def test_limits_that_bind_are_those_with_a_price(light):
     )
 
 
+@pytest.mark.slow
 def test_the_other_objective_is_held():
     front = synth.synthesize(FAMILY, DUTY, points=3, **SETTINGS)
     middle = sorted(front.designs, key=lambda d: d.values["mass"])[1]
@@ -176,6 +178,7 @@ def test_the_other_objective_is_held():
     assert middle.elasticity["mass"]["load_torque"] == pytest.approx(expected, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_a_limit_moved_by_the_user_costs_what_its_elasticity_says(light):
     weak = 0.8 * light.values["actuation_force"]
     duty = {**DUTY, "actuation_force_limit": weak}

@@ -70,6 +70,7 @@ def test_two_costs_cross(problem: Ropes) -> None:
     assert (told["change"], told["from"], told["to"], told["proven"]) == (b.change, b.low, b.high, "yes")
 
 
+@pytest.mark.slow
 def test_several_changes_within_one_step() -> None:
     # Each is the cheapest somewhere: changes at 10, 20, 40 and 80 kN.
     chain = ropes((10, 4), (30, 2), (50, 1), (70, 0.5), (90, 0.25))
@@ -100,6 +101,7 @@ def test_breaks_on_both_sides_of_zero() -> None:
     check(found.breaks, [(10, "a1", "b1"), (30, "b1", "c1")], "gain")
 
 
+@pytest.mark.slow
 def test_feasibility_begins_and_ends() -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     # Three strands bear half as much again; costs: a1 to 10, b1 to 60, then b2 to 75 and b3 to 90.
@@ -130,6 +132,7 @@ def test_refusals_begin_somewhere() -> None:
         study(GIVEN, {"load": "20, 50 kN"}, none)
 
 
+@pytest.mark.slow
 def test_a_default_that_is_made_of_what_is_varied() -> None:
     # The jolt is 1.25 times the load.
     stiff = ropes((10, 1), (30, 1), jolt=[40, 100])
@@ -203,6 +206,7 @@ def test_breaks_with_two_things_varied(first: str) -> None:
         check([b for b in wider.breaks if b.others == (24.0,)], [(2.4, "b1", "a1")])
 
 
+@pytest.mark.slow
 def test_breaks_within_parts_and_options() -> None:
     table = ropes((10, 2), (20, 1), (35, 0.5))
     found = study(GIVEN, {"parts.rope": [["rope a", "rope b"], ["rope a", "rope c"]], "load": "3, 60 kN"}, table)
@@ -290,6 +294,7 @@ def kept(folder: Path | None, progress: Callable[[Mapping[str, Any]], None] | No
     return synth.whatif(GIVEN, {}, {"load": "2:114:16 kN"}, ["cost"], catalogs=CHAIN, folder=folder, progress=progress)
 
 
+@pytest.mark.slow
 def test_breaks_that_are_kept_are_not_searched_again(tmp_path: Path) -> None:
     first = kept(tmp_path)
     check(first.breaks, [(10, "a1", "b1"), (20, "b1", "c1"), (40, "c1", "d1"), (80, "d1", "e1")])
@@ -328,6 +333,7 @@ def test_breaks_after_an_interruption_are_the_same(tmp_path: Path) -> None:
     assert finished.files()["breaks.csv"] == whole
 
 
+@pytest.mark.slow
 def test_intervals_that_were_finished_are_kept(tmp_path: Path) -> None:
     def stop(state: Mapping[str, Any]) -> None:
         if "break points" in str(state["stage"]) and state["done"] > 0.5:

@@ -86,9 +86,10 @@ def explained(name: str) -> synth.Explanation:
 
 
 def is_feasible(spec: dict[str, Any]) -> bool:
-    return bool(synth.synthesize(Bracket(), points=1, **spec).designs)
+    return bool(synth.synthesize(Bracket(), points=1, gap=0.2, **spec).designs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in QUESTIONS])
 def test_every_patch_makes_the_question_feasible(name: str) -> None:
     spec, why = question(name), explained(name)
@@ -133,6 +134,7 @@ def test_a_refusal_is_explained_with_amounts() -> None:
     assert [str(way.design.parts["steel"]) for way in rows.choices] != ["S185"]
 
 
+@pytest.mark.slow
 def test_only_what_was_asked_gives_way_unless_physics_may() -> None:
     spec = question("limits and a requirement")
     plain, all_of_it = explained("limits and a requirement"), synth.explain(Bracket(), **spec, physics=True)

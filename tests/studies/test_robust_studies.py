@@ -59,6 +59,7 @@ def check_same(step: ParetoFront | None, requirements: Mapping[str, Any], robust
     return own
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("objectives", [["force"], ["force", "size"]])
 def test_steps_are_those_asked_alone_and_stand_the_range(objectives: list[str]) -> None:
     found = study({"torque": "90, 100, 110 N*m"}, objectives=objectives)
@@ -71,6 +72,7 @@ def test_steps_are_those_asked_alone_and_stand_the_range(objectives: list[str]) 
         assert step.front.verify().holds
 
 
+@pytest.mark.slow
 def test_what_scatters_may_be_varied() -> None:
     found = study(
         {"robust.friction": "none, +-10:20:10 %, catalogue range"}, {"torque": "+-10 %"}, objectives=["force"]
@@ -98,6 +100,7 @@ def test_nothing_scatters_at_one_step_alone() -> None:
     assert columns["robust"].isna().tolist() == [True, False]
 
 
+@pytest.mark.slow
 def test_the_end_of_what_is_feasible_is_that_of_the_worst_corner() -> None:
     # Firm: mu_min F (r - 3 mm) >= 110 N*m and 1.1 mu_max F (r + 1 mm) <= limit, at the largest radius of 200 mm.
     least = 110 * 1.1 * 0.36 / 0.24 * 0.201 / 0.197
@@ -110,6 +113,7 @@ def test_the_end_of_what_is_feasible_is_that_of_the_worst_corner() -> None:
     assert end.high - end.low <= 1e-3 * end.high
 
 
+@pytest.mark.slow
 def test_limits_that_fail_between_corners_are_posed_at_all_steps_and_between() -> None:
     vary = {"torque": "100, 130, 190 N*m"}
     found = study(vary, WIDE, NEEDED, breaks=True, **HUMMING)
@@ -178,6 +182,7 @@ def interrupted_at(stage: str, count: int) -> Callable[[Mapping[str, Any]], None
     return tell
 
 
+@pytest.mark.slow
 def test_a_step_that_was_not_rated_to_the_end_is_not_kept(tmp_path: Path) -> None:
     vary = {"torque": "90, 100, 110 N*m"}
     found = study(vary, folder=tmp_path, progress=interrupted_at("rating", 5))

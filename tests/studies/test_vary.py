@@ -142,6 +142,7 @@ def test_values_that_cannot_be_meant(values: Any, words: Sequence[str]) -> None:
     assert all(word in str(fault.value) for word in ["load", *words]), str(fault.value)
 
 
+@pytest.mark.slow
 @given(st.integers(-50, 50), st.integers(1, 40), st.sampled_from(["0.1", "0.25", "3", "1e-3", "0.07"]))
 @settings(deadline=None, derandomize=True, max_examples=60)
 def test_a_range_ends_where_its_end_is_met(first: int, count: int, step: str) -> None:

@@ -266,6 +266,7 @@ def whole(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return request.param, len(found.steps), csv_of(found, tmp_path_factory.mktemp("whole"))
 
 
+@pytest.mark.slow
 def test_a_study_run_again_keeps_every_step(whole: tuple[str, int, bytes], tmp_path: Path) -> None:
     kind, count, text = whole
     first = asked(kind, tmp_path)
@@ -278,6 +279,7 @@ def test_a_study_run_again_keeps_every_step(whole: tuple[str, int, bytes], tmp_p
     assert len(set(s.fingerprint for s in first.steps)) == count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lost", [[1], [2, 3]])
 def test_steps_that_were_lost_are_searched_again(
     whole: tuple[str, int, bytes], tmp_path: Path, lost: Sequence[int]
@@ -321,6 +323,7 @@ def test_another_question_keeps_nothing_of_a_folder(tmp_path: Path) -> None:
     assert made_of(turned.steps[-1].front.designs[0])[0] == "rope a"
 
 
+@pytest.mark.slow
 def test_too_little_time_leaves_steps_that_a_second_run_finishes(whole: tuple[str, int, bytes], tmp_path: Path) -> None:
     kind, count, text = whole
     short = asked(kind, tmp_path, time_limit=1e-6)
@@ -348,6 +351,7 @@ class Stopper:
             raise KeyboardInterrupt
 
 
+@pytest.mark.slow
 def test_a_study_that_is_interrupted_goes_on(whole: tuple[str, int, bytes], tmp_path: Path) -> None:
     kind, count, text = whole
     seen = list[int]()
@@ -388,6 +392,7 @@ def test_progress_is_told_of_every_step() -> None:
 # ---- drawings -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_drawing_says_where_there_is_no_design() -> None:
     weak = ropes((10, 2), (20, 1), most=[20, 60])
     drawn = {

@@ -54,6 +54,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, CompletedProce
     return folder, clutchsynth("batch", "rows.csv", "-o", "out", *FLAGS, folder=folder)
 
 
+@pytest.mark.slow
 def test_a_batch_says_what_it_reads_and_what_came_out(done: tuple[Path, CompletedProcess[str]]) -> None:
     folder, said = done
     assert said.returncode == 0

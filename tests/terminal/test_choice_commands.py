@@ -30,6 +30,7 @@ def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_near_equals_are_shown_saved_and_hold(saved: Path) -> None:
     folder = saved / "near"
     done = at_once("near-equals", saved / "out", "--design", 2, "--within", "25 %", "--count", 2, "-o", folder)
@@ -169,6 +170,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     return folder / "out", done.stdout
 
 
+@pytest.mark.slow
 def test_several_families_make_one_front_with_a_line_each(compared: tuple[Path, str]) -> None:
     folder, shown = compared
     assert "6 designs of 1 family" in shown
@@ -188,6 +190,7 @@ def test_several_families_make_one_front_with_a_line_each(compared: tuple[Path, 
     assert at_once("check", folder / "design_01.yaml").returncode == 0
 
 
+@pytest.mark.slow
 def test_a_comparison_is_verified_over_all_its_families(compared: tuple[Path, str], tmp_path: Path) -> None:
     folder = compared[0]
     done = at_once("verify", folder)
@@ -221,6 +224,7 @@ def test_no_family_with_a_design_ends_with_three_and_an_explanation(tmp_path: Pa
     assert "none of the" in " ".join(done.stdout.split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

@@ -78,6 +78,7 @@ UNASKED = ["pandas", "scipy", "optuna", "cvxpy", "matplotlib", "sqlalchemy", "ht
 UNASKED += ["synth.jobs", "synth.variants", "synth.studies", "synth.verification", "synth.proof", "synth.robust.rating"]
 
 
+@pytest.mark.slow
 def test_a_run_imports_nothing_that_its_question_does_not_need(tmp_path: Path) -> None:
     asked = ["clutchsynth", "run", str(ROOT / "examples" / "automobile_disc.yaml"), "-o", str(tmp_path / "out")]
     program = (
@@ -287,6 +288,7 @@ def test_a_fault_of_the_program_is_short_unless_debugging(tmp_path: Path, monkey
 # ---- run ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_run_finds_ranks_saves_and_explains(tmp_path: Path) -> None:
     (tmp_path / "small.yaml").write_text(SMALL)
     done = clutchsynth("run", "small.yaml", "-o", "out", folder=tmp_path)

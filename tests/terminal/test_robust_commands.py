@@ -103,6 +103,7 @@ def robust(saved: Path) -> tuple[Path, str]:
     return saved / "robust", done.stdout
 
 
+@pytest.mark.slow
 def test_a_robust_front_is_shown_saved_checked_and_verified(robust: tuple[Path, str], tmp_path: Path) -> None:
     folder, shown = robust
     assert "2 of 2 designs keep all limits over the whole range (proven)" in shown
@@ -160,6 +161,7 @@ def test_a_careless_block_is_refused(saved: Path, tmp_path: Path, old: str, new:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_study_of_designs_that_stand_a_range(saved: Path, robust: tuple[Path, str]) -> None:
     out = saved / "study"
     done = at_once("whatif", saved / "robust.yaml", "-o", out, "--vary", "load_torque=600,610 N*m", "--no-breaks")
@@ -172,6 +174,7 @@ def test_a_study_of_designs_that_stand_a_range(saved: Path, robust: tuple[Path, 
     assert sorted(float(row["mass [kg]"]) for row in table[:2]) == pytest.approx(alone, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_study_of_the_range_itself(saved: Path) -> None:
     out = saved / "ranges"
     done = at_once("whatif", saved / "spec.yaml", "-o", out, "--vary", "robust.friction=none, +-5:45:20 %")
@@ -190,6 +193,7 @@ def test_a_study_of_the_range_itself(saved: Path) -> None:
     assert len(set(least.values())) == len(least) > 1
 
 
+@pytest.mark.slow
 def test_a_study_that_rates_shows_the_yield(saved: Path) -> None:
     (saved / "rated.yaml").write_text(SPEC + 'robust: {friction: "+-10 %", mode: rate, samples: 256}\n')
     out = saved / "rated_study"

@@ -34,6 +34,7 @@ def changed(tmp_path: Path, **changes: Any) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_simulating_the_lecture_draws_it_and_confirms_the_closed_forms(tmp_path: Path) -> None:
     done = clutchsynth("simulate", LECTURE, "-o", tmp_path / "out")
     assert (done.returncode, done.stderr) == (0, "")
@@ -68,6 +69,7 @@ def test_simulating_the_lecture_draws_it_and_confirms_the_closed_forms(tmp_path:
         assert (tmp_path / "again" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
 
 
+@pytest.mark.slow
 def test_a_motor_makes_a_difference_that_is_told(tmp_path: Path) -> None:
     done = at_once("simulate", LECTURE, "-o", tmp_path, "--set", "motor=IEC4P-11kW", "--set", "ramp=smooth")
     assert done.returncode == 0
@@ -92,6 +94,7 @@ def test_a_clutch_that_never_starts_is_shown_slipping(tmp_path: Path) -> None:
     assert not (tmp_path / "out" / "temperature.csv").exists()
 
 
+@pytest.mark.slow
 def test_worst_case_friction_is_simulated_from_both_sides(tmp_path: Path) -> None:
     path = changed(
         tmp_path,
@@ -110,6 +113,7 @@ def test_worst_case_friction_is_simulated_from_both_sides(tmp_path: Path) -> Non
             assert abs(float(row["relative_difference"])) < 1e-6, row["quantity"]
 
 
+@pytest.mark.slow
 def test_curves_of_a_design_and_of_a_requirement(tmp_path: Path) -> None:
     done = at_once("curves", "multi_plate_clutch", LECTURE, "-o", tmp_path / "design")
     assert (done.returncode, done.stderr) == (0, "")

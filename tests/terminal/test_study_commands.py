@@ -39,6 +39,7 @@ def saved(folder: Path) -> tuple[Path, str]:
     return folder / "out", done.stdout
 
 
+@pytest.mark.slow
 def test_tables_and_pictures_are_written(saved: tuple[Path, str]) -> None:
     out, shown = saved
     assert sorted(p.name for p in out.iterdir()) == ["breaks.csv", "steps", "study.json", "whatif.csv", "whatif.svg"]
@@ -64,6 +65,7 @@ def test_the_same_command_keeps_what_it_has(saved: tuple[Path, str], folder: Pat
     assert {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in sorted((out / "steps").iterdir())} == before
 
 
+@pytest.mark.slow
 def test_break_points_are_where_parts_or_counts_change(folder: Path) -> None:
     out = folder / "breaks"
     done = at_once("whatif", folder / "spec.yaml", "--vary", "load_torque=300, 600 N*m", "-o", out)
@@ -85,6 +87,7 @@ def test_break_points_are_where_parts_or_counts_change(folder: Path) -> None:
         assert f"friction_surfaces {float(row['friction_surfaces [-]']):g}" in words
 
 
+@pytest.mark.slow
 def test_without_breaks_and_with_two_objectives(folder: Path) -> None:
     out = folder / "two"
     done = at_once(
@@ -123,6 +126,7 @@ def test_without_breaks_and_with_two_objectives(folder: Path) -> None:
     assert max(int(row["rank"]) for row in found) == 3
 
 
+@pytest.mark.slow
 def test_out_of_time_ends_with_four_and_goes_on(folder: Path, saved: tuple[Path, str]) -> None:
     command = ["whatif", folder / "spec.yaml", "--vary", "load_torque=500:600:50 N*m", "-o", folder / "late"]
     done = at_once(*command, "--time-limit", "1e-9")

@@ -47,6 +47,7 @@ def rewritten(folder: Path, change: object) -> None:
     (folder / "front.json").write_text(json.dumps(content), encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_front_that_was_saved_holds(saved: Path) -> None:
     done = subprocess.run([*COMMAND, "verify", str(saved)], capture_output=True, text=True, timeout=120, check=False)
     assert (done.returncode, done.stderr) == (0, "")

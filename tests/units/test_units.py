@@ -491,6 +491,7 @@ def test_headers() -> None:
             split_header(wrong)
 
 
+@pytest.mark.slow
 @QUICK
 @given(st.from_regex(r"[a-z][a-z_0-9 ]*[a-z]", fullmatch=True), st.sampled_from(UNITS))
 def test_a_header_splits_into_what_it_was_made_of(name: str, unit: str) -> None:

@@ -81,6 +81,7 @@ def pairs(batch: synth.BatchResult) -> tuple[np.ndarray, list[str]]:
     return costs, [row["id"] for row in feasible]
 
 
+@pytest.mark.slow
 def test_it_is_the_best_of_all_choices(batch: synth.BatchResult, pairs: tuple[np.ndarray, list[str]]) -> None:
     costs, names = pairs
     assert np.isfinite(costs).any(axis=1).all()

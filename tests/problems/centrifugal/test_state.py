@@ -42,6 +42,7 @@ def known_speeds(design):
     return [design.values[n] for n in names if n in design.values]
 
 
+@pytest.mark.slow
 def test_nothing_engages_below_contact_and_all_is_there_above(clutch):
     family, _, _, design = clutch
     contact = design.values["contact_speed"]

@@ -61,6 +61,7 @@ def test_the_lecture():
         assert at_c[column] == pytest.approx(value, rel=1e-5), column
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", startup.LOAD_KINDS)
 def test_closed_forms_against_simulation_on_random_inputs(kind):
     inside, after = 0, 0

@@ -158,6 +158,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("options", "values", "how"), CASES)
 @pytest.mark.parametrize("limited_start", [False, True])
 def test_numbers_against_an_independent_calculation(options, values, how, limited_start):

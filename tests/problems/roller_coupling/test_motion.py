@@ -135,6 +135,7 @@ def test_closed_forms_of_angled_shafts_are_good_to_the_order_of_alpha_squared(al
     assert idle.driven_torque * motion.speed_ratio == pytest.approx(TORQUE, rel=1e-6 if chi == 90 else size)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.floats(0, 0.02), st.floats(0, 0.3), st.floats(1e-3, 0.17))
 def test_motion_of_angled_shafts_at_right_angled_guides(e, h, angle):
