@@ -301,6 +301,8 @@ class PrimalHeuristicLimits:
         Continuous problems of a round: some tens of milliseconds, with compiled code and without.
     rounded_off : int
         Continuous optima of a round around which makeable points are tried.
+    solved_again : int
+        Of these points, per optimum, those at which what is not gridded is solved for.
     elastic : int
         Boxes of a round for which is solved by how much all limits would have to give way.
     long_proof : int
@@ -330,6 +332,7 @@ class PrimalHeuristicLimits:
     solved: int = 4096
     solved_over_arrays: int = 512
     rounded_off: int = 48
+    solved_again: int = 4
     elastic: int = 64
     long_proof: int = 10
     scarce: int = 16

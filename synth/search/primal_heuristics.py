@@ -269,7 +269,9 @@ class PrimalHeuristics:
     def round_off(self, boxes: Boxes, variables: np.ndarray, tasks: Tasks) -> int:
         """Try the makeable points around continuous optima, of which ``tasks`` are the problems.
 
-        Where what limits leave is so narrow that no point hits it, what is not gridded is solved for again.
+        What is not gridded is solved for again: of each optimum at the makeable points that promise most, and at all of
+        them where what limits leave is so narrow that no point hits it. A point that happens to be feasible is worth
+        little, as it may be far from what its makeable values allow.
         """
         form = self.form
         low, high, source = roundings(form, variables)
@@ -280,16 +282,17 @@ class PrimalHeuristics:
             return found
         missed = np.ones(len(variables), dtype=bool)
         missed[around.tag[hit]] = False
-        narrow = around.take(missed[around.tag])
-        narrow = narrow.take(self.rule.possible_gain(form.objectives.phi_of(narrow.bounds), narrow.cell) > 0)
-        if not len(narrow):
+        gain = self.rule.possible_gain(form.objectives.phi_of(around.bounds), around.cell)
+        order = np.lexsort((-gain, around.tag))
+        place = np.arange(len(order)) - np.searchsorted(around.tag[order], around.tag[order])
+        chosen = np.sort(order[(place < self.limits.solved_again) | missed[around.tag[order]]])
+        rest = around.take(chosen[gain[chosen] > 0])
+        if not len(rest):
             return found
-        low, high = form.boxes.ends(narrow)
+        low, high = form.boxes.ends(rest)
         low, high = np.where(form.gridded, low, form.lower), np.where(form.gridded, high, form.upper)
-        combinations = form.boxes.combination(narrow)
-        answer = form.continuous.solve_many(
-            tasks.take(narrow.tag), combinations, form.boxes.inside(narrow, 0.5), low, high
-        )
+        combinations = form.boxes.combination(rest)
+        answer = form.continuous.solve_many(tasks.take(rest.tag), combinations, form.boxes.inside(rest, 0.5), low, high)
         return found + self.offer(answer.variables, combinations)
 
 

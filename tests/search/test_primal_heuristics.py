@@ -179,3 +179,26 @@ def test_the_gap_of_one_objective_is_a_share_of_its_best_value():
     least = pairs[size[:, None] >= size[None, :]].min()
     assert front.certificate.kind == "global"
     assert 0 < least <= front.designs[0].values["clearance"] <= least / 0.9
+
+
+class Wide(synth.DesignProblem):
+    """A size in whole numbers beside a force that any point may have, of which the least that will do is best."""
+
+    name, title = "wide", "Wide"
+
+    def declare(self, d):
+        size, force = d.variable("size", "-", 1, 100, grid=1), d.variable("force", "-", 1, 100)
+        d.at_least("torque", force * size, 100, "-")
+        d.derive("cost", "-", size + 1.3 * force)
+        d.objective("cost")
+
+
+def test_beside_a_makeable_size_the_rest_is_the_best_there_is():
+    form = Formulation(instance_of(Wide(), {}, catalogs_for(Wide(), {})), {"cost": "min"}, 1)
+    combination = np.zeros(1, dtype=np.int64)
+    tasks = Tasks(np.ones((1, 1)), np.zeros((1, 1)), np.full((1, 1), np.inf), form.objectives.scales, 0.0)
+    optimum = form.continuous.solve_many(tasks, combination, np.array([[50.0, 50.0]]))
+    assert optimum.variables[0] == pytest.approx([130**0.5, 100 / 130**0.5], rel=1e-6)
+    heuristics(form).round_off(form.boxes.leaves(combination), optimum.variables, tasks)
+    size, force = form.archive.variables[np.argmin(form.archive.phi[:, 0])]
+    assert (size, force) == (11, pytest.approx(100 / 11, rel=1e-6))
