@@ -18,6 +18,7 @@ from synth.question.catalogs import as_catalogs
 from synth.question.inputs import fixed_row_values
 from synth.question.ranges import declared_ranges
 from synth.tables.catalogs import Catalogs
+from synth.tables.table import ELSE, named_column
 from synth.units import finite_from_si, from_si
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ COLUMNS = (
     "text",
     "source",
     "classification",
+    "group",
 )
 
 
@@ -55,8 +57,9 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     pandas.DataFrame
         One row per option, requirement, variable, count, choice, slot, column used, derived quantity, limit,
         objective, refusal and advice; numbers in the unit of their row, defaults that follow from other
-        quantities as text. Limits of optional requirements are included. The column classification says what kind of
-        function a derived quantity, limit or objective is over all that may be declared and chosen
+        quantities as text. Limits of optional requirements are included. The column group says which requirements
+        and options belong together (duty, practice, ...), in the words of the family. The column classification says
+        what kind of function a derived quantity, limit or objective is over all that may be declared and chosen
         (see ``synth.bounds.structure``).
 
     Raises
@@ -153,7 +156,9 @@ def _classifications(
 
 def _row(kind: str, record: Any, **known: Any) -> dict[str, Any]:
     fields = vars(record)  # asked for an attribute it does not have, a Part takes it for a column of its table
-    row: dict[str, Any] = {column: fields.get(column, "") for column in ("name", "symbol", "unit", "text", "source")}
+    row: dict[str, Any] = {
+        column: fields.get(column, "") for column in ("name", "symbol", "unit", "text", "source", "group")
+    }
     row |= {"kind": kind, "default": None, "lower": math.nan, "upper": math.nan}
     row |= {"choices": "", "optional": False, "sense": "", "classification": ""}
     return row | known
@@ -212,17 +217,18 @@ def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
     table = tables.table(part.table)
     rows = []
     for entry in part.columns.values():
-        column = next((table.column(c) for c in entry.columns if table.has(c)), None)
+        names = [named_column(c) for c in entry.columns]
+        column = next((table.column(name) for name in names if table.has(name)), None)
         rows.append(
             _row(
                 "column",
                 part,
-                name=f"{part.slot}.{'|'.join(entry.columns)}",
+                name=f"{part.slot}.{'|'.join(names)}",
                 symbol=f"{part.slot}.{column.symbol}" if column is not None and column.symbol else "",
                 unit=column.unit if column is not None and column.unit else "-",
                 text=(column.description if column is not None else "not in this table"),
                 source=f"table {part.table}",
-                optional=not entry.required,
+                optional=not entry.required or ELSE in entry.columns[0],
             )
         )
     return rows

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from synth.errors import InputError
-from synth.tables.table import CODE_OF
+from synth.tables.table import CODE_OF, ELSE, text_code
 
 # A CasADi symbol or an expression of symbols, in SI; no class that formulas could be checked against exists for both.
 Quantity: TypeAlias = Any
@@ -35,6 +35,7 @@ class RequirementRecord:
     upper: float
     optional: bool
     given: bool
+    group: str
     sx: Any
 
 
@@ -49,6 +50,7 @@ class OptionRecord:
     choices: tuple[str, ...]
     default: str
     chosen: str
+    group: str
 
 
 @dataclass(frozen=True)
@@ -149,9 +151,17 @@ class Part:
         """Return a number that stands for the text of a column: the same in all tables for the same text."""
         return self._symbol((f"{CODE_OF}{column}",), required=True)
 
+    def says(self, column: str, text: str) -> Any:
+        """Return whether a column of text says this in the row; an empty text: whether it says nothing."""
+        return self.code(column) == text_code(text)
+
     def optional(self, column: str) -> Any:
         """Return a column that table or row may lack; limits that use it are void there."""
         return self._symbol((column,), required=False)
+
+    def filled(self, column: str, value: float) -> Any:
+        """Return a column, and a number in SI where table or row lack it; no row is left out for the lack."""
+        return self._symbol((f"{column}{ELSE}{float(value)!r}",), required=True)
 
     def first_of(self, *columns: str) -> Any:
         """Return the first of several columns that the row has a value for."""

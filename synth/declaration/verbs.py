@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, overload
 
 import casadi as ca
 import numpy as np
@@ -48,8 +48,11 @@ class BlockField(Protocol):
     def default(self) -> Any:
         """Value where the user states none; a function of the block for one that follows from fields above."""
 
-    def declared(self, d: Declaration, name: str, default: Any) -> Any:
-        """Declare the field under a name; return what the attribute of the block is."""
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Any:
+        """Declare the field under a name; return what the attribute of the block is.
+
+        ``group`` is that of the block, for a requirement or option that names none.
+        """
 
 
 @dataclass(frozen=True)
@@ -67,11 +70,21 @@ class Requirement:
     symbol: str | None = None
     text: str = ""
     source: str = ""
+    group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Quantity:
         """Declare the requirement; return its symbol, or None for an optional one that is not given."""
         return d.requirement(
-            name, self.unit, default, self.lower, self.upper, self.optional, self.symbol, self.text, self.source
+            name,
+            self.unit,
+            default,
+            self.lower,
+            self.upper,
+            self.optional,
+            self.symbol,
+            self.text,
+            self.source,
+            self.group or group,
         )
 
     @overload
@@ -95,11 +108,12 @@ class Option:
     symbol: str | None = None
     text: str = ""
     source: str = ""
+    group: str = ""
 
-    def declared(self, d: Declaration, name: str, default: Any) -> str:
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> str:
         """Declare the option; return the chosen word."""
         choices = d.designations(self.table) if self.table else self.choices
-        return d.option(name, choices, default, self.symbol, self.text, self.source)
+        return d.option(name, choices, default, self.symbol, self.text, self.source, self.group or group)
 
     @overload
     def __get__(self, block: None, kind: type[Block]) -> Option: ...
@@ -123,8 +137,8 @@ class Variable:
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Any) -> Quantity:
-        """Declare the variable; return its symbol."""
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Quantity:
+        """Declare the variable; return its symbol. What the search decides belongs to no group."""
         if default is not None:
             raise DeclarationError(f"{d.problem}: variable {name} has no default, it is what the search decides")
         return d.variable(name, self.unit, self.lower, self.upper, self.grid, self.symbol, self.text, self.source)
@@ -149,8 +163,8 @@ class Slot:
 
     default = None
 
-    def declared(self, d: Declaration, name: str, default: Any) -> Part:
-        """Declare the slot; return the part whose columns are symbols."""
+    def declared(self, d: Declaration, name: str, default: Any, group: str) -> Part:
+        """Declare the slot; return the part whose columns are symbols. What the search decides has no group."""
         if default is not None:
             raise DeclarationError(f"{d.problem}: slot {name} has no default, it is what the search decides")
         return d.part(name, self.table, self.where, self.symbol, self.text, self.source)
@@ -174,7 +188,8 @@ class Block:
     """Quantities that are declared together, each once: its attribute is its field and its public name.
 
     ``d.block(Duty)`` declares the fields in the order of the class body, those of base classes first, and returns
-    the block, whose attributes are then the symbols. Properties may say what follows from them.
+    the block, whose attributes are then the symbols. Properties may say what follows from them. The attribute
+    ``group`` of a class is the group under which its own requirements and options are listed, where they name none.
 
     Parameters
     ----------
@@ -200,6 +215,8 @@ class Block:
     (SX(torque), SX((2.*torque)))
     """
 
+    group: ClassVar[str] = ""
+
     def __init__(self, d: Declaration, defaults: Mapping[str, Any]) -> None:
         fields = self.fields()
         for name in defaults:
@@ -209,7 +226,8 @@ class Block:
             default = defaults.get(name, own.default)
             if callable(default):
                 default = default(self)
-            self.__dict__[name] = own.declared(d, name, default)
+            group = next(getattr(base, "group", "") for base in type(self).__mro__ if name in vars(base))
+            self.__dict__[name] = own.declared(d, name, default, group)
 
     @classmethod
     def fields(cls) -> dict[str, BlockField]:
@@ -305,8 +323,11 @@ class Declaration:
         symbol: str | None = None,
         text: str = "",
         source: str = "",
+        group: str = "",
     ) -> Any:
         """Declare a quantity that the user states; bare numbers are in ``unit``, expressions in SI.
+
+        ``group`` is a word of the family, under which forms and descriptions list what belongs together.
 
         Returns
         -------
@@ -327,6 +348,7 @@ class Declaration:
             upper=np.inf if upper is None else float(to_si(upper, parsed)),
             optional=optional,
             given=given,
+            group=group,
             sx=None if optional and not given else ca.SX.sym(name),
         )
         self.requirements[name] = record
@@ -340,8 +362,9 @@ class Declaration:
         symbol: str | None = None,
         text: str = "",
         source: str = "",
+        group: str = "",
     ) -> str:
-        """Declare a structural choice of the user and return the chosen string."""
+        """Declare a structural choice of the user and return the chosen string; ``group`` as of requirements."""
         symbol = self._claim(name, symbol)
         labels = tuple(choices)
         if default not in labels:
@@ -356,7 +379,7 @@ class Declaration:
             chosen = SWITCHED[chosen]
         if chosen not in labels:
             raise InputError(f"option {name}", chosen, "one of " + ", ".join(labels), ("options", name))
-        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen)
+        self.options[name] = OptionRecord(name, symbol, text, source, labels, default, chosen, group)
         return str(chosen)
 
     def designations(self, table: str) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ from synth.model.program import OP_SELECT, InputValue
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
 from synth.proof.interval_arithmetic import ZERO, Pair
 from synth.proof.tape import Tape
-from synth.question.inputs import first_value, inputs_of_design
+from synth.question.inputs import cell_value, first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.question.uncertainty import Uncertainty
@@ -210,8 +210,7 @@ class Rater:
 
     @staticmethod
     def _cell(design: Design, slot: str, column: str) -> float:
-        cell = design.parts[slot].get(column)
-        return math.nan if cell is None else float(cell)
+        return cell_value(design.parts[slot], column)
 
     def _cells(self, design: Design, slot: str, column: str) -> np.ndarray:
         return np.array([self._cell(design, slot, column)])

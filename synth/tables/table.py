@@ -34,6 +34,7 @@ SHIPPED = "shipped"
 
 
 CODE_OF = "code of "  # before the name of a column of text: the column of numbers that stand for its texts
+ELSE = " else "  # between the name of a column of numbers and what counts where there is none
 
 
 class Table:
@@ -111,7 +112,7 @@ class Table:
 
     def has(self, column: str) -> bool:
         """Whether the table has a column of this name or symbol."""
-        return self._find(column.removeprefix(CODE_OF)) is not None
+        return ELSE in column or self._find(column.removeprefix(CODE_OF)) is not None
 
     def column(self, name: str) -> Column:
         """Find a column by its name or symbol.
@@ -156,10 +157,15 @@ class Table:
 
         Notes
         -----
-        Behind CODE_OF stands a column of text, whose cells are told by their ``text_code``.
+        Behind CODE_OF stands a column of text, whose cells are told by their ``text_code``. Behind ELSE stands the
+        number that counts in rows without a value, and in all rows where the table has no such column.
         """
         if column.startswith(CODE_OF):
             return np.array([text_code(cell) for cell in self.text(column.removeprefix(CODE_OF))])
+        if ELSE in column:
+            name, _, other = column.partition(ELSE)
+            known = self.number(name) if self.has(name) else np.full(len(self), np.nan)
+            return np.where(np.isnan(known), float(other), known)
         found = self.column(column)
         cells = self._data[found.name]
         if not isinstance(cells, np.ndarray):
@@ -344,6 +350,11 @@ class Table:
 
 
 @lru_cache(maxsize=1 << 16)
+def named_column(column: str) -> str:
+    """Return the column of a table that a column as models use it is made of."""
+    return column.removeprefix(CODE_OF).partition(ELSE)[0]
+
+
 def text_code(text: str) -> float:
     """Return a whole number that stands for a text, the same everywhere; different texts have different ones.
 

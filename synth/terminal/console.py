@@ -126,11 +126,8 @@ TITLES = {
 
 
 def print_description(description: Sequence[Mapping[Any, Any]], console: Console) -> None:
-    """Print the rows of ``describe``, kind by kind."""
-    for kind, title in TITLES.items():
-        rows = [row for row in description if row["kind"] == kind]
-        if not rows:
-            continue
+    """Print the rows of ``describe``, kind by kind; requirements group by group."""
+    for kind, title, rows in _sections(description):
         console.print(f"\n{title}")
         if kind in ("refusal", "advice"):
             shown = plain_table("code", "meaning", wide=1)
@@ -143,6 +140,19 @@ def print_description(description: Sequence[Mapping[Any, Any]], console: Console
                 symbol = f" ({short})" if short not in ("", str(row["name"]).rsplit(".", 1)[-1]) else ""
                 shown.add_row(f"{row['name']}{symbol}", row["unit"], _range(row), _meaning(row))
         console.print(shown)
+
+
+def _sections(description: Sequence[Mapping[Any, Any]]) -> Iterator[tuple[str, str, list[Mapping[Any, Any]]]]:
+    """Yield kind, title and rows of what is listed under one title; groups stand in the order of their first rows."""
+    for kind, title in TITLES.items():
+        rows = [row for row in description if row["kind"] == kind]
+        if kind != "requirement":
+            if rows:
+                yield kind, title, rows
+            continue
+        for group in dict.fromkeys(row["group"] for row in rows):
+            named = f"{title}: {group}" if group else title
+            yield kind, named, [row for row in rows if row["group"] == group]
 
 
 def _range(row: Mapping[Any, Any]) -> str:

@@ -9,6 +9,7 @@ import pytest
 
 import synth
 from synth.analysis.describe import COLUMNS, describe
+from synth.declaration import Block, Option, Requirement
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
 
@@ -158,6 +159,7 @@ def test_an_unknown_option_is_refused() -> None:
         describe(Sample(shape="oval"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", synth.families())
 def test_every_family_can_be_described(family: str) -> None:
     table = describe(family)
@@ -168,3 +170,43 @@ def test_every_family_can_be_described(family: str) -> None:
     judged = table["kind"].isin(["derived", "limit", "objective"])
     assert ((table["classification"] != "") == judged).all()
     assert table["classification"].str.len().max() <= 100
+
+
+class Common(Block):
+    group = "duty"
+
+    torque = Requirement("N*m", 10)
+    room = Requirement("mm", 100, group="envelope")
+    speed = Requirement("1/min", 100)
+
+
+class Own(Common):
+    group = "model"
+
+    torque = Requirement("N*m", 20)
+    kind = Option(("a", "b"), "a")
+
+
+class Grouped(synth.DesignProblem):
+    """Groups of a block, of a field, of a base class, of a verb, and none."""
+
+    name = "grouped"
+
+    def declare(self, d: Any) -> None:
+        d.block(Own)
+        d.requirement("loose", "-", 1)
+        d.option("said", ("yes", "no"), "no", group="duty")
+        d.variable("x", "-", 1, 2)
+        d.objective("x")
+
+
+def test_a_requirement_stands_in_its_group_or_in_that_of_the_class_that_declares_it() -> None:
+    groups = describe(Grouped()).set_index(["kind", "name"])["group"]
+    assert dict(groups[groups != ""]) == {
+        ("requirement", "torque"): "model",
+        ("requirement", "room"): "envelope",
+        ("requirement", "speed"): "duty",
+        ("option", "kind"): "model",
+        ("option", "said"): "duty",
+    }
+    assert ("requirement", "loose") in groups

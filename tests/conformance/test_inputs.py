@@ -11,7 +11,7 @@ import pytest
 from synth.analysis.designs import make_design, make_frame, part_row
 from synth.analysis.evaluate import _chosen_rows, _data
 from synth.model.model import DataInput
-from synth.question.inputs import first_value, inputs_of_design
+from synth.question.inputs import cell_value, first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.results import Design
 from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
@@ -45,14 +45,15 @@ def by_hand(instance: Instance, parts: Any, counts: Any, choices: Any) -> list[f
 
 def from_design(instance: Instance, design: Design) -> list[float]:
     def part(entry: DataInput) -> float:
-        cells = [design.parts[entry.name].get(c) for c in entry.columns]
-        return float(first_value([np.array([math.nan if x is None else float(x)]) for x in cells])[0])
+        cells = [cell_value(design.parts[entry.name], c) for c in entry.columns]
+        return float(first_value([np.array([x]) for x in cells])[0])
 
     return inputs_of_design(
         instance.model, instance.values.requirements, instance.values.rows, design.values, design.choices, part
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("family", "structure", "optional"), QUESTIONS, ids=lambda x: str(x))
 def test_all_readers_agree_on_random_designs(family: str, structure: str, optional: bool) -> None:
     instance = question(family, CASES[family].option_sets[structure], optional)

@@ -9,6 +9,7 @@ from synth.search.synthesize import synthesize
 from synth.studies.infeasibility.explanation import rounded
 from synth.units import parse_quantity
 from tests.conformance.cases import CASES
+from tests.repetitions import repetitions
 from tests.terminal.entry import at_once
 
 pytestmark = pytest.mark.slow
@@ -36,7 +37,7 @@ def test_applying_a_relaxation_is_feasible_and_one_per_cent_less_is_not(explaine
     problem, case, settings, explanation = explained
     ways = [w for w in explanation.single if w.kind == "requirement"]
     assert ways
-    for way in ways:
+    for way in ways[: repetitions(2, len(ways))]:
         assert way.proven
         assert not way.design.violated
         assert feasible(problem, {**case.requirements, way.name: way.requirement()}, settings), way.sentence
