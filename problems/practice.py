@@ -41,6 +41,7 @@ def declare_scope(d: Declaration) -> Scope:
         text="on: what an experienced engineer demands beside the formulas is a limit, each with a requirement that "
         "widens it; off: the sources alone",
         source=UNSOURCED,
+        group="practice",
     )
     scope = d.option(
         "mass_scope",
@@ -49,12 +50,15 @@ def declare_scope(d: Declaration) -> Scope:
         symbol="scope",
         text="complete: mass, length and volume are those of the whole clutch; parts: of what its formulas size",
         source="geometry",
+        group="practice",
     )
     return Scope(rules=rules == "on", complete=scope == "complete")
 
 
 class ShaftRequirements(Block):
     """The shaft of a clutch and the hub on it, all in SI."""
+
+    group = "practice"
 
     shaft_shear_allow = Requirement(
         "N/mm2",
@@ -73,6 +77,7 @@ class ShaftRequirements(Block):
         symbol="d_s",
         text="Shaft; by default as shaft_shear_allow needs it",
         source="torsion of a solid shaft",
+        group="envelope",
     )
     hub_factor = Requirement(
         "-",

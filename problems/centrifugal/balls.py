@@ -41,6 +41,8 @@ class Balls:
 class ForceLimits(Block):
     """Requirements that the devices with ramps (and their lever sister) have beside the duty."""
 
+    group = "duty"
+
     contact_speed_min = Requirement(
         "1/min",
         lower=1,
@@ -57,6 +59,7 @@ class ForceLimits(Block):
         symbol="F_N_cap",
         text="Largest clamp force, for the release bearing",
         source="practice",
+        group="actuator",
     )
     pocket_gap = Requirement(
         "mm",
@@ -66,6 +69,7 @@ class ForceLimits(Block):
         symbol="c_gap",
         text="Gap between balls and spring pockets around the circle",
         source="practice",
+        group="model",
     )
 
 
@@ -119,6 +123,7 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
         symbol="mu_b",
         text="Friction at the contacts of the balls, greased hardened track; a guess, 0 to 0.1",
         source=NOT_IN_S4,
+        group="material",
     )
     pressure_limit = d.requirement(
         "hertz_pressure_limit",
@@ -129,6 +134,7 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
         symbol="p_hertz_allow",
         text=f"Largest pressure of a ball on a flat ramp ({TYPICAL}; 2.8 to 4, static limit of ball contacts 4.2)",
         source=f"{TYPICAL}; ISO 76",
+        group="material",
     )
     count = d.count("balls", 3, 12, symbol="n_b", text="Number of balls, each in a ramp", source=f"{S4}, balls")
     part = d.part("ball", "balls", symbol="ball", text="One ball", source="table balls")

@@ -32,6 +32,8 @@ COMMON = (
 class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
+    group = "duty"
+
     required_torque = Requirement(
         "N*m", lower=0.1, upper=1e5, symbol="M_req", text="Torque to transmit from full_torque_speed on", source=DRIVE
     )
@@ -98,13 +100,30 @@ class Duty(Block):
         text="Largest work per engagement and friction area, usually 0.5 to 0.7; takes the place of "
         "friction_pair.q_single_allow",
         source="practice",
+        group="material",
     )
     hub_radius = Requirement(
-        "mm", 20, lower=1, upper=500, symbol="r_hub", text=f"Radius of shaft and hub ({TYPICAL})", source=TYPICAL
+        "mm",
+        20,
+        lower=1,
+        upper=500,
+        symbol="r_hub",
+        text=f"Radius of shaft and hub ({TYPICAL})",
+        source=TYPICAL,
+        group="envelope",
     )
-    rim_width = Requirement("mm", 3, lower=0, upper=50, symbol="c_o", text="Rim outside the lining", source="practice")
+    rim_width = Requirement(
+        "mm", 3, lower=0, upper=50, symbol="c_o", text="Rim outside the lining", source="practice", group="model"
+    )
     wall_thickness = Requirement(
-        "mm", 5, lower=0, upper=50, symbol="c_w", text=f"Wall outside the flyweights ({TYPICAL})", source=TYPICAL
+        "mm",
+        5,
+        lower=0,
+        upper=50,
+        symbol="c_w",
+        text=f"Wall outside the flyweights ({TYPICAL})",
+        source=TYPICAL,
+        group="model",
     )
     equivalent_plate_thickness = Requirement(
         "mm",
@@ -114,9 +133,17 @@ class Duty(Block):
         symbol="t_plates",
         text=f"Steel thickness that all plates together amount to, for mass and inertia ({TYPICAL})",
         source=TYPICAL,
+        group="model",
     )
     outer_diameter_limit = Requirement(
-        "mm", lower=20, upper=3000, optional=True, symbol="D_max", text="Largest outside diameter", source=DRIVE
+        "mm",
+        lower=20,
+        upper=3000,
+        optional=True,
+        symbol="D_max",
+        text="Largest outside diameter",
+        source=DRIVE,
+        group="envelope",
     )
     ring_ratio_min = Requirement(
         "-",
@@ -126,6 +153,7 @@ class Duty(Block):
         symbol="c_min",
         text="Least inner over outer radius of the lining",
         source="practice",
+        group="practice",
     )
     ring_ratio_max = Requirement(
         "-",
@@ -135,6 +163,7 @@ class Duty(Block):
         symbol="c_max",
         text="Largest inner over outer radius of the lining",
         source="practice",
+        group="practice",
     )
     steel_density = Requirement(
         "kg/m3",
@@ -144,6 +173,7 @@ class Duty(Block):
         symbol="rho_steel",
         text="Density of plates and weights",
         source="material constant",
+        group="material",
     )
 
     @property

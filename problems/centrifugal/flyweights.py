@@ -74,6 +74,7 @@ def declare_weights(d: Declaration, *, duty: Duty) -> Weights:
         symbol="b_w",
         text=f"Axial width of a weight ({TYPICAL})",
         source=TYPICAL,
+        group="model",
     )
     angle = d.requirement(
         "lever_angle_limit",
@@ -84,6 +85,7 @@ def declare_weights(d: Declaration, *, duty: Duty) -> Weights:
         symbol="phi_lim",
         text="Largest angle of the levers; the model takes sine and tangent for the angle",
         source=NOT_IN_S4,
+        group="practice",
     )
     mass = d.variable(
         "flyweight_mass",

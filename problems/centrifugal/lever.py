@@ -27,6 +27,8 @@ GUARDS = ("rod_inside_spring", LOADED)
 class Rods(Block):
     """Arms of rod and spring, and what is asked of them, all in SI."""
 
+    group = "practice"
+
     rod_ratio_max = Requirement(
         "-",
         0.8,
@@ -44,6 +46,7 @@ class Rods(Block):
         symbol="F_retract_min",
         text="Least force at the spring's arm that draws the lever back at standstill",
         source=NOT_IN_S4,
+        group="actuator",
     )
     spring_arm = Variable(
         "mm", *SPRING_ARM, grid=0.5, symbol="l_s", text="Arm of the clamp springs on the lever", source=RECONSTRUCTED

@@ -89,6 +89,7 @@ def declare_lever(d: Declaration, *, duty: blocks.Duty, stop_text: str) -> Lever
         symbol="x0",
         text=f"Gap between pressure plate and friction disc at rest ({TYPICAL})",
         source=f"{S4}, x0; {TYPICAL}",
+        group="duty",
     )
     wear = blocks.declare_wear(d)
     weights = blocks.declare_weights(d, duty=duty)

@@ -138,6 +138,7 @@ def declare_wear(d: Declaration) -> Any:
         symbol="wear",
         text="Wear of all linings together, by which the pressure plate travels further",
         source="practice",
+        group="material",
     )
 
 

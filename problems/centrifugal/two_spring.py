@@ -87,6 +87,7 @@ class CentrifugalTwoSpring(DesignProblem):
             symbol="mech",
             text="ball_ramp: balls in ramps push the tension disc; lever: weights on single levers do",
             source=f"{S4}, analysis 2; practice 2",
+            group="model",
         )
         duty = blocks.declare_duty(d)
         wants = ball_blocks.declare_force_limits(d, duty=duty)
@@ -291,6 +292,7 @@ class CentrifugalTwoSpring(DesignProblem):
             symbol="eta_m",
             text=f"Efficiency of the levers, going out as coming in ({TYPICAL})",
             source=TYPICAL,
+            group="model",
         )
         weights = blocks.declare_weights(d, duty=duty)
         arm = d.variable(

@@ -694,3 +694,150 @@ def clutch_mass(
     2.2815
     """
     return mass_factor * area * (2 * density * shell_thickness + lining_density * lining_thickness)
+
+
+def pull_ratio(half_angle: Quantity, static_mu: Quantity, mu: Quantity) -> Quantity:
+    """Force that pulls engaged cones apart over the spring that has engaged them, (mu_0 + mu)/(tan(alpha) + mu) - 1.
+
+    It is N (mu_0 cos(alpha) - sin(alpha))/F with N = F/(sin(alpha) + mu cos(alpha)), written with the angle once.
+
+    Parameters
+    ----------
+    half_angle : scalar, array or symbol
+        alpha [rad].
+    static_mu : scalar, array or symbol
+        Friction at rest along the generator mu_0 [-].
+    mu : scalar, array or symbol
+        Sliding friction while the cones were engaged [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Ratio [-]; negative where the cones come apart by themselves.
+
+    References
+    ----------
+    Equilibrium along the axis after engaging and before sliding apart; derived.
+
+    Examples
+    --------
+    By hand at 12.5 degrees: 8958.27 N (0.4 0.976296 - 0.216440) over 5000 N:
+
+    >>> float(pull_ratio(np.radians(12.5), 0.4, 0.35))
+    0.311890
+    """
+    return (static_mu + mu) / (np.tan(half_angle) + mu) - 1
+
+
+def pull_angle(static_mu: Quantity, mu: Quantity, ratio: Quantity) -> Quantity:
+    """Half angle at which pulling the cones apart takes a share of the spring, the inverse of :func:`pull_ratio`.
+
+    Parameters
+    ----------
+    static_mu : scalar, array or symbol
+        Friction at rest along the generator mu_0 [-].
+    mu : scalar, array or symbol
+        Sliding friction while the cones were engaged [-].
+    ratio : scalar, array or symbol
+        Pull over spring force k [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        alpha [rad]; negative where every cone is pulled apart with less.
+
+    References
+    ----------
+    tan(alpha) = (mu_0 - k mu)/(1 + k); derived.
+
+    Examples
+    --------
+    >>> float(np.degrees(pull_angle(0.4, 0.35, 0.311890)))
+    12.5000
+    """
+    return np.arctan((static_mu - ratio * mu) / (1 + ratio))
+
+
+def hoop_stress(pressure: Quantity, mean_diameter: Quantity, shell_thickness: Quantity) -> Quantity:
+    """Stress around a thin shell under the pressure of the friction face, p dm/(2 t_s).
+
+    Parameters
+    ----------
+    pressure : scalar, array or symbol
+        On the face [Pa].
+    mean_diameter, shell_thickness : scalar, array or symbol
+        dm, t_s [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Stress [Pa]: tension in the outer shell, compression in the inner one.
+
+    References
+    ----------
+    Thin ring under pressure.
+
+    Examples
+    --------
+    >>> hoop_stress(1e6, 0.2, 0.005)
+    20000000.0
+    """
+    return pressure * mean_diameter / (2 * shell_thickness)
+
+
+def axial_stroke(gap: Quantity, wear: Quantity, half_angle: Quantity) -> Quantity:
+    """Way along the axis that opens a gap across the face after the lining has worn, (g + d_w)/sin(alpha).
+
+    Parameters
+    ----------
+    gap, wear : scalar, array or symbol
+        Release gap and wear of the lining, both across the face [m].
+    half_angle : scalar, array or symbol
+        alpha [rad].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Way [m].
+
+    References
+    ----------
+    Geometry.
+
+    Examples
+    --------
+    >>> float(axial_stroke(0.3e-3, 0.7e-3, np.pi / 6))
+    0.002
+    """
+    return (gap + wear) / np.sin(half_angle)
+
+
+def spring_mass(force: Quantity, deflection: Quantity, energy: Quantity) -> Quantity:
+    """Mass of the spring that engages the cones, F f/(2 e_s).
+
+    Parameters
+    ----------
+    force : scalar, array or symbol
+        F [N].
+    deflection : scalar, array or symbol
+        f [m].
+    energy : scalar, array or symbol
+        What a spring stores per mass e_s [J/kg].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Energy of a linear spring; of one in torsion e_s = tau**2/(4 G rho).
+
+    Examples
+    --------
+    By hand, 5000 N x 20 mm/2 = 50 J at 140 J/kg:
+
+    >>> spring_mass(5000, 0.02, 140)
+    0.357143
+    """
+    return force * deflection / (2 * energy)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import friction
+from problems import cost, friction, practice
+from problems.cone import body as cone_body
 from problems.cone import formulas as cone
+from problems.cone.body import Cone
 from problems.friction import startup_curves
 from problems.mechanics import heat, plates
 from problems.sources import S1, TYPICAL
@@ -33,6 +34,8 @@ FRICTION_SHOWN = (0.1, 0.2, 0.3, 0.4, 0.5)
 
 class Wants(Block):
     """Requirements of the cone, all in SI; None where an optional one is not given."""
+
+    group = "practice"
 
     ring_ratio_min = Requirement(
         "-",
@@ -60,6 +63,7 @@ class Wants(Block):
         symbol="k_lock",
         text="Least tan(alpha) over static friction; below 1 the cones may lock",
         source=DERIVED,
+        group="actuator",
     )
     seating_pressure_factor = Requirement(
         "-",
@@ -69,6 +73,7 @@ class Wants(Block):
         symbol="k_seat",
         text="Largest pressure after seating over p_allow of the lining",
         source="premise of the cone model",
+        group="model",
     )
     bearing_force_limit = Requirement(
         "N",
@@ -78,6 +83,7 @@ class Wants(Block):
         symbol="F_bearing_max",
         text="Largest axial load of the shaft bearings",
         source="requirement of the drive",
+        group="actuator",
     )
     temperature_rise_limit = Requirement(
         "K",
@@ -87,21 +93,8 @@ class Wants(Block):
         symbol="dT_allow",
         text=f"Largest temperature rise of a shell in one engagement ({TYPICAL})",
         source=TYPICAL,
+        group="material",
     )
-
-
-@dataclass(frozen=True)
-class Cone:
-    """The friction cone."""
-
-    force: Any
-    mean_diameter: Any
-    length: Any
-    angle: Any
-    shell_thickness: Any
-    ratio: Any
-    area: Any
-    largest_diameter: Any
 
 
 class ConeClutch(DesignProblem):
@@ -122,6 +115,7 @@ class ConeClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
         duty = friction.declare_duty(d, cooling_default=COOLING, lubrication=None)
         if duty.cooling != COOLING:
             d.advise(
@@ -131,10 +125,16 @@ class ConeClutch(DesignProblem):
                 "counts, heat_transfer nothing",
                 source="premise of the cone model",
             )
-        wants = self._declare_requirements(d)
-        shape = self._declare_cone(d, wants=wants)
+        required = friction.sizing_torque(duty)
+        body_wants = None
+        if scope.rules or scope.complete:
+            body_wants = cone_body.declare_body_requirements(d, required=required)
+        rules = cone_body.declare_cone_rules(d) if scope.rules else None
+        pull_max = None if rules is None else rules.pull_max
+        wants = self._declare_requirements(d, pull_max=pull_max)
+        shape = self._declare_cone(d, wants=wants, rules=rules)
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=None)
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=None, rules=scope.rules)
         layout = d.part(
             "cone_layout",
             "cone_layouts",
@@ -156,7 +156,7 @@ class ConeClutch(DesignProblem):
             d,
             duty=duty,
             pair=pair,
-            required=friction.sizing_torque(duty),
+            required=required,
             torque_low=torque(grip_low),
             torque_high=torque(grip_high),
             overload=seated_torque,
@@ -179,6 +179,7 @@ class ConeClutch(DesignProblem):
             d,
             duty=duty,
             wants=wants,
+            rules=rules,
             pair=pair,
             shape=shape,
             force=cone.release_force(grip_high / high, shape.angle, high),
@@ -186,45 +187,69 @@ class ConeClutch(DesignProblem):
         self._declare_bearing(d, wants=wants, shape=shape, layout=layout)
         shell_mass = cone.shell_mass(duty.steel_density, shape.area, shape.shell_thickness)
         lining = pair.part.lining_thickness
-        size = friction.Size(
+        pack_size = friction.Size(
             mass=cone.clutch_mass(
                 layout.mass_factor, shape.area, duty.steel_density, shape.shell_thickness, pair.part.density, lining
             ),
             diameter=cone.overall_diameter(shape.largest_diameter, shape.shell_thickness, lining),
             length=cone.overall_length(shape.length, shape.angle, layout.length_add),
         )
+        body = None
+        if body_wants is not None:
+            body = cone_body.complete_body(duty=duty, wants=body_wants, shape=shape, pair=pair, pack_size=pack_size)
+        size = body.size if body is not None and scope.complete else pack_size
+        along = "Length of the cone and what the layout adds to it"
         friction.declare_size(
             d,
             size=size,
-            mass_of="Both shells and the lining, times the mass_factor of the layout",
+            mass_of="The whole clutch"
+            if scope.complete
+            else "Both shells and the lining, times the mass_factor of the layout",
             outside="Outside of the outer cone",
             across="dm + l_g sin(alpha) + 2 (t_s + t_lining)",
-            along="Length of the cone and what the layout adds to it",
+            along=f"{along}, with both webs" if scope.complete else along,
         )
-        self._declare_temperature(d, duty=duty, wants=wants, pair=pair, start=start, size=size, shell_mass=shell_mass)
+        if body is not None:
+            cone_body.declare_body(
+                d, shape=shape, pair=pair, start=start, body=body, pack_size=pack_size, grip=grip_low
+            )
+            # Two cones, the ring that presses and its spring.
+            cost.declare_cost(d, mass=body.size.mass, parts=4, lining=(pair.part, shape.area))
+            if rules is not None:
+                cone_body.declare_rules(d, rules=rules, shape=shape, pair=pair, body=body)
+        self._declare_temperature(
+            d, duty=duty, wants=wants, pair=pair, start=start, size=pack_size, shell_mass=shell_mass
+        )
         friction.declare_envelope(d, duty=duty, force=shape.force, diameter=size.diameter, length=size.length)
+        self._declare_objectives(d, scope=scope)
+
+    def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
         d.objective("mass")
         d.objective("actuation_force")
         for name in ("outer_diameter", "length", "volume", "friction_work"):
             d.objective(name, default=False)
+        if scope.rules or scope.complete:
+            d.objective("wear_life", "max", default=False)
+            d.objective("stroke", default=False)
 
-    def _declare_requirements(self, d: Declaration) -> Wants:
+    def _declare_requirements(self, d: Declaration, *, pull_max: Any) -> Wants:
         wants = d.block(Wants)
         d.refuse(
             "bad_ratio",
             wants.ring_ratio_min > wants.ring_ratio_max,
             "a ring_ratio_min of at most ring_ratio_max; otherwise no cone satisfies both",
         )
-        d.advise(
-            "locking_allowed",
-            wants.locking_margin < 1,
-            "locking_margin below 1 lets the cones lock: they must be pulled apart, with more than release_force "
-            "says where the friction at rest is the higher one",
-            source=f"{S1}, release by an outer force",
-        )
+        if pull_max is None:
+            d.advise(
+                "locking_allowed",
+                wants.locking_margin < 1,
+                "locking_margin below 1 lets the cones lock: they must be pulled apart, with more than release_force "
+                "says where the friction at rest is the higher one",
+                source=f"{S1}, release by an outer force",
+            )
         return wants
 
-    def _declare_cone(self, d: Declaration, *, wants: Wants) -> Cone:
+    def _declare_cone(self, d: Declaration, *, wants: Wants, rules: cone_body.ConeRules | None) -> Cone:
         force = d.variable(
             "actuation_force",
             "N",
@@ -306,20 +331,21 @@ class ConeClutch(DesignProblem):
             text="Area of the friction face",
             source="geometry",
         )
-        practice = "practice of cone clutches: 8 to 15, at most 18 degrees"
-        d.advise(
-            "slender_cone",
-            angle < np.radians(8),
-            "half angles below 8 degrees tend to grab and to stick",
-            source=practice,
-        )
-        d.advise(
-            "blunt_cone",
-            angle > np.radians(18),
-            "above 18 degrees little is left of the wedge effect for which a cone is chosen; a lining with less "
-            "friction at rest allows a smaller angle",
-            source=practice,
-        )
+        if rules is None:
+            usual = "practice of cone clutches: 8 to 15, at most 18 degrees"
+            d.advise(
+                "slender_cone",
+                angle < np.radians(8),
+                "half angles below 8 degrees tend to grab and to stick",
+                source=usual,
+            )
+            d.advise(
+                "blunt_cone",
+                angle > np.radians(18),
+                "above 18 degrees little is left of the wedge effect for which a cone is chosen; a lining with less "
+                "friction at rest allows a smaller angle",
+                source=usual,
+            )
         return Cone(
             force=force,
             mean_diameter=mean_diameter,
@@ -377,9 +403,17 @@ class ConeClutch(DesignProblem):
             )
 
     def _declare_release(
-        self, d: Declaration, *, duty: friction.Duty, wants: Wants, pair: friction.Pair, shape: Cone, force: Any
+        self,
+        d: Declaration,
+        *,
+        duty: friction.Duty,
+        wants: Wants,
+        rules: cone_body.ConeRules | None,
+        pair: friction.Pair,
+        shape: Cone,
+        force: Any,
     ) -> None:
-        """Declare the release force and the limit against self-locking."""
+        """Declare the release force and the limit against self-locking, or against a pull that is too hard."""
         release = d.derive(
             "release_force",
             "N",
@@ -399,27 +433,66 @@ class ConeClutch(DesignProblem):
             text="Below this half angle the cones may lock",
             source=DERIVED,
         )
-        d.step(
-            "kept_angle",
-            "deg",
-            cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)),
-            symbol="alpha_kept",
-            text="Half angle that keeps locking_margin",
-            source=DERIVED,
-        )
-        d.at_least(
-            "self_locking",
-            np.tan(shape.angle),
-            wants.locking_margin * static,
-            "-",
-            text="The cones come apart by themselves",
-            source=f"{DERIVED}: tan(alpha) >= mu_static",
-        )
+        pull_max = None if rules is None else rules.pull_max
+        kept, keeps = cone.locking_angle(static * np.maximum(wants.locking_margin, 1.0)), "locking_margin"
+        if pull_max is not None:
+            kept, keeps = np.maximum(cone.pull_angle(static, pair.mu_low, pull_max), 0.0), "release_pull_max"
+        d.step("kept_angle", "deg", kept, symbol="alpha_kept", text=f"Half angle that keeps {keeps}", source=DERIVED)
+        if pull_max is None:
+            d.at_least(
+                "self_locking",
+                np.tan(shape.angle),
+                wants.locking_margin * static,
+                "-",
+                text="The cones come apart by themselves",
+                source=f"{DERIVED}: tan(alpha) >= mu_static",
+            )
+        if rules is not None:
+            self._declare_pull(d, shape=shape, static=static, mu=pair.mu_low, most=pull_max)
         d.advise(
             "pulled_apart",
             release < 0,
             "the cones stay together without a force and must be pulled apart",
             source=f"{S1}, release by an outer force",
+        )
+
+    def _declare_pull(self, d: Declaration, *, shape: Cone, static: Any, mu: Any, most: Any) -> None:
+        """Declare the force that pulls the cones apart, and its limit over the spring force where there is one."""
+        ratio = cone.pull_ratio(shape.angle, static, mu)
+        # Seated cones have no friction along the generator left from engaging.
+        seated = cone.pull_ratio(shape.angle, static, 0.0)
+        d.derive(
+            "release_pull",
+            "N",
+            ratio * shape.force,
+            symbol="F_pull",
+            text="Force that pulls the engaged cones apart against friction at rest; negative: they come apart by "
+            "themselves",
+            source=DERIVED,
+        )
+        if most is not None:
+            d.at_most(
+                "release_pull",
+                ratio,
+                most,
+                "-",
+                text="The release gear can pull the cones apart: its pull over the spring force",
+                source=practice.UNSOURCED,
+            )
+        d.derive(
+            "seated_pull",
+            "N",
+            seated * shape.force,
+            symbol="F_pull_seat",
+            text="Force that pulls cones apart which vibration has seated",
+            source="derived, N = F/sin(alpha)",
+        )
+        d.advise(
+            "sticks",
+            seated > 1,
+            "seated by vibration the cones need more than the spring force to come apart (seated_pull): a larger "
+            "cone_angle_min or a smaller release_pull_max helps, or a lining with less friction at rest",
+            source=DERIVED,
         )
 
     def _declare_bearing(self, d: Declaration, *, wants: Wants, shape: Cone, layout: Part) -> None:
@@ -575,6 +648,15 @@ class ConeClutch(DesignProblem):
         by_unit = {unit: [c for c in frame.columns if c.endswith(unit)] for unit in ("[N]", "[N*m]", "[N/mm2]")}
         locking, kept = (math.degrees(step[name]) for name in ("locking_angle", "kept_angle"))
         allowed = pair["p_allow"] / 1e6
+        spans = [
+            {"from": ANGLES_SHOWN[0], "to": locking, "label": "self-locking"},
+            {"from": locking, "to": kept, "label": "below locking_margin"},
+        ]
+        if "release_pull" in design.limits:
+            spans = [
+                {"from": ANGLES_SHOWN[0], "to": kept, "label": "above release_pull_max"},
+                {"from": kept, "to": locking, "label": "must be pulled apart"},
+            ]
         lines = [
             {"panel": 0, "y": 0.0, "label": "below: must be pulled apart"},
             {"panel": 2, "y": allowed, "label": "p_allow"},
@@ -590,10 +672,7 @@ class ConeClutch(DesignProblem):
                 {"label": "pressure [N/mm2]", "columns": by_unit["[N/mm2]"]},
             ],
             "marks": [{"x": float(np.degrees(value["cone_half_angle"])), "label": "this design"}],
-            "spans": [
-                {"from": ANGLES_SHOWN[0], "to": locking, "label": "self-locking"},
-                {"from": locking, "to": kept, "label": "below locking_margin"},
-            ],
+            "spans": spans,
             "lines": lines,
             "source": DERIVED,
         }

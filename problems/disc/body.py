@@ -24,6 +24,8 @@ RUNOUT = "run-out limit of a disc 0.7 mm (Mazda), 0.6 mm (Porsche 911 SC)"
 class DiscBodyRequirements(ShaftRequirements):
     """What a complete disc clutch has around its discs, all in SI."""
 
+    group = "practice"
+
     wear_depth_limit = Requirement(
         "mm",
         1.0,
@@ -37,6 +39,8 @@ class DiscBodyRequirements(ShaftRequirements):
 
 class DiscRules(Block):
     """Rules for discs, all in SI."""
+
+    group = "practice"
 
     plate_stiffness_ratio = Requirement(
         "-",
@@ -74,6 +78,7 @@ class DiscRules(Block):
         symbol="N_w_min",
         text="Least engagements until the linings are worn",
         source=DRIVE,
+        group="duty",
     )
     top_speed = Requirement(
         "1/min",
@@ -83,6 +88,7 @@ class DiscRules(Block):
         symbol="omega_top",
         text="Highest speed of the disc",
         source=DRIVE,
+        group="duty",
     )
     rim_speed_limit = Requirement(
         "m/s",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import friction, practice
+from problems import cost, friction, practice
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
@@ -102,6 +102,7 @@ class DiscClutch(DesignProblem):
         )
         if body is not None:
             disc_body.declare_body(d, ring=ring, pair=pair, pack=pack, start=start, body=body, pack_size=pack_size)
+            cost.declare_cost(d, mass=body.size.mass, parts=2 * pack.discs + 2, lining=(pair.part, area))
         if rules is not None:
             disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
         disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)

@@ -17,8 +17,17 @@ from synth.declaration import Block, Declaration, Requirement
 class DiscRequirements(Block):
     """Requirements of a disc pack, all in SI."""
 
+    group = "material"
+
     core_thickness = Requirement(
-        "mm", 2, lower=0.3, upper=30, symbol="t_core", text=f"Steel core of a disc ({TYPICAL})", source=TYPICAL
+        "mm",
+        2,
+        lower=0.3,
+        upper=30,
+        symbol="t_core",
+        text=f"Steel core of a disc ({TYPICAL})",
+        source=TYPICAL,
+        group="model",
     )
     disc_hub_radius = Requirement(
         "mm",
@@ -28,6 +37,7 @@ class DiscRequirements(Block):
         symbol="r_hub",
         text=f"Inner edge of the core: room for the hub ({TYPICAL})",
         source=TYPICAL,
+        group="envelope",
     )
     cover_gap = Requirement(
         "mm",
@@ -37,6 +47,7 @@ class DiscRequirements(Block):
         symbol="s_cover",
         text=f"From the edge of the friction ring to the outside ({TYPICAL})",
         source=TYPICAL,
+        group="model",
     )
     pressure_plate_density = Requirement(
         "kg/m3",

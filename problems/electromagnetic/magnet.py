@@ -18,6 +18,8 @@ HOLDS = "magnet_overcomes_springs"
 class MagnetRequirements(Block):
     """Requirements of the magnet beside those of its coil, all in SI."""
 
+    group = "actuator"
+
     return_spring_force = Requirement(
         "N",
         100,
@@ -62,6 +64,7 @@ class MagnetRequirements(Block):
         symbol="r_b",
         text=f"Inside of the inner pole: room for shaft and bearing ({TYPICAL})",
         source=f"{S4}, section 6.6",
+        group="envelope",
     )
 
 

@@ -15,7 +15,7 @@ from problems.mechanics import magnetics
 from problems.mechanics import ring as ring_formulas
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
-from problems.multi_plate.requirements import PackOptions
+from problems.multi_plate.requirements import MadePackOptions
 from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
@@ -52,6 +52,7 @@ class ElectromagneticClutch(DesignProblem):
             symbol="pk",
             text="Friction pack that the magnet presses: many plates in a drum, or one or two dry discs",
             source=f"{S4}, section 6.6",
+            group="model",
         )
         if pack == "disc":
             self._declare_disc(d)
@@ -104,7 +105,7 @@ class ElectromagneticClutch(DesignProblem):
         duty = friction.declare_duty(
             d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
         )
-        options = d.block(PackOptions)
+        options = d.block(MadePackOptions)
         wants = plate_pack.declare_pack_requirements(d, duty=duty, options=options, lubrication=lubrication)
         ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
         magnet = magnet_blocks.declare_magnet(d)

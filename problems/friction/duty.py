@@ -36,6 +36,8 @@ COMMON = (
 class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
 
+    group = "duty"
+
     load_kind = Option(
         startup.LOAD_KINDS,
         "reactive",
@@ -63,6 +65,7 @@ class Duty(Block):
         text="historical: also friction pairs that are built no more (cork, leather, wood, felt; without practice they "
         "are never left out); yes: also those not allowed in new designs (asbestos), to re-compute old machines",
         source="table friction_materials",
+        group="practice",
     )
     load_torque = Requirement(
         "N*m", lower=0.1, upper=1e6, symbol="M_load", text="Torque of the load during start-up", source=f"{S1}, M2"
@@ -122,6 +125,7 @@ class Duty(Block):
         symbol="F_max",
         text="Largest force of the actuator",
         source="requirement of the drive",
+        group="actuator",
     )
     outer_diameter_limit = Requirement(
         "mm",
@@ -131,6 +135,7 @@ class Duty(Block):
         symbol="D_max",
         text="Largest outside diameter",
         source="requirement of the drive",
+        group="envelope",
     )
     length_limit = Requirement(
         "mm",
@@ -140,6 +145,7 @@ class Duty(Block):
         symbol="L_max",
         text="Largest length, without actuator and end stops",
         source="requirement of the drive",
+        group="envelope",
     )
     slip_time_limit = Requirement(
         "s",
@@ -184,6 +190,7 @@ class Duty(Block):
         symbol="h_conv",
         text=f"Surface coefficient; by default that of the cooling chosen ({TYPICAL})",
         source="table cooling_options",
+        group="model",
     )
     steel_density = Requirement(
         "kg/m3",
@@ -193,6 +200,7 @@ class Duty(Block):
         symbol="rho_steel",
         text="Density of the steel plates",
         source="material constant",
+        group="material",
     )
     steel_specific_heat = Requirement(
         "J/(kg*K)",
@@ -202,14 +210,24 @@ class Duty(Block):
         symbol="cp_steel",
         text="Specific heat of the steel plates",
         source="material constant",
+        group="material",
     )
     plate_gap = Requirement(
-        "mm", 0.3, lower=0.05, upper=3, symbol="gap", text=f"Release gap per surface ({TYPICAL})", source=TYPICAL
+        "mm",
+        0.3,
+        lower=0.05,
+        upper=3,
+        symbol="gap",
+        text=f"Release gap per surface ({TYPICAL})",
+        source=TYPICAL,
+        group="model",
     )
 
 
 class DutyOfPack(Duty):
     """A duty whose release gap follows from the pack where it is not given."""
+
+    group = "model"
 
     plate_gap = Requirement(
         "mm",
@@ -224,6 +242,8 @@ class DutyOfPack(Duty):
 
 class DutyOfDiscs(Duty):
     """A duty of discs by the rules of practice, which come free although they run out."""
+
+    group = "model"
 
     plate_gap = Requirement(
         "mm", 0.5, lower=0.05, upper=3, symbol="gap", text=f"Release gap per surface ({TYPICAL})", source=TYPICAL

@@ -13,8 +13,10 @@ from synth.declaration import Block, Declaration, Requirement, Variable
 RING_OUTER_DIAMETER_MAX = 800.0
 
 
-class RingSizes(Block):
-    """Range of the ratio, whose defaults are those of the family, and the two diameters."""
+class RingRange(Block):
+    """Range of the ratio, whose defaults are those of the family."""
+
+    group = "practice"
 
     ring_ratio_min = Requirement(
         "-",
@@ -32,6 +34,11 @@ class RingSizes(Block):
         text="Largest ring width over mean diameter",
         source=f"{S1}, empirical range of c",
     )
+
+
+class RingSizes(RingRange):
+    """Range of the ratio and the two diameters, which the search finds."""
+
     ring_outer_diameter = Variable(
         "mm",
         40,
@@ -61,7 +68,9 @@ class Ring:
     area: Any
 
 
-def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float) -> Ring:
+def declare_ring(
+    d: Declaration, *, ratio_min: float, ratio_max: float, diameters: tuple[Any, Any] | None = None
+) -> Ring:
     """Declare the block ring with the empirical range of its ratio.
 
     Parameters
@@ -70,15 +79,22 @@ def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float) -> Ring:
         Takes the declarations.
     ratio_min, ratio_max : float
         Defaults of the range of ring width over mean diameter [-].
+    diameters : tuple of symbols, optional
+        Outer and inner diameter [m] of a ring of a list; without them the search finds both.
 
     Returns
     -------
     Ring
         Symbols of the block.
     """
-    sizes = d.block(RingSizes, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
-    least, most = sizes.ring_ratio_min, sizes.ring_ratio_max
-    outer, inner = sizes.ring_outer_diameter, sizes.ring_inner_diameter
+    range_of_ratio: RingRange
+    if diameters is None:
+        sizes = d.block(RingSizes, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
+        outer, inner, range_of_ratio = sizes.ring_outer_diameter, sizes.ring_inner_diameter, sizes
+    else:
+        outer, inner = _named(d, *diameters)
+        range_of_ratio = d.block(RingRange, ring_ratio_min=ratio_min, ring_ratio_max=ratio_max)
+    least, most = range_of_ratio.ring_ratio_min, range_of_ratio.ring_ratio_max
     d.refuse(
         "bad_ratio",
         least > most,
@@ -142,4 +158,26 @@ def declare_ring(d: Declaration, *, ratio_min: float, ratio_max: float) -> Ring:
         inner_radius=inner / 2,
         outer_radius=outer / 2,
         area=ring_formulas.ring_area(mean, ratio),
+    )
+
+
+def _named(d: Declaration, outer: Any, inner: Any) -> tuple[Any, Any]:
+    """Report the diameters of a ring that is not searched, under the names that they have where it is."""
+    return (
+        d.derive(
+            "ring_outer_diameter",
+            "mm",
+            outer,
+            symbol="d_out",
+            text="Outer diameter of the friction ring",
+            source=f"{S1}, d1",
+        ),
+        d.derive(
+            "ring_inner_diameter",
+            "mm",
+            inner,
+            symbol="d_in",
+            text="Inner diameter of the friction ring",
+            source=f"{S1}, d2",
+        ),
     )

@@ -13,6 +13,8 @@ from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 class CoilRequirements(Block):
     """Requirements of a coil and its iron, all in SI."""
 
+    group = "actuator"
+
     iron_flux_limit = Requirement(
         "T",
         1.5,
@@ -21,6 +23,7 @@ class CoilRequirements(Block):
         symbol="B_fe_max",
         text="Largest flux density of the iron",
         source=f"{S4}, section 6.1",
+        group="material",
     )
     leakage_factor = Requirement(
         "-",
@@ -30,6 +33,7 @@ class CoilRequirements(Block):
         symbol="leak",
         text="Flux of the iron outside over flux of the working gap",
         source=f"{S4} [P4]",
+        group="model",
     )
     iron_reluctance = Requirement(
         "A/(m*T)",
@@ -39,6 +43,7 @@ class CoilRequirements(Block):
         symbol="a_fe",
         text="Froehlich coefficient of the iron, by default mild steel",
         source=f"{S4} [P3]",
+        group="material",
     )
     iron_saturation = Requirement(
         "T",
@@ -48,6 +53,7 @@ class CoilRequirements(Block):
         symbol="B_s",
         text="Flux density that saturated iron does not reach",
         source=f"{S4} [P3]",
+        group="material",
     )
     winding_factor = Requirement(
         "-",
@@ -87,6 +93,7 @@ class CoilRequirements(Block):
         symbol="h_still",
         text=f"Surface coefficient of a body at rest, convection and radiation ({TYPICAL})",
         source=f"{S4} [P7]",
+        group="model",
     )
 
 

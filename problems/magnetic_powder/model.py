@@ -25,6 +25,8 @@ SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
 class Wants(Block):
     """Requirements beside those of the coil, all in SI; None where an optional one is not given."""
 
+    group = "duty"
+
     steel_density = Requirement(
         "kg/m3",
         7850,
@@ -33,6 +35,7 @@ class Wants(Block):
         symbol="rho_steel",
         text="Density of rotor, drum and body",
         source="material constant",
+        group="material",
     )
     required_torque = Requirement(
         "N*m",
@@ -86,6 +89,7 @@ class Wants(Block):
         symbol="B_max",
         text="Largest flux density in the powder",
         source=f"{S4}, section 6.1",
+        group="material",
     )
     brush_voltage = Requirement(
         "V",
@@ -95,6 +99,7 @@ class Wants(Block):
         symbol="U_brush",
         text=f"Drop of one brush contact ({TYPICAL}); rotating coil only",
         source=f"{S4} [P8]",
+        group="actuator",
     )
     rotating_heat_transfer = Requirement(
         "-",
@@ -104,6 +109,7 @@ class Wants(Block):
         symbol="h_rot",
         text=f"W/(m2 K) per (m/s)**0.8 of the rim of a rotating coil body ({TYPICAL})",
         source=f"{S4} [P7]",
+        group="model",
     )
     fill_factor = Requirement(
         "-",
@@ -113,9 +119,17 @@ class Wants(Block):
         symbol="fill",
         text=f"Part of the gap that powder fills ({TYPICAL})",
         source=f"{S4} [P10]",
+        group="actuator",
     )
     rotor_web_thickness = Requirement(
-        "mm", 8, lower=1, upper=200, symbol="t_web", text=f"Web of the rotor ({TYPICAL})", source=f"{S4} [P10]"
+        "mm",
+        8,
+        lower=1,
+        upper=200,
+        symbol="t_web",
+        text=f"Web of the rotor ({TYPICAL})",
+        source=f"{S4} [P10]",
+        group="model",
     )
     air_gap = Requirement(
         "mm",
@@ -125,6 +139,7 @@ class Wants(Block):
         symbol="delta_a",
         text=f"Gap between drum and stationary body ({TYPICAL})",
         source=f"{S4} [P4]",
+        group="model",
     )
     drum_thickness = Requirement(
         "mm",
@@ -134,6 +149,7 @@ class Wants(Block):
         symbol="t_drum",
         text=f"Drum between powder and stationary body ({TYPICAL})",
         source=f"{S4} [P4]",
+        group="model",
     )
     shaft_radius = Requirement(
         "mm",
@@ -143,6 +159,7 @@ class Wants(Block):
         symbol="r_shaft",
         text=f"Shaft with hub inside the rotor ({TYPICAL})",
         source=f"{S4}, section 6.1",
+        group="envelope",
     )
     powder_mass_limit = Requirement(
         "kg",
@@ -152,6 +169,7 @@ class Wants(Block):
         symbol="m_powder_max",
         text="Largest mass of powder",
         source=f"{S4}, 250 to 400 g",
+        group="actuator",
     )
     outer_diameter_limit = Requirement(
         "mm",
@@ -161,6 +179,7 @@ class Wants(Block):
         symbol="D_max",
         text="Largest outside diameter",
         source="requirement of the drive",
+        group="envelope",
     )
     length_limit = Requirement(
         "mm",
@@ -170,6 +189,7 @@ class Wants(Block):
         symbol="L_max",
         text="Largest length of the body",
         source="requirement of the drive",
+        group="envelope",
     )
 
 

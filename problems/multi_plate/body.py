@@ -80,9 +80,11 @@ def declare_pack_rules(d: Declaration, *, lubrication: str) -> PackRules:
     return d.block(PackRules, friction_surfaces_max=20 if oil else 8, release_gap_min=0.05 if oil else 0.3)
 
 
-def wear_depth(wants: BodyRequirements, pair: Pair) -> Any:
-    """Return the wear of one lining before it is replaced [m]."""
-    return np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+def wear_depth(wants: BodyRequirements, pair: Pair, pack: Pack) -> Any:
+    """Return the wear of one lining before it is replaced [m]; plates of a list wear no deeper than they are lined."""
+    depth = np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+    lining = pack.plates.lining_thickness
+    return depth if lining is None else np.minimum(depth, lining)
 
 
 def complete_body(
@@ -126,14 +128,14 @@ def complete_body(
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
     end = 2 * ring.outer_radius / wants.end_plate_ratio
     along = pack_size.length + 2 * (end - pack.inner_thickness)
-    way = plates.stroke(pack.surfaces, pack.gap, wear_depth(wants, pair))
+    way = plates.stroke(pack.surfaces, pack.gap, wear_depth(wants, pair, pack))
     piston = force / wants.actuator_pressure
     actuator = 0.0 if wants.actuator == "external" else way + end
     length = along + end + actuator
     thicker = end - pack.inner_thickness
     mass = (
         pack_size.mass
-        + plates.annulus_mass(rho, 2, thicker, pack.inner_mean_diameter, pack.inner_width)  # end plates
+        + plates.annulus_mass(rho, 2, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width)  # end plates
         + plates.annulus_mass(rho, 1, length, 2 * b + wall, wall)  # drum
         + plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)  # its bottom
         + plates.annulus_mass(rho, 1, along, 2 * a - wall, wall)  # rim of the hub
@@ -204,7 +206,7 @@ def declare_body(
         "-",
         wear_life(
             pack.aid.area_factor * pack.surfaces * ring.area,
-            wear_depth(body.wants, pair),
+            wear_depth(body.wants, pair, pack),
             pair.part.wear_rate,
             start.friction_work,
         ),
@@ -311,11 +313,10 @@ def declare_rules(
             source=f"{UNSOURCED}; {FLATNESS}",
         )
     if body.wants.actuator != "external":
-        lug = pack_wants.lug_clearance
         d.at_most(
             "piston_fits",
             body.piston_area,
-            rules.piston_fill * np.pi * (pack.inner_width + lug) * (pack.inner_mean_diameter + lug),
+            rules.piston_fill * np.pi * pack.plates.spline_width * pack.plates.spline_mean_diameter,
             "cm2",
             text="A ring piston of that pressure fits between the splines",
             source=UNSOURCED,
@@ -373,7 +374,7 @@ def declare_rules(
             "wear_life",
             wear_life(
                 pack.aid.area_factor * pack.surfaces * ring.area,
-                wear_depth(body.wants, pair),
+                wear_depth(body.wants, pair, pack),
                 pair.part.wear_rate,
                 start.friction_work,
             ),

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import friction, practice
+import numpy as np
+
+from problems import cost, friction, practice
 from problems.friction import startup_curves
 from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
-from problems.multi_plate.requirements import PackOptions
+from problems.multi_plate import plate_sets
+from problems.multi_plate.requirements import MadePackOptions, PackOptions
 from problems.sources import S0
 from synth import DesignProblem
-from synth.declaration import Declaration
+from synth.declaration import Declaration, Part
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,7 +55,8 @@ class MultiPlateClutch(DesignProblem):
             lubrication=lubrication,
             kind=friction.DutyOfPack if scope.rules else friction.Duty,
         )
-        options = d.block(PackOptions)
+        plate_set = plate_sets.declare_plate_set(d)
+        options = d.block(MadePackOptions) if plate_set is None else d.block(PackOptions)
         wants = plate_pack.declare_pack_requirements(
             d, duty=duty, options=options, lubrication=lubrication, rules=scope.rules
         )
@@ -62,13 +66,21 @@ class MultiPlateClutch(DesignProblem):
             body_wants = plate_body.declare_body_requirements(d, lubrication=lubrication, required=required)
         if scope.rules:
             rules = plate_body.declare_pack_rules(d, lubrication=lubrication)
-        ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
+        ring = friction.declare_ring(
+            d,
+            ratio_min=0.15 if scope.rules else 0.10,
+            ratio_max=0.25,
+            diameters=None if plate_set is None else plate_sets.ring_diameters(plate_set),
+        )
         force = self._declare_force(d)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(
             d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
         )
-        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
+        plates = None
+        if plate_set is not None:
+            plates = plate_sets.standard_plates(plate_set, wants=wants, ring=ring)
+        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring, plates=plates)
 
         plate_pack.refuse_impossible_pack(
             d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
@@ -85,6 +97,8 @@ class MultiPlateClutch(DesignProblem):
             torque_high=torque.high,
             needs=("guide_jams",),
         )
+        if plate_set is not None:
+            plate_sets.declare_set_limits(d, plate_set, pair=pair, pack=pack, pressure=torque.pressure)
         start = friction.declare_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
         area = pack.surfaces * ring.area
         friction.declare_surface_loads(
@@ -149,6 +163,9 @@ class MultiPlateClutch(DesignProblem):
                     body=body,
                     cooled_area=pack_size.cooled_area,
                 )
+            self._declare_cost(
+                d, pair=pair, pack=pack, pack_size=pack_size, plate_set=plate_set, mass=body.size.mass, area=area
+            )
         friction.declare_envelope(d, duty=duty, force=force, diameter=size.diameter, length=size.length)
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
         self._declare_objectives(d, scope=scope)
@@ -177,6 +194,25 @@ class MultiPlateClutch(DesignProblem):
             text="Axial force of the actuator on the first plate",
             source=f"{S0}, F0",
         )
+
+    def _declare_cost(
+        self,
+        d: Declaration,
+        *,
+        pair: friction.Pair,
+        pack: plate_pack.Pack,
+        pack_size: plate_pack.PackSize,
+        plate_set: Part | None,
+        mass: Any,
+        area: Any,
+    ) -> None:
+        plates = pack.surfaces + 1
+        if plate_set is None:
+            cost.declare_cost(d, mass=mass, parts=plates, lining=(pair.part, area))
+            return
+        bought = plate_set.filled(cost.UNIT_COST, cost.NONE) > cost.NONE  # with their lining
+        listed = cost.Special(plate_set, amount=plates, mass=pack_size.mass, pieces=plates)
+        cost.declare_cost(d, mass=mass, parts=plates, lining=(pair.part, np.where(bought, 0.0, area)), special=[listed])
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:
         # With the rules of practice a pump presses as hard as its piston allows; least force is then no aim.

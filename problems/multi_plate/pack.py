@@ -11,9 +11,17 @@ import numpy as np
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup, advise_frequent_switching, declare_heated_body
 from problems.friction.ring import RING_OUTER_DIAMETER_MAX, Ring
-from problems.mechanics import guide_friction, heat, plates
+from problems.mechanics import guide_friction, heat
+from problems.mechanics import plates as plate_formulas
 from problems.mechanics import ring as ring_formulas
-from problems.multi_plate.requirements import PackOptions, PackRequirements, PracticePackRequirements
+from problems.multi_plate.requirements import (
+    LugRequirements,
+    MadePackOptions,
+    PackOptions,
+    PackRequirements,
+    PracticeLugRequirements,
+    PracticePackRequirements,
+)
 from problems.sources import S0, S1
 from synth.declaration import Declaration
 
@@ -28,20 +36,41 @@ class ReleaseAid:
 
 
 @dataclass(frozen=True)
-class Pack:
-    """The plates of a multi-plate pack."""
+class Plates:
+    """Inner and outer plates with their splines: made to the sizes that the search finds, or of a list.
 
-    surfaces: Any
+    ``lug_clearance`` is from the ring to the mean radius of the lugs, None where a list tells both;
+    ``lining_thickness`` is that of the plates, None where they take the lining as its row has it.
+    """
+
     inner_thickness: Any
     outer_thickness: Any
     inner_spline_radius: Any
     outer_spline_radius: Any
     inner_mean_diameter: Any
     inner_width: Any
+    outer_mean_diameter: Any
+    outer_width: Any
+    spline_mean_diameter: Any
+    spline_width: Any
     inner_lug_count: Any
     inner_lug_height: Any
     outer_lug_count: Any
     outer_lug_height: Any
+    lug_clearance: Any = None
+    lining_thickness: Any = None
+
+
+@dataclass(frozen=True)
+class Pack:
+    """The plates of a multi-plate pack, how many surfaces they have and how far they stand apart."""
+
+    surfaces: Any
+    plates: Plates
+    inner_thickness: Any
+    outer_thickness: Any
+    inner_spline_radius: Any
+    outer_spline_radius: Any
     gap: Any
     aid: ReleaseAid
 
@@ -72,6 +101,7 @@ def declare_lubrication(d: Declaration) -> str:
         symbol="lub",
         text="Condition on the friction pair; sets the defaults of oil_viscosity and cooling",
         source=f"{S0}, plates in oil",
+        group="duty",
     )
 
 
@@ -120,17 +150,15 @@ def declare_pack_requirements(
     return pack
 
 
-def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: PackRequirements, ring: Ring) -> Pack:
-    """Declare the plates of a pack and their splines.
+def made_plates(d: Declaration, *, options: PackOptions, wants: PackRequirements, ring: Ring) -> Plates:
+    """Declare plates that are made to size around their ring.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    duty : Duty
-        Block duty.
     options : PackOptions
-        Options of the pack.
+        Options of the pack; only those of made plates tell where the inner spline comes from.
     wants : PackRequirements
         Requirements of the pack.
     ring : Ring
@@ -138,18 +166,12 @@ def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: Pac
 
     Returns
     -------
-    Pack
-        The plates.
+    Plates
+        Cores from core_plates, lugs at lug_clearance from the ring.
     """
-    surfaces = d.count(
-        "friction_surfaces",
-        2,
-        60,
-        step=2,
-        symbol="z",
-        text="Friction surface pairs; even, because both end plates are inner plates",
-        source=f"{S0}, x; {S1}, z",
-    )
+    rules = isinstance(wants, PracticePackRequirements)
+    lugs = d.block(PracticeLugRequirements if rules else LugRequirements)
+    lug = lugs.lug_clearance
     inner_plate = d.part(
         "inner_plate",
         "core_plates",
@@ -164,7 +186,7 @@ def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: Pac
         text="Steel core of the outer plates, lined on both sides",
         source="table core_plates",
     )
-    if options.spline_choice == "catalogue":
+    if isinstance(options, MadePackOptions) and options.spline_choice == "catalogue":
         spline = d.part(
             "inner_spline", "splines", symbol="is", text="Spline of the inner plates", source="table splines"
         )
@@ -175,17 +197,78 @@ def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: Pac
         d.at_least(
             "spline_clearance",
             ring.inner_radius - inner_spline_radius,
-            wants.lug_clearance,
+            lug,
             "mm",
             text="The spline stays clear of the friction ring",
             source=f"{S0}, a < r1",
         )
     else:
-        inner_spline_radius = ring.inner_radius - wants.lug_clearance
-        inner_mean_diameter = ring.mean_diameter - wants.lug_clearance
-        inner_width = ring.width + wants.lug_clearance
-        lug_count, lug_height = wants.lugs(ring)
-    outer_lug_count, outer_lug_height = wants.lugs(ring)
+        inner_spline_radius = ring.inner_radius - lug
+        inner_mean_diameter = ring.mean_diameter - lug
+        inner_width = ring.width + lug
+        lug_count, lug_height = lugs.sizes(ring, wants)
+    outer_lug_count, outer_lug_height = lugs.sizes(ring, wants)
+    return Plates(
+        inner_thickness=inner_plate.thickness,
+        outer_thickness=outer_plate.thickness,
+        inner_spline_radius=inner_spline_radius,
+        outer_spline_radius=ring.outer_radius + lug,
+        inner_mean_diameter=inner_mean_diameter,
+        inner_width=inner_width,
+        outer_mean_diameter=ring.mean_diameter + lug,
+        outer_width=ring.width + lug,
+        spline_mean_diameter=inner_mean_diameter + lug,
+        spline_width=inner_width + lug,
+        inner_lug_count=lug_count,
+        inner_lug_height=lug_height,
+        outer_lug_count=outer_lug_count,
+        outer_lug_height=outer_lug_height,
+        lug_clearance=lug,
+    )
+
+
+def declare_pack(
+    d: Declaration,
+    *,
+    duty: Duty,
+    options: PackOptions,
+    wants: PackRequirements,
+    ring: Ring,
+    plates: Plates | None = None,
+) -> Pack:
+    """Declare a pack: how many surfaces, of which plates, how far apart.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Block duty.
+    options : PackOptions
+        Options of the pack.
+    wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+    plates : Plates, optional
+        Plates of a list; without them plates are made to size.
+
+    Returns
+    -------
+    Pack
+        The pack.
+    """
+    surfaces = d.count(
+        "friction_surfaces",
+        2,
+        60,
+        step=2,
+        symbol="z",
+        text="Friction surface pairs; even, because both end plates are inner plates",
+        source=f"{S0}, x; {S1}, z",
+    )
+    if plates is None:
+        plates = made_plates(d, options=options, wants=wants, ring=ring)
     aid_row = None if options.release_aid == "none" else d.row("release_aids", options.release_aid)
     d.derive(
         "outer_plates",
@@ -205,12 +288,13 @@ def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: Pac
     )
     pack = Pack(
         surfaces=surfaces,
-        inner_thickness=inner_plate.thickness,
-        outer_thickness=outer_plate.thickness,
+        plates=plates,
+        inner_thickness=plates.inner_thickness,
+        outer_thickness=plates.outer_thickness,
         inner_spline_radius=d.derive(
             "inner_spline_radius",
             "mm",
-            inner_spline_radius,
+            plates.inner_spline_radius,
             symbol="a",
             text="Mean spline radius of the inner plates",
             source=f"{S0}, a",
@@ -218,17 +302,11 @@ def declare_pack(d: Declaration, *, duty: Duty, options: PackOptions, wants: Pac
         outer_spline_radius=d.derive(
             "outer_spline_radius",
             "mm",
-            ring.outer_radius + wants.lug_clearance,
+            plates.outer_spline_radius,
             symbol="b",
             text="Mean spline radius of the outer plates",
             source=f"{S0}, b",
         ),
-        inner_mean_diameter=inner_mean_diameter,
-        inner_width=inner_width,
-        inner_lug_count=lug_count,
-        inner_lug_height=lug_height,
-        outer_lug_count=outer_lug_count,
-        outer_lug_height=outer_lug_height,
         gap=wants.gap(duty, ring),
         aid=ReleaseAid()
         if aid_row is None
@@ -275,23 +353,26 @@ def refuse_impossible_pack(
     required : symbol
         Sizing torque M_req [N m].
     """
+    lug = pack.plates.lug_clearance
+    if lug is None:
+        return  # of plates of a list the sizes are known, and limits tell what is wrong with them
     if wants.hub_bore_diameter is not None and duty.outer_diameter_limit is not None:
-        least_inner = wants.hub_bore_diameter + 2 * wants.lug_clearance
+        least_inner = wants.hub_bore_diameter + 2 * lug
         least_outer = least_inner * (1 + ring.ratio_min) / (1 - ring.ratio_min)
         d.refuse(
             "no_room_for_ring",
-            least_outer + 2 * wants.lug_clearance + 2 * wants.drum_wall > duty.outer_diameter_limit,
+            least_outer + 2 * lug + 2 * wants.drum_wall > duty.outer_diameter_limit,
             "room for a friction ring of at least ring_ratio_min between hub_bore_diameter and "
             "outer_diameter_limit, besides lug_clearance and drum_wall",
         )
     # Series (10) overshoots the saturation by the factor 1 + S, so that nothing can be said beforehand there.
     saturates = options.guide_model == "series" and options.guide_series != "exponential_K"
     if duty.actuation_force_limit is not None and saturates:
-        outer_spline = RING_OUTER_DIAMETER_MAX / 2000 + wants.lug_clearance
+        outer_spline = RING_OUTER_DIAMETER_MAX / 2000 + lug
         if duty.outer_diameter_limit is not None:
             outer_spline = np.minimum(outer_spline, duty.outer_diameter_limit / 2 - wants.drum_wall)
-        outer_radius = outer_spline - wants.lug_clearance
-        inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - wants.lug_clearance
+        outer_radius = outer_spline - lug
+        inner_spline = outer_radius * (1 - ring.ratio_min) / (1 + ring.ratio_min) - lug
         net_force = duty.actuation_force_limit * (1 - pack.aid.force_fraction)
         d.refuse(
             "torque_above_guide_limit",
@@ -474,8 +555,12 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
     outer = d.derive(
         "lug_pressure_outer",
         "N/mm2",
-        plates.lug_pressure(
-            outer_torque, pack.outer_spline_radius, pack.outer_lug_count, pack.outer_lug_height, pack.outer_thickness
+        plate_formulas.lug_pressure(
+            outer_torque,
+            pack.outer_spline_radius,
+            pack.plates.outer_lug_count,
+            pack.plates.outer_lug_height,
+            pack.outer_thickness,
         ),
         symbol="p_lo",
         needs="guide_jams",
@@ -485,8 +570,12 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
     inner = d.derive(
         "lug_pressure_inner",
         "N/mm2",
-        plates.lug_pressure(
-            inner_torque, pack.inner_spline_radius, pack.inner_lug_count, pack.inner_lug_height, pack.inner_thickness
+        plate_formulas.lug_pressure(
+            inner_torque,
+            pack.inner_spline_radius,
+            pack.plates.inner_lug_count,
+            pack.plates.inner_lug_height,
+            pack.inner_thickness,
         ),
         symbol="p_li",
         needs="guide_jams",
@@ -524,7 +613,7 @@ def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: R
         "drag_torque",
         "N*m",
         pack.aid.drag_factor
-        * plates.drag_torque(
+        * plate_formulas.drag_torque(
             pack.surfaces, wants.oil_viscosity, wants.released_speed(duty), ring.mean_diameter, ring.ratio, pack.gap
         ),
         symbol="T_drag",
@@ -545,28 +634,29 @@ def declare_drag(d: Declaration, *, duty: Duty, wants: PackRequirements, ring: R
 
 def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack: Pack) -> PackSize:
     """Return mass, size and heat capacity of a pack."""
-    z, lining = pack.surfaces, pair.part.lining_thickness
-    steel = plates.annulus_mass(
+    z, plates = pack.surfaces, pack.plates
+    lining = pair.part.lining_thickness if plates.lining_thickness is None else plates.lining_thickness
+    steel = plate_formulas.annulus_mass(
         duty.steel_density,
         ring_formulas.inner_plate_count(z),
         pack.inner_thickness,
-        pack.inner_mean_diameter,
-        pack.inner_width,
-    ) + plates.annulus_mass(
+        plates.inner_mean_diameter,
+        plates.inner_width,
+    ) + plate_formulas.annulus_mass(
         duty.steel_density,
         ring_formulas.outer_plate_count(z),
         pack.outer_thickness,
-        ring.mean_diameter + wants.lug_clearance,
-        ring.width + wants.lug_clearance,
+        plates.outer_mean_diameter,
+        plates.outer_width,
     )
-    diameter = plates.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
-    length = plates.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, pack.gap)
+    diameter = plate_formulas.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
+    length = plate_formulas.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, pack.gap)
     return PackSize(
-        mass=steel + plates.lining_mass(pair.part.density, lining, z * ring.area),
+        mass=steel + plate_formulas.lining_mass(pair.part.density, lining, z * ring.area),
         diameter=diameter,
         length=length,
         heat_capacity=steel * duty.steel_specific_heat,
-        cooled_area=plates.cylinder_surface(diameter, length),
+        cooled_area=plate_formulas.cylinder_surface(diameter, length),
     )
 
 

@@ -17,6 +17,8 @@ FLATNESS = "out of flat 0.10 mm (AP Racing) and 0.15 mm (Harley-Davidson) when p
 class PackOptions(Block):
     """Options of a multi-plate pack."""
 
+    group = "model"
+
     guide_model = Option(
         ("series", "cz"),
         "series",
@@ -37,13 +39,7 @@ class PackOptions(Block):
         symbol="aid",
         text="What separates the plates of the released pack",
         source=f"{S0}, release of the plates",
-    )
-    spline_choice = Option(
-        ("free", "catalogue"),
-        "free",
-        symbol="spl",
-        text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
-        source="table splines",
+        group="actuator",
     )
     shaft_position = Option(
         ("horizontal", "vertical"),
@@ -51,11 +47,26 @@ class PackOptions(Block):
         symbol="pos",
         text="Position of the shaft",
         source=f"{S0}, vertical shafts",
+        group="duty",
+    )
+
+
+class MadePackOptions(PackOptions):
+    """Options of a pack whose plates are made to size."""
+
+    spline_choice = Option(
+        ("free", "catalogue"),
+        "free",
+        symbol="spl",
+        text="free: the inner spline follows the ring; catalogue: it is a row of table splines",
+        source="table splines",
     )
 
 
 class PackRequirements(Block):
     """Requirements of a multi-plate pack, all in SI; None where an optional one is not given."""
+
+    group = "model"
 
     surface_factor = Requirement(
         "-",
@@ -73,6 +84,7 @@ class PackRequirements(Block):
         symbol="mu_guide",
         text="Friction of the plates in their splines",
         source=f"{S0}, mu1",
+        group="material",
     )
     hub_bore_diameter = Requirement(
         "mm",
@@ -82,6 +94,7 @@ class PackRequirements(Block):
         symbol="d_hub_min",
         text="Least mean diameter 2a of the inner spline: room for the shaft",
         source="requirement of the drive",
+        group="envelope",
     )
     drag_torque_limit = Requirement(
         "N*m",
@@ -91,6 +104,7 @@ class PackRequirements(Block):
         symbol="T_drag_max",
         text="Largest drag of the released clutch",
         source=f"{S0}, after-running",
+        group="duty",
     )
     oil_viscosity = Requirement(
         "Pa*s",
@@ -99,21 +113,7 @@ class PackRequirements(Block):
         symbol="eta_oil",
         text=f"Dynamic viscosity of the oil, 0 when dry ({TYPICAL})",
         source=TYPICAL,
-    )
-    lug_clearance = Requirement(
-        "mm",
-        3,
-        lower=0.1,
-        upper=30,
-        symbol="e_lug",
-        text="From the edge of the friction ring to the mean spline radius",
-        source=f"{S0}, example",
-    )
-    lug_count = Requirement(
-        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
-    )
-    lug_height = Requirement(
-        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
+        group="material",
     )
     lug_pressure_limit = Requirement(
         "N/mm2",
@@ -123,6 +123,7 @@ class PackRequirements(Block):
         symbol="p_lug_allow",
         text=f"Pressure of the lugs on the spline flanks; 25 to 40 when hardened ({TYPICAL})",
         source=TYPICAL,
+        group="material",
     )
     drum_wall = Requirement(
         "mm",
@@ -143,9 +144,9 @@ class PackRequirements(Block):
         source=f"{S0}, eq. (16)",
     )
 
-    def lugs(self, ring: Ring) -> tuple[Any, Any]:
-        """Return number and height [m] of the lugs of a plate that carry."""
-        return self.lug_count, self.lug_height
+    def carrying(self, teeth: Any) -> Any:
+        """Return how many of all teeth of a plate carry."""
+        return teeth
 
     def gap(self, duty: Duty, ring: Ring) -> Any:
         """Return the release gap per surface [m]."""
@@ -157,35 +158,10 @@ class PackRequirements(Block):
 
 
 class PracticePackRequirements(PackRequirements):
-    """Requirements of a pack whose lugs and gap grow with its diameter where they are not given."""
+    """Requirements of a pack whose gap grows with its diameter where it is not given."""
 
-    lug_count = Requirement(
-        "-",
-        lower=3,
-        upper=200,
-        optional=True,
-        symbol="n_lug",
-        text="Lugs of a plate that carry; by default the share lug_share of teeth of lug_module all around",
-        source=UNSOURCED,
-    )
-    lug_height = Requirement(
-        "mm",
-        lower=0.5,
-        upper=30,
-        optional=True,
-        symbol="h_lug",
-        text="Loaded flank height of a lug; by default lug_module",
-        source=UNSOURCED,
-    )
-    lug_module = Requirement(
-        "mm",
-        3,
-        lower=0.5,
-        upper=20,
-        symbol="m_l",
-        text=f"Module of involute or straight teeth all around the plates ({UNSOURCED})",
-        source=UNSOURCED,
-    )
+    group = "practice"
+
     lug_share = Requirement(
         "-",
         0.5,
@@ -219,12 +195,12 @@ class PracticePackRequirements(PackRequirements):
         symbol="omega_drag",
         text="Speed between the released plates at which their drag is judged; by default driver_speed",
         source="requirement of the drive",
+        group="duty",
     )
 
-    def lugs(self, ring: Ring) -> tuple[Any, Any]:
-        """Return number and height [m] of the lugs that carry: teeth all around, more of them on larger rings."""
-        count = self.lug_share * 2 * ring.inner_radius / self.lug_module if self.lug_count is None else self.lug_count
-        return count, self.lug_module if self.lug_height is None else self.lug_height
+    def carrying(self, teeth: Any) -> Any:
+        """Return how many of all teeth of a plate carry: the share lug_share."""
+        return self.lug_share * teeth
 
     def gap(self, duty: Duty, ring: Ring) -> Any:
         """Return the release gap per surface [m], which grows with the diameter."""
@@ -236,8 +212,76 @@ class PracticePackRequirements(PackRequirements):
         return self.drag_speed
 
 
+class LugRequirements(Block):
+    """Lugs of plates that are made to size, all in SI."""
+
+    group = "model"
+
+    lug_clearance = Requirement(
+        "mm",
+        3,
+        lower=0.1,
+        upper=30,
+        symbol="e_lug",
+        text="From the edge of the friction ring to the mean spline radius",
+        source=f"{S0}, example",
+    )
+    lug_count = Requirement(
+        "-", 12, lower=3, upper=200, symbol="n_lug", text=f"Lugs of a plate that carry ({TYPICAL})", source=TYPICAL
+    )
+    lug_height = Requirement(
+        "mm", 3, lower=0.5, upper=30, symbol="h_lug", text=f"Loaded flank height of a lug ({TYPICAL})", source=TYPICAL
+    )
+
+    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
+        """Return number and height [m] of the lugs of a plate that carry."""
+        return self.lug_count, self.lug_height
+
+
+class PracticeLugRequirements(LugRequirements):
+    """Lugs that grow in number with the diameter where they are not given, all in SI."""
+
+    lug_count = Requirement(
+        "-",
+        lower=3,
+        upper=200,
+        optional=True,
+        symbol="n_lug",
+        text="Lugs of a plate that carry; by default the share lug_share of teeth of lug_module all around",
+        source=UNSOURCED,
+        group="model",
+    )
+    lug_height = Requirement(
+        "mm",
+        lower=0.5,
+        upper=30,
+        optional=True,
+        symbol="h_lug",
+        text="Loaded flank height of a lug; by default lug_module",
+        source=UNSOURCED,
+        group="model",
+    )
+    lug_module = Requirement(
+        "mm",
+        3,
+        lower=0.5,
+        upper=20,
+        symbol="m_l",
+        text=f"Module of involute or straight teeth all around the plates ({UNSOURCED})",
+        source=UNSOURCED,
+        group="practice",
+    )
+
+    def sizes(self, ring: Ring, wants: PackRequirements) -> tuple[Any, Any]:
+        """Return number and height [m] of the lugs that carry: teeth all around, more of them on larger rings."""
+        count = wants.carrying(2 * ring.inner_radius / self.lug_module) if self.lug_count is None else self.lug_count
+        return count, self.lug_module if self.lug_height is None else self.lug_height
+
+
 class PackRules(Block):
     """Rules for packs, all in SI."""
+
+    group = "practice"
 
     friction_surfaces_max = Requirement(
         "-",
@@ -308,11 +352,14 @@ class PackRules(Block):
         symbol="N_w_min",
         text="Least engagements until the linings are worn",
         source="requirement of the drive",
+        group="duty",
     )
 
 
 class BodyRequirements(ShaftRequirements):
     """What a complete multi-plate clutch has around its pack, all in SI."""
+
+    group = "actuator"
 
     actuator = Option(
         ("hydraulic", "pneumatic", "external"),
@@ -336,6 +383,7 @@ class BodyRequirements(ShaftRequirements):
         symbol="k_end",
         text=f"Ring diameter over thickness of end plates, drum bottom, web and piston ({UNSOURCED})",
         source=UNSOURCED,
+        group="practice",
     )
     wear_depth_limit = Requirement(
         "mm",
@@ -345,4 +393,5 @@ class BodyRequirements(ShaftRequirements):
         text="Wear of one lining before it is replaced, where less than its wearable_depth (six packs in oil: 0.2 mm; "
         "eight dry car discs: 1.0 mm)",
         source=UNSOURCED,
+        group="practice",
     )

@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from problems.mechanics import Quantity
+from problems.mechanics.shaft import BOSS_LENGTH
 
 # ISO 76: a line contact loaded beyond this is dented by more than 0.0001 of the roller diameter [Pa].
 STATIC_CONTACT_LIMIT = 4.0e9
@@ -969,6 +970,45 @@ def arms_mass(density: Quantity, arm_radius: Quantity, bore: Quantity) -> Quanti
     2.11008
     """
     return 2 * density * (2 * arm_radius + 2 * bore) * (2 * bore) * (1.2 * bore)
+
+
+def coupling_length(
+    float_width: Quantity,
+    roller_width: Quantity,
+    pin_gap: Quantity,
+    bore: Quantity,
+    shaft_diameter: Quantity,
+    counter: Quantity = 0.0,
+) -> Quantity:
+    """Length over both bosses, max(b_f, B) + 2 g + 2 (1.2 d + 1.2 d_s), and b_f + g for a counter float beside.
+
+    Parameters
+    ----------
+    float_width, roller_width, pin_gap : scalar, array or symbol
+        b_f, B, gap between arm face and roller g [m].
+    bore, shaft_diameter : scalar, array or symbol
+        Pin diameter d, which tells how thick an arm is, and shaft d_s, which tells how long a boss is [m].
+    counter : scalar, array or symbol
+        1 with a counter float, 0 without one [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Length [m].
+
+    References
+    ----------
+    ext: proportions of :func:`arms_mass` and of the boss.
+
+    Examples
+    --------
+    By hand, 19 + 2 x 2 + 2 (1.2 x 15 + 1.2 x 40):
+
+    >>> float(1000 * coupling_length(0.011, 0.019, 0.002, 0.015, 0.040))
+    155.0
+    """
+    between = np.maximum(float_width, roller_width) + 2 * pin_gap + counter * (float_width + pin_gap)
+    return between + 2 * (1.2 * bore + BOSS_LENGTH * shaft_diameter)
 
 
 def ligament_stress(factor: Quantity, normal_force: Quantity, rim: Quantity, width: Quantity) -> Quantity:

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems import cost, practice
 from problems.mechanics import contact as hertz
+from problems.roller_coupling import body as coupling_body
 from problems.roller_coupling import curves, formulas
 from problems.sources import DRIVE, EXTENDS_S3, S3, TYPICAL
 from synth import DesignProblem
@@ -53,9 +55,19 @@ GUIDES = {
 class Wants(Block):
     """Requirements, all in SI; None where an optional one is not given."""
 
-    required_torque = Requirement("N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit", source=f"{S3}, M")
+    group = "model"
+
+    required_torque = Requirement(
+        "N*m", lower=0.1, upper=1e6, symbol="M", text="Torque to transmit", source=f"{S3}, M", group="duty"
+    )
     driver_speed = Requirement(
-        "1/min", lower=0, upper=60000, symbol="omega", text="Speed of the driving shaft", source=f"{S3}, n"
+        "1/min",
+        lower=0,
+        upper=60000,
+        symbol="omega",
+        text="Speed of the driving shaft",
+        source=f"{S3}, n",
+        group="duty",
     )
     offset = Requirement(
         "mm",
@@ -64,6 +76,7 @@ class Wants(Block):
         symbol="e",
         text="Parallel offset of the shafts; of skew shafts the length of their common normal",
         source=f"{S3}, e",
+        group="duty",
     )
     shaft_angle = Requirement(
         "deg",
@@ -74,6 +87,7 @@ class Wants(Block):
         text="Angle between the shafts; the source's example has 2.5 degrees, beyond 10 the tilt of the rollers in "
         "the guides would have to be modelled",
         source=f"{S3}, chapter XII",
+        group="duty",
     )
     float_distance = Requirement(
         "mm",
@@ -83,6 +97,7 @@ class Wants(Block):
         symbol="h",
         text="Distance of the float plane from the intersection or the common normal of the shafts",
         source=f"{S3}, chapter XII, h",
+        group="duty",
     )
     outer_diameter_limit = Requirement(
         "mm",
@@ -92,9 +107,17 @@ class Wants(Block):
         symbol="D_max",
         text="Largest diameter that the float sweeps",
         source=DRIVE,
+        group="envelope",
     )
     mass_limit = Requirement(
-        "kg", lower=0.01, upper=1e5, optional=True, symbol="mass_max", text="Largest mass", source=DRIVE
+        "kg",
+        lower=0.01,
+        upper=1e5,
+        optional=True,
+        symbol="mass_max",
+        text="Largest mass",
+        source=DRIVE,
+        group="envelope",
     )
     vibration_limit = Requirement(
         "N",
@@ -104,6 +127,7 @@ class Wants(Block):
         symbol="vib_max",
         text="Largest amplitude of the force on each shaft at twice the speed",
         source=DRIVE,
+        group="duty",
     )
     guide_angle = Requirement(
         "deg",
@@ -149,6 +173,7 @@ class Wants(Block):
         symbol="s3_min",
         text="Least clearance for pulling apart; counts with sideways_removable yes",
         source=f"{S3}, s3 in eq. (21)",
+        group="duty",
     )
     pin_gap = Requirement(
         "mm", 2, lower=0, upper=50, symbol="g_pin", text=f"Gap between arm face and roller ({TYPICAL})", source=TYPICAL
@@ -161,6 +186,7 @@ class Wants(Block):
         symbol="g_ax",
         text=f"The guide is wider than the contact by this, each side ({TYPICAL})",
         source=TYPICAL,
+        group="duty",
     )
     rim_min = Requirement(
         "mm",
@@ -179,6 +205,7 @@ class Wants(Block):
         symbol="sigma_c",
         text="Allowed stress sigma_c of the pins, twice the shear stress",
         source=f"{S3}, eq. (16), 400 kp/cm2",
+        group="material",
     )
     pin_stress_limit = Requirement(
         "N/mm2",
@@ -188,6 +215,7 @@ class Wants(Block):
         symbol="sigma_pin",
         text=f"Allowed equivalent stress of the pins in bending ({TYPICAL})",
         source=TYPICAL,
+        group="material",
     )
     static_safety = Requirement(
         "-", 1.0, lower=0.5, upper=10, symbol="S_0", text="Static safety of the rolling bearings", source="ISO 76, s0"
@@ -201,6 +229,7 @@ class Wants(Block):
         text="Oscillating bearings may carry this multiple of C0; 1 without offset, because then the same "
         "balls stay loaded",
         source=f"{S3}, chapter XI: up to 4 times, the lower figure is illegible",
+        group="duty",
     )
     retention_margin = Requirement(
         "-",
@@ -228,6 +257,7 @@ class Wants(Block):
         symbol="E_r",
         text="Young's modulus of the rollers",
         source="material constant of bearing steel",
+        group="material",
     )
     roller_poisson = Requirement(
         "-",
@@ -237,6 +267,7 @@ class Wants(Block):
         symbol="nu_r",
         text="Poisson's ratio of the rollers",
         source="material constant of bearing steel",
+        group="material",
     )
     crown_radius = Requirement(
         "mm",
@@ -255,6 +286,7 @@ class Wants(Block):
         symbol="mu_roll",
         text=f"Rolling friction in the guides, for the efficiency ({TYPICAL})",
         source=TYPICAL,
+        group="material",
     )
     steel_density = Requirement(
         "kg/m3",
@@ -264,6 +296,7 @@ class Wants(Block):
         symbol="rho_s",
         text="Density of pins and arms",
         source="material constant",
+        group="material",
     )
 
     @cached_property
@@ -288,13 +321,14 @@ class Unknowns:
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces of a design."""
+    """Forces of a design, and the radius of the float."""
 
     tangential: Any
     centrifugal: Any
     normal: Any
     pin: Any
     vibration: Any
+    float_radius: Any
 
 
 class RollerCoupling(DesignProblem):
@@ -324,6 +358,8 @@ class RollerCoupling(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
+        track = scope.rules and coupling_body.declare_roller_kind(d) == "track"
         guide = d.option(
             "guide",
             tuple(GUIDES),
@@ -332,6 +368,7 @@ class RollerCoupling(DesignProblem):
             text="How the arms are joined to the float: by rollers, or as in the predecessors that the source "
             "describes (advice only, they are not sized)",
             source=f"{S3}, chapters X and XI",
+            group="model",
         )
         removable = d.option(
             "sideways_removable",
@@ -340,30 +377,53 @@ class RollerCoupling(DesignProblem):
             symbol="sw",
             text="yes: an arm can be pulled out sideways through the other guide, shafts staying in place",
             source=f"{S3}, eq. (21)",
+            group="duty",
         )
         contact = d.option(
             "roller_contact",
             ("line", "crowned"),
-            "line",
+            "crowned" if track else "line",
             symbol="rc",
             text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact",
             source=f"{S3}, XIV.3",
+            group="model",
         )
-        wants = d.block(Wants)
-        unknowns = self._declare_unknowns(d, contact=contact)
+        wants = d.block(Wants, rim_min=coupling_body.RIM_PRACTICE) if scope.rules else d.block(Wants)
+        body_wants = None
+        if scope.rules or scope.complete:
+            body_wants = coupling_body.declare_body_requirements(d, torque=wants.required_torque)
+        rules = d.block(coupling_body.CouplingRules) if scope.rules else None
+        unknowns = self._declare_unknowns(d, contact=contact, track=track)
         self._refuse_impossible(d, wants=wants, unknowns=unknowns, guide=guide, removable=removable, contact=contact)
-        loads = self._declare_loads(d, wants=wants, unknowns=unknowns)
+        loads = self._declare_loads(d, wants=wants, unknowns=unknowns, body_wants=body_wants, scope=scope)
         self._declare_clearances(d, wants=wants, unknowns=unknowns, removable=removable)
         self._declare_strength(d, wants=wants, unknowns=unknowns, loads=loads, contact=contact)
+        if rules is not None:
+            coupling_body.declare_rules(
+                d,
+                rules=rules,
+                roller=unknowns.roller,
+                material=unknowns.material,
+                contact_length=unknowns.contact_length,
+                rim=unknowns.rim,
+                float_width=d.derived["float_width"].sx,
+                float_radius=loads.float_radius,
+            )
         self._declare_remarks(d, wants=wants, unknowns=unknowns, guide=guide)
         for name in ("outer_diameter", "mass"):
             d.objective(name)
         d.objective("pin_force", default=False)
         d.objective("offset_capacity", "max", default=False)
         d.objective("vibration_force", default=False)
+        if body_wants is not None:
+            d.objective("length", default=False)
 
-    def _declare_unknowns(self, d: Declaration, *, contact: str) -> Unknowns:
-        crowned = contact == "crowned"
+    def _declare_unknowns(self, d: Declaration, *, contact: str, track: bool) -> Unknowns:
+        conditions = (
+            ["crowned == 1"] if contact == "crowned" else ["crowned == 0", "kind != 'spherical_roller_bearing'"]
+        )
+        if track:
+            conditions += coupling_body.track_rollers(d, contact=contact)
         return Unknowns(
             arm_radius=d.variable(
                 "arm_radius",
@@ -428,7 +488,7 @@ class RollerCoupling(DesignProblem):
             roller=d.part(
                 "roller",
                 "guide_rolling_bearings",
-                where="crowned == 1" if crowned else ("crowned == 0", "kind != 'spherical_roller_bearing'"),
+                where=tuple(conditions),
                 symbol="rol",
                 text="Rolling bearing on each pin whose outer ring rolls in the guide",
                 source="table guide_rolling_bearings",
@@ -514,7 +574,15 @@ class RollerCoupling(DesignProblem):
                 "that fits the offset shakes more",
             )
 
-    def _declare_loads(self, d: Declaration, *, wants: Wants, unknowns: Unknowns) -> Loads:
+    def _declare_loads(
+        self,
+        d: Declaration,
+        *,
+        wants: Wants,
+        unknowns: Unknowns,
+        body_wants: coupling_body.CouplingBodyRequirements | None,
+        scope: practice.Scope,
+    ) -> Loads:
         roller, offset = unknowns.roller, wants.effective_offset
         diameter, radius = roller.outer_diameter, unknowns.arm_radius
         d.derive(
@@ -636,12 +704,38 @@ class RollerCoupling(DesignProblem):
             source="geometry, 2 (R_f + e_eff/sin(chi))",
         )
         arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
+        part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
+        bosses = 0.0
+        if body_wants is not None:
+            coupling_body.declare_body(d, wants=body_wants, part_mass=part_mass, arm_radius=radius)
+            d.derive(
+                "length",
+                "mm",
+                formulas.coupling_length(
+                    width, roller.width, wants.pin_gap, roller.bore, body_wants.shaft_diameter, counter
+                ),
+                symbol="L",
+                text="Over the bosses of both arms, with a counter float beside the float",
+                source="geometry",
+            )
+            bosses = 2 * body_wants.boss_mass(wants.steel_density)
+            self._declare_cost(
+                d,
+                unknowns=unknowns,
+                mass=part_mass + bosses,
+                float_mass=float_mass * (1 + counter),
+                floats=1 + counter,
+                roller_mass=4 * roller_mass,
+            )
+            if not scope.complete:
+                bosses = 0.0
         mass = d.derive(
             "mass",
             "kg",
-            float_mass * (1 + counter) + 4 * roller_mass + arms,
+            part_mass + bosses,
             symbol="m",
-            text="Float, counter float, rollers with pins, and arms; without hubs",
+            text="Float, counter float, rollers with pins, and arms; "
+            + ("with their bosses" if scope.complete else "without hubs"),
             source="geometry",
         )
         if wants.outer_diameter_limit is not None:
@@ -664,7 +758,22 @@ class RollerCoupling(DesignProblem):
                 text="The shafts do not shake too much",
                 source=DRIVE,
             )
-        return Loads(tangential, centrifugal, normal, pin, vibration)
+        return Loads(tangential, centrifugal, normal, pin, vibration, float_radius)
+
+    def _declare_cost(
+        self, d: Declaration, *, unknowns: Unknowns, mass: Any, float_mass: Any, floats: Any, roller_mass: Any
+    ) -> None:
+        parts = 2 + 4 + floats  # arms, rollers with their pins, float and counter float
+        special = [
+            cost.Special(
+                unknowns.material,
+                amount=float_mass,
+                mass=float_mass,
+                factor=unknowns.material.filled("relative_cost_per_kg", 1.0),
+            ),
+            cost.Special(unknowns.roller, amount=4, mass=roller_mass, pieces=4, piece_factor=cost.ROLLER),
+        ]
+        cost.declare_cost(d, mass=mass, parts=parts, special=special)
 
     def _declare_clearances(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, removable: str) -> None:
         radius, capacity = unknowns.arm_radius, unknowns.offset_capacity

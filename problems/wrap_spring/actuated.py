@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from problems import practice
+from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, TYPICAL
-from problems.wrap_spring import blocks, curves, formulas
+from problems.wrap_spring import blocks, body, curves, formulas
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -22,8 +24,14 @@ class ClearanceDuty(blocks.Duty):
     )
 
 
+class PracticeClearanceDuty(ClearanceDuty, blocks.PracticeDuty):
+    """What the drive asks of a clutch with this fit, by the rules of practice."""
+
+
 class Wants(Block):
     """Requirements of the clearance fit alone, all in SI; None where an optional one is not given."""
+
+    group = "model"
 
     clearance_min = Requirement(
         "mm",
@@ -41,9 +49,17 @@ class Wants(Block):
         symbol="omega_rel",
         text="Speed between the hub and the held free end; gives engagement_time only",
         source=DRIVE,
+        group="duty",
     )
     actuator_torque_limit = Requirement(
-        "N*m", lower=1e-4, upper=1e4, optional=True, symbol="T0_max", text="Largest energising torque", source=DRIVE
+        "N*m",
+        lower=1e-4,
+        upper=1e4,
+        optional=True,
+        symbol="T0_max",
+        text="Largest energising torque",
+        source=DRIVE,
+        group="actuator",
     )
     wrap_angle_limit = Requirement(
         "rad",
@@ -53,6 +69,7 @@ class Wants(Block):
         symbol="phi_max",
         text="Largest angle until the coils are closed; 3 rad is usual",
         source=DRIVE,
+        group="duty",
     )
     fixed_coils = Requirement(
         "-",
@@ -74,6 +91,62 @@ class Wants(Block):
     )
 
 
+class PracticeWants(Wants):
+    """Requirements of the clearance fit by the rules of practice."""
+
+    actuator_torque_limit = replace(
+        Wants.actuator_torque_limit,
+        optional=False,
+        text=f"Largest energising torque; by default a tenth of required_torque ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
+class CollarRequirements(body.BodyRequirements):
+    """Shaft, bosses and control collar of a complete clutch, all in SI."""
+
+    group = "practice"
+
+    collar_wall = Requirement(
+        "mm",
+        3,
+        lower=0.2,
+        upper=50,
+        symbol="t_col",
+        text=f"Wall of the control collar around the spring ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+    def collar_mass(self, *, duty: blocks.Duty, spring: blocks.Size, clearance: Any) -> Any:
+        """Return the mass of the control collar [kg]."""
+        return formulas.collar_mass(duty.hub_density, spring.diameter, clearance, self.collar_wall, spring.length)
+
+    def with_collar(self, *, duty: blocks.Duty, spring: blocks.Size, clearance: Any) -> blocks.Size:
+        """Return the size of the clutch with its bosses and the collar around the spring."""
+        whole = self.whole_size(duty=duty, spring=spring)
+        return blocks.Size(
+            mass=whole.mass + self.collar_mass(duty=duty, spring=spring, clearance=clearance),
+            length=whole.length,
+            diameter=formulas.collar_diameter(spring.diameter, clearance, self.collar_wall),
+        )
+
+
+class Rules(body.SpringRules):
+    """Rules for this fit, all in SI."""
+
+    group = "practice"
+
+    tang_length_ratio = Requirement(
+        "-",
+        2,
+        lower=0.01,
+        upper=20,
+        symbol="k_tang",
+        text=f"Length of the tang, at whose end it is held, over the width of the wire ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
 class ActuatedWrapSpringClutch(DesignProblem):
     """Wrap spring clutch, clearance fit, engaged by a torque on the free end of the spring (tang, control collar).
 
@@ -87,9 +160,20 @@ class ActuatedWrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
         options = d.block(blocks.Options)
-        duty = blocks.declare_duty(d, kind=ClearanceDuty)
-        wants = d.block(Wants)
+        body_wants = d.block(CollarRequirements) if scope.rules or scope.complete else None
+        duty = blocks.declare_duty(
+            d,
+            kind=PracticeClearanceDuty if scope.rules else ClearanceDuty,
+            bore=None if body_wants is None else body_wants.bore,
+        )
+        wants = (
+            d.block(PracticeWants, actuator_torque_limit=body.FREE_SHARE * duty.required_torque)
+            if scope.rules
+            else d.block(Wants)
+        )
+        rules = d.block(Rules) if scope.rules else None
         clearance = d.variable(
             "clearance",
             "mm",
@@ -162,7 +246,28 @@ class ActuatedWrapSpringClutch(DesignProblem):
             text="The hub has a wall around its bore",
             source="geometry",
         )
-        blocks.declare_size(d, duty=duty, wire=wire, coils=coils, fixed_coils=wants.fixed_coils)
+        spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils, fixed_coils=wants.fixed_coils)
+        size = spring
+        if body_wants is not None and scope.complete:
+            size = body_wants.with_collar(duty=duty, spring=spring, clearance=clearance)
+        blocks.declare_size(
+            d, duty=duty, size=size, whole=scope.complete, outside="collar" if scope.complete else "coils"
+        )
+        if body_wants is not None:
+            body.declare_parts(d, duty=duty, wants=body_wants, spring=spring)
+            whole = body_wants.with_collar(duty=duty, spring=spring, clearance=clearance)
+            body.declare_cost(d, wire=wire, spring=spring, mass=whole.mass, parts=4)
+            d.derive(
+                "collar_mass",
+                "kg",
+                body_wants.collar_mass(duty=duty, spring=spring, clearance=clearance),
+                symbol="m_col",
+                text="Control collar around the spring",
+                source="geometry",
+            )
+        if rules is not None:
+            body.limit_spring(d, rules=rules, wire=wire, coils=coils)
+            self._declare_tang(d, rules=rules, wire=wire, coils=coils, actuator=actuator)
         tired = formulas.goodman_utilisation(1.0, 0.0, stress, wire.endurance_amplitude, wire.tensile_strength)
         d.advise(
             "fatigue_of_the_wire",
@@ -171,16 +276,39 @@ class ActuatedWrapSpringClutch(DesignProblem):
             "lies above Goodman's line",
             source=f"Goodman; {NOT_IN_S2}",
         )
+        # By the rules of practice the energising torque is bounded, and what is left to ask for is a small clutch.
         d.objective("mass")
-        d.objective("actuator_torque")
+        d.objective("actuator_torque", default=rules is None)
         for name in ("wrap_angle", "outer_diameter"):
             d.objective(name, default=False)
+        if rules is not None:
+            d.objective("length")
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
         """Return torque over friction and energising torque, actuation over clearance, and what the coils feel."""
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def _declare_tang(
+        self, d: Declaration, *, rules: Rules, wire: blocks.Wire, coils: blocks.Coils, actuator: Any
+    ) -> None:
+        stress = d.derive(
+            "tang_stress",
+            "N/mm2",
+            formulas.tang_stress(actuator, coils.mean_radius, wire.thickness, rules.tang_length_ratio),
+            symbol="sigma_t",
+            text="Bending stress of the tang under the energising torque",
+            source=f"bending of a cantilever; {NOT_IN_S2}",
+        )
+        d.at_most(
+            "tang",
+            stress,
+            wire.bending_allow,
+            "N/mm2",
+            text="The tang that holds the free end does not yield",
+            source=f"bending of a cantilever; {NOT_IN_S2}",
+        )
 
     def _declare_actuation(
         self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, widest: Any, actuator: Any

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,8 @@ COILS_RANGE = (2, 12)
 class Options(Block):
     """Options that both fits have."""
 
+    group = "model"
+
     model = Option(
         formulas.MODELS,
         "refined",
@@ -75,6 +78,8 @@ class Options(Block):
 
 class Duty(Block):
     """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+
+    group = "duty"
 
     required_torque = Requirement(
         "N*m", lower=0.01, upper=1e5, symbol="T_req", text="Torque to hold without slip", source=DRIVE
@@ -108,13 +113,30 @@ class Duty(Block):
         symbol="tol",
         text="Tolerance of the fit, +- of wire, bore and hub together",
         source=f"{TYPICAL} of the reference model",
+        group="model",
     )
-    bore_diameter = Requirement("mm", lower=1, upper=500, symbol="d_bore", text="Shaft bore of the hubs", source=DRIVE)
+    bore_diameter = Requirement(
+        "mm", lower=1, upper=500, symbol="d_bore", text="Shaft bore of the hubs", source=DRIVE, group="envelope"
+    )
     outer_diameter_limit = Requirement(
-        "mm", lower=3, upper=1000, optional=True, symbol="D_max", text="Largest outside diameter", source=DRIVE
+        "mm",
+        lower=3,
+        upper=1000,
+        optional=True,
+        symbol="D_max",
+        text="Largest outside diameter",
+        source=DRIVE,
+        group="envelope",
     )
     length_limit = Requirement(
-        "mm", lower=2, upper=2000, optional=True, symbol="L_max", text="Largest length of the spring", source=DRIVE
+        "mm",
+        lower=2,
+        upper=2000,
+        optional=True,
+        symbol="L_max",
+        text="Largest length of the spring",
+        source=DRIVE,
+        group="envelope",
     )
     gap_coils = Requirement(
         "-",
@@ -124,6 +146,7 @@ class Duty(Block):
         symbol="n_gap",
         text="Coils over the gap between the hubs",
         source=f"{TYPICAL} of the reference model",
+        group="model",
     )
     coil_gap = Requirement(
         "mm",
@@ -133,6 +156,7 @@ class Duty(Block):
         symbol="g_c",
         text="Axial gap between coils",
         source=f"{TYPICAL} of the reference model",
+        group="model",
     )
     spring_index_min = Requirement(
         "-",
@@ -142,6 +166,7 @@ class Duty(Block):
         symbol="index_min",
         text="Least mean coil diameter over wire thickness",
         source="coiling practice",
+        group="practice",
     )
     hub_density = Requirement(
         "kg/m3",
@@ -151,6 +176,7 @@ class Duty(Block):
         symbol="rho_hub",
         text="Density of the hubs; 0 counts the spring only",
         source="material constant",
+        group="material",
     )
     belt_exponent_limit = Requirement(
         "-",
@@ -161,10 +187,23 @@ class Duty(Block):
         text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload "
         "means little",
         source=NOT_IN_S2,
+        group="model",
     )
 
 
-def declare_duty(d: Declaration, *, kind: type[Duty]) -> Duty:
+class PracticeDuty(Duty):
+    """A duty of clutches that can slip, by the rules of practice."""
+
+    belt_exponent_limit = replace(
+        Duty.belt_exponent_limit,
+        default=6,
+        optional=False,
+        text="Largest belt exponent at the highest friction; beyond about 6 any peak is locked and the preload means "
+        "little: a freewheel may have more",
+    )
+
+
+def declare_duty(d: Declaration, *, kind: type[Duty], bore: Callable[[Duty], Any] | None = None) -> Duty:
     """Declare the requirements that both fits have, and the refusals that concern them alone.
 
     Parameters
@@ -173,13 +212,15 @@ def declare_duty(d: Declaration, *, kind: type[Duty]) -> Duty:
         Takes the declarations.
     kind : subclass of Duty
         Block of the family, which says what interference_tolerance means in it.
+    bore : callable, optional
+        Default of bore_diameter [m], from the block; without it the bore must be given.
 
     Returns
     -------
     Duty
         Symbols of the block.
     """
-    duty = d.block(kind)
+    duty = d.block(kind, bore_diameter=bore)
     d.refuse(
         "peak_below_required",
         duty.peak_torque < duty.required_torque,
@@ -214,6 +255,7 @@ class Wire:
     bending_allow: Any
     tensile_strength: Any
     endurance_amplitude: Any
+    row: Part | None = None
 
 
 def declare_wire(d: Declaration, *, options: Options) -> Wire:
@@ -243,6 +285,7 @@ def declare_wire(d: Declaration, *, options: Options) -> Wire:
             symbol=symbol,
             text=f"{text}; for wire_choice custom, where it must be given",
             source="data sheet of the wire",
+            group="material",
         )
 
     given = {
@@ -284,6 +327,7 @@ def declare_wire(d: Declaration, *, options: Options) -> Wire:
         bending_allow=part.bending_allow_static,
         tensile_strength=part.Rm_min,
         endurance_amplitude=part.endurance_amplitude,
+        row=part,
     )
 
 
@@ -405,7 +449,7 @@ class Friction:
     exponent_high: Any
 
 
-def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils) -> Friction:
+def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, lubricated: bool = False) -> Friction:
     """Declare the slot friction_pair and the belt exponent with its limit.
 
     Parameters
@@ -418,16 +462,21 @@ def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils) -
         Requirements.
     coils : Coils
         Hub and coils.
+    lubricated : bool
+        Whether dry pairs are left out, where the table tells.
 
     Returns
     -------
     Friction
         Symbols of the block.
     """
+    conditions = [f"'{family}' in family_hint"]
+    if lubricated and all(d.has_column("friction_materials", c) for c in ("lubrication", "lubrication_note")):
+        conditions.append("(lubrication == 'oil' or lubrication_note == 'greased')")
     part = d.part(
         "friction_pair",
         "friction_materials",
-        where=f"'{family}' in family_hint",
+        where=tuple(conditions),
         symbol="pair",
         text="Wire and the hub surface it grips",
         source="table friction_materials",
@@ -596,14 +645,16 @@ def declare_load(
 
 @dataclass(frozen=True)
 class Size:
-    """Outside of the clutch."""
+    """Mass and outside of the spring with the hubs under it, or of the clutch."""
 
+    mass: Any
     length: Any
     diameter: Any
+    spring_mass: Any = None
 
 
-def declare_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
-    """Declare coils, length, diameter and mass, and the limits of the room there is.
+def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_coils: Any = None) -> Size:
+    """Declare the coils and return the size of the spring with the hubs under it.
 
     Parameters
     ----------
@@ -621,7 +672,7 @@ def declare_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_
     Returns
     -------
     Size
-        Symbols of the block.
+        Mass and outside.
     """
     total = d.derive(
         "total_coils",
@@ -631,34 +682,65 @@ def declare_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_
         text="Coils of the whole spring",
         source="geometry",
     )
-    length = d.derive(
-        "length",
-        "mm",
-        formulas.spring_length(total, wire.width, duty.coil_gap),
-        symbol="L",
-        text="Length of the spring",
-        source="geometry",
-    )
-    diameter = d.derive(
-        "outer_diameter",
-        "mm",
-        coils.hub_diameter + 2 * wire.thickness,
-        symbol="D_o",
-        text="Outside of the coils",
-        source="geometry, 2 (r_h + a)",
-    )
+    length = formulas.spring_length(total, wire.width, duty.coil_gap)
     spring = formulas.spring_mass(wire.density, wire.width, wire.thickness, coils.mean_radius, total)
     hubs = formulas.hub_mass(duty.hub_density, coils.hub_diameter, duty.bore_diameter, length)
-    d.derive("mass", "kg", spring + hubs, symbol="m", text="Spring and both hubs under it", source="geometry")
+    return Size(
+        mass=spring + hubs,
+        length=length,
+        diameter=coils.hub_diameter + 2 * wire.thickness,
+        spring_mass=spring,
+    )
+
+
+def declare_size(d: Declaration, *, duty: Duty, size: Size, whole: bool, outside: str) -> None:
+    """Declare length, diameter and mass, and the limits of the room there is.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : Duty
+        Requirements.
+    size : Size
+        What is meant by them.
+    whole : bool
+        Whether that is the whole clutch.
+    outside : str
+        What the diameter is that of.
+    """
+    d.derive(
+        "length",
+        "mm",
+        size.length,
+        symbol="L",
+        text="The whole clutch, with the bosses beyond the spring" if whole else "Length of the spring",
+        source="geometry",
+    )
+    d.derive(
+        "outer_diameter",
+        "mm",
+        size.diameter,
+        symbol="D_o",
+        text=f"Outside of the {outside}",
+        source="geometry, 2 (r_h + a)" if outside == "coils" else "geometry",
+    )
+    d.derive(
+        "mass",
+        "kg",
+        size.mass,
+        symbol="m",
+        text="The whole clutch" if whole else "Spring and both hubs under it",
+        source="geometry",
+    )
     if duty.outer_diameter_limit is not None:
         d.at_most(
             "outer_diameter",
-            diameter,
+            size.diameter,
             duty.outer_diameter_limit,
             "mm",
             text="The clutch fits the room across",
             source=DRIVE,
         )
     if duty.length_limit is not None:
-        d.at_most("length", length, duty.length_limit, "mm", text="The clutch fits the room along", source=DRIVE)
-    return Size(length, diameter)
+        d.at_most("length", size.length, duty.length_limit, "mm", text="The clutch fits the room along", source=DRIVE)

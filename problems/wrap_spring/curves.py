@@ -388,12 +388,13 @@ def _windup(clutch: Fitted, spec: Mapping[str, Any], low: float, high: float) ->
 
 def _overrun(clutch: Fitted, spec: Mapping[str, Any], values: Mapping[str, float], high: float) -> pd.DataFrame:
     drag = float(formulas.opening_torque(high, clutch.belt_exponent(clutch.mu_max)))
-    geometry = (spec["heat_transfer"], values["outer_diameter"], values["length"])
+    length = values.get("spring_length", values["length"])  # of a whole clutch the spring alone gives off its heat
+    geometry = (spec["heat_transfer"], values["outer_diameter"], length)
 
     def rise(speed: Any) -> Any:
         return formulas.overrun_temperature_rise(drag, speed, spec["overrun_duty"], *geometry)
 
-    here = spec["overrun_speed"]
+    here = spec["overrun_speed"] or 0.0
     # Without a speed asked for: up to the one that the heat allows, or a usual motor speed where heat is no matter.
     hot = spec["temperature_rise_limit"] / rise(1.0) if spec["overrun_duty"] > 0 else 1500 * RPM
     end = 1.5 * here if here > 0 else min(1.25 * hot, 6000 * RPM)

@@ -235,6 +235,74 @@ def hub_mass(density: Quantity, hub_diameter: Quantity, bore_diameter: Quantity,
     return density * math.pi / 4 * (hub_diameter - bore_diameter) * (hub_diameter + bore_diameter) * length
 
 
+def collar_mass(
+    density: Quantity, spring_diameter: Quantity, clearance: Quantity, wall: Quantity, length: Quantity
+) -> Quantity:
+    """Mass of a control collar around the whole spring, rho pi ((r_i + t)**2 - r_i**2) L with r_i = D_s/2 + 2 c.
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho of the collar [kg/m3].
+    spring_diameter : scalar, array or symbol
+        Outside of the closed coils D_s [m].
+    clearance : scalar, array or symbol
+        c between hub and coils; the collar clears the open coils by as much again [m].
+    wall : scalar, array or symbol
+        Wall of the collar t [m].
+    length : scalar, array or symbol
+        L of the spring [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry (derived).
+
+    Examples
+    --------
+    By hand, 7850 pi (0.0252**2 - 0.0222**2) 0.04:
+
+    >>> collar_mass(7850, 0.044, 0.0001, 0.003, 0.04)
+    0.14027
+    """
+    return density * math.pi * wall * (collar_diameter(spring_diameter, clearance, wall) - wall) * length
+
+
+def collar_diameter(spring_diameter: Quantity, clearance: Quantity, wall: Quantity) -> Quantity:
+    """Outside of a control collar, D_s + 4 c + 2 t.
+
+    Parameters
+    ----------
+    spring_diameter : scalar, array or symbol
+        Outside of the closed coils D_s [m].
+    clearance : scalar, array or symbol
+        c between hub and coils; the collar clears the open coils by as much again [m].
+    wall : scalar, array or symbol
+        Wall of the collar t [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Diameter [m].
+
+    References
+    ----------
+    Geometry (derived).
+
+    Examples
+    --------
+    In mm:
+
+    >>> collar_diameter(44, 0.1, 3)
+    50.4
+    """
+    return spring_diameter + 4 * clearance + 2 * wall
+
+
 # -- the fitted spring -----------------------------------------------------------------------------
 
 
@@ -769,6 +837,41 @@ def goodman_utilisation(
     return safety * (amplitude / endurance_amplitude + mean / tensile_strength)
 
 
+def tang_stress(
+    actuator_torque: Quantity, mean_radius: Quantity, thickness: Quantity, length_ratio: Quantity
+) -> Quantity:
+    """Bending stress of the tang that holds the free end, 6 F_t l_t/(b a**2) with F_t = T0/r_m and l_t = k_t b.
+
+    Parameters
+    ----------
+    actuator_torque : scalar, array or symbol
+        T0 [N m].
+    mean_radius : scalar, array or symbol
+        r_m, at which the tang is held [m].
+    thickness : scalar, array or symbol
+        Radial wire thickness a [m].
+    length_ratio : scalar, array or symbol
+        Length of the tang over the width of the wire k_t [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Stress [Pa].
+
+    References
+    ----------
+    Bending of a cantilever (derived).
+
+    Examples
+    --------
+    By hand, a tang of 3 mm wide, 2 mm thick wire held by 50 N at 6 mm:
+
+    >>> tang_stress(1.0, 0.02, 0.002, 2)
+    150000000.0
+    """
+    return 6 * length_ratio * (actuator_torque / mean_radius) / thickness**2
+
+
 # -- elasticity ------------------------------------------------------------------------------------
 
 
@@ -1007,6 +1110,43 @@ def overrun_temperature_rise(
     139.56
     """
     return torque * speed * duty / (heat_transfer * math.pi * outer_diameter * length)
+
+
+def overrun_life(
+    depth: Quantity, wear_rate: Quantity, friction: Quantity, rubbing: Quantity, duty: Quantity
+) -> Quantity:
+    """Time until the hubs are worn, d_w/(k_w mu p v duty).
+
+    Parameters
+    ----------
+    depth : scalar, array or symbol
+        Wear before replacement d_w [m].
+    wear_rate : scalar, array or symbol
+        Volume worn off per friction work k_w [m3/J]; 1 mm3/MJ is 1e-15 m3/J.
+    friction : scalar, array or symbol
+        mu [-].
+    rubbing : scalar, array or symbol
+        Pressure times sliding speed when overrunning p v [W/m2].
+    duty : scalar, array or symbol
+        Part of the time spent overrunning [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Time in service [s].
+
+    References
+    ----------
+    Wear volume in proportion to friction work (Archard); derived.
+
+    Examples
+    --------
+    By hand, 0.03 mm worn by 5 mm3/MJ at 0.1 x 0.1 W/mm2 for a fifth of the time, 833.33 h:
+
+    >>> overrun_life(0.03e-3, 5e-15, 0.1, 0.1e6, 0.2) / 3600
+    833.333
+    """
+    return depth / (wear_rate * friction * rubbing * duty)
 
 
 # -- what an expert also checks --------------------------------------------------------------------

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems import practice
+from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
-from problems.wrap_spring import blocks, curves, formulas
+from problems.wrap_spring import blocks, body, curves, formulas
 from synth import DesignProblem
 from synth.declaration import Block, Declaration, Requirement
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 
 MODEL_VALUE = f"{TYPICAL} of the reference model"
+WEAR = "wear volume in proportion to friction work (Archard)"
 OVERLOADS = ("slip_limited", "torque_limited")
 
 
@@ -28,8 +31,14 @@ class InterferenceDuty(blocks.Duty):
     )
 
 
+class PracticeInterferenceDuty(InterferenceDuty, blocks.PracticeDuty):
+    """What the drive asks of a clutch with this fit, by the rules of practice."""
+
+
 class Wants(Block):
     """Requirements of the interference fit alone, all in SI; None where an optional one is not given."""
+
+    group = "duty"
 
     service_factor = Requirement(
         "-",
@@ -62,7 +71,14 @@ class Wants(Block):
         source=DRIVE,
     )
     hub_shear_limit = Requirement(
-        "N/mm2", 80, lower=1, upper=1000, symbol="tau_hub", text="Allowed shear stress of the hub", source=MODEL_VALUE
+        "N/mm2",
+        80,
+        lower=1,
+        upper=1000,
+        symbol="tau_hub",
+        text="Allowed shear stress of the hub",
+        source=MODEL_VALUE,
+        group="material",
     )
     interference_ratio_max = Requirement(
         "-",
@@ -72,6 +88,7 @@ class Wants(Block):
         symbol="dr_rel_max",
         text="Largest interference, with its tolerance, over mean coil radius",
         source="small strains",
+        group="practice",
     )
     liftoff_margin = Requirement(
         "-",
@@ -81,9 +98,10 @@ class Wants(Block):
         symbol="k_lift",
         text="Largest spring_speed over the speed at which the spring lifts off",
         source=MODEL_VALUE,
+        group="model",
     )
     fatigue_safety = Requirement(
-        "-", 1.2, lower=1, upper=4, symbol="S_F", text="Safety on Goodman's line", source=MODEL_VALUE
+        "-", 1.2, lower=1, upper=4, symbol="S_F", text="Safety on Goodman's line", source=MODEL_VALUE, group="model"
     )
     heat_transfer = Requirement(
         "W/(m2*K)",
@@ -93,6 +111,7 @@ class Wants(Block):
         symbol="h_cool",
         text="Surface coefficient of the spring's outside",
         source=MODEL_VALUE,
+        group="model",
     )
     temperature_rise_limit = Requirement(
         "K",
@@ -102,6 +121,57 @@ class Wants(Block):
         symbol="dT_max",
         text="Allowed rise over ambient when overrunning",
         source=MODEL_VALUE,
+        group="material",
+    )
+
+
+class PracticeWants(Wants):
+    """Requirements of the interference fit by the rules of practice."""
+
+    overrun_speed = replace(
+        Wants.overrun_speed,
+        default=None,
+        lower=0.1,
+        optional=True,
+        text="Speed between spring and hub when overrunning; where it is given, the pair is in oil or greased",
+    )
+    overrun_duty = replace(Wants.overrun_duty, lower=1e-4)
+    drag_torque_limit = replace(
+        Wants.drag_torque_limit,
+        optional=False,
+        text=f"Largest drag when overrunning; by default a tenth of required_torque ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    interference_ratio_max = replace(
+        Wants.interference_ratio_max,
+        default=0.04,
+        text="Largest interference, with its tolerance, over mean coil radius: the spring must be opened over its hub",
+        source=f"tinyclutch.com, spring clutches: slightly smaller; {UNSOURCED}",
+    )
+
+
+class Rules(body.SpringRules):
+    """Rules for this fit, all in SI."""
+
+    group = "practice"
+
+    hub_wall_ratio = Requirement(
+        "-",
+        1.4,
+        lower=1,
+        upper=5,
+        symbol="k_wall",
+        text=f"Least diameter of a hub over its bore ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    overrun_life_min = Requirement(
+        "h",
+        500,
+        lower=0.01,
+        upper=1e6,
+        symbol="t_wear_min",
+        text=f"Least time in service until overrunning has worn the hubs ({UNSOURCED})",
+        source=UNSOURCED,
     )
 
 
@@ -118,6 +188,7 @@ class WrapSpringClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
         options = d.block(blocks.Options)
         overload = d.option(
             "overload",
@@ -127,9 +198,20 @@ class WrapSpringClutch(DesignProblem):
             text="slip_limited: the wire sees peak_torque or the largest slip torque, whichever is smaller; "
             "torque_limited: it sees peak_torque",
             source=NOT_IN_S2,
+            group="duty",
         )
-        duty = blocks.declare_duty(d, kind=InterferenceDuty)
-        wants = d.block(Wants)
+        body_wants = d.block(body.BodyRequirements) if scope.rules or scope.complete else None
+        duty = blocks.declare_duty(
+            d,
+            kind=PracticeInterferenceDuty if scope.rules else InterferenceDuty,
+            bore=None if body_wants is None else body_wants.bore,
+        )
+        wants = (
+            d.block(PracticeWants, drag_torque_limit=body.FREE_SHARE * duty.required_torque)
+            if scope.rules
+            else d.block(Wants)
+        )
+        rules = d.block(Rules) if scope.rules else None
         interference = d.variable(
             "interference",
             "mm",
@@ -141,7 +223,13 @@ class WrapSpringClutch(DesignProblem):
         )
         wire = blocks.declare_wire(d, options=options)
         coils = blocks.declare_coils(d, options=options, duty=duty, wire=wire)
-        friction = blocks.declare_friction(d, family=self.name, duty=duty, coils=coils)
+        friction = blocks.declare_friction(
+            d,
+            family=self.name,
+            duty=duty,
+            coils=coils,
+            lubricated=rules is not None and wants.overrun_speed is not None,
+        )
         if wants.drag_torque_limit is not None:
             self._refuse_drag(d, duty=duty, wants=wants, friction=friction)
 
@@ -167,8 +255,23 @@ class WrapSpringClutch(DesignProblem):
         )
         self._declare_fatigue(d, duty=duty, wants=wants, wire=wire, coils=coils, bending=bending, high=high)
         self._declare_hub(d, duty=duty, wants=wants, coils=coils, load=load)
-        size = blocks.declare_size(d, duty=duty, wire=wire, coils=coils)
-        self._declare_overrun(d, wants=wants, wire=wire, coils=coils, friction=friction, size=size, high=high)
+        spring = blocks.spring_size(d, duty=duty, wire=wire, coils=coils)
+        size = spring
+        if body_wants is not None and scope.complete:
+            size = body_wants.whole_size(duty=duty, spring=spring)
+        blocks.declare_size(d, duty=duty, size=size, whole=scope.complete, outside="coils")
+        drag = self._declare_drag(d, wants=wants, friction=friction, high=high)
+        if wants.overrun_speed is not None:
+            self._declare_overrun(
+                d, wants=wants, wire=wire, coils=coils, friction=friction, spring=spring, high=high, drag=drag
+            )
+        if body_wants is not None:
+            body.declare_parts(d, duty=duty, wants=body_wants, spring=spring)
+            whole = body_wants.whole_size(duty=duty, spring=spring)
+            body.declare_cost(d, wire=wire, spring=spring, mass=whole.mass, parts=3)
+        if rules is not None:
+            body.limit_spring(d, rules=rules, wire=wire, coils=coils)
+            self._declare_rules(d, rules=rules, duty=duty, wants=wants, coils=coils, friction=friction)
         self._declare_windup(d, duty=duty, wire=wire, coils=coils, friction=friction, low=low)
         self._declare_utilisation(d, wire=wire, friction=friction, stress=stress, pressure=pressure)
         self._declare_remarks(
@@ -182,10 +285,15 @@ class WrapSpringClutch(DesignProblem):
             bending=bending,
             stress=stress,
         )
+        # By the rules of practice the drag is bounded, and what is left to ask for is a small clutch.
         d.objective("mass")
-        d.objective("drag_torque")
+        d.objective("drag_torque", default=rules is None)
         for name in ("stress_utilisation", "pressure_utilisation", "outer_diameter"):
             d.objective(name, default=False)
+        if rules is not None:
+            d.objective("length")
+            if wants.overrun_speed is not None:
+                d.objective("overrun_life", "max", default=False)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
         """Return torque over friction, interference and speed, wind-up, heat, and what happens along the coils."""
@@ -392,17 +500,8 @@ class WrapSpringClutch(DesignProblem):
             source="torsion of a tube",
         )
 
-    def _declare_overrun(
-        self,
-        d: Declaration,
-        *,
-        wants: Wants,
-        wire: blocks.Wire,
-        coils: blocks.Coils,
-        friction: blocks.Friction,
-        size: blocks.Size,
-        high: Any,
-    ) -> None:
+    def _declare_drag(self, d: Declaration, *, wants: Wants, friction: blocks.Friction, high: Any) -> Any:
+        """Declare the drag when overrunning with its limit, and return it [N m]."""
         drag = d.derive(
             "drag_torque",
             "N*m",
@@ -420,6 +519,20 @@ class WrapSpringClutch(DesignProblem):
                 text="The clutch overruns freely",
                 source=f"{S2}, eq. (21)",
             )
+        return drag
+
+    def _declare_overrun(
+        self,
+        d: Declaration,
+        *,
+        wants: Wants,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        friction: blocks.Friction,
+        spring: blocks.Size,
+        high: Any,
+        drag: Any,
+    ) -> None:
         preload = formulas.contact_pressure(high, wire.width, coils.hub_radius, coils.mean_radius)
         rubbing = d.derive(
             "overrun_pv",
@@ -441,7 +554,7 @@ class WrapSpringClutch(DesignProblem):
             "temperature_rise",
             "K",
             formulas.overrun_temperature_rise(
-                drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, size.diameter, size.length
+                drag, wants.overrun_speed, wants.overrun_duty, wants.heat_transfer, spring.diameter, spring.length
             ),
             symbol="dT",
             text="Steady rise over ambient when overrunning",
@@ -455,6 +568,43 @@ class WrapSpringClutch(DesignProblem):
             text="The clutch stays cool when overrunning",
             source=f"lumped heat balance; {NOT_IN_S2}",
         )
+
+    def _declare_rules(
+        self,
+        d: Declaration,
+        *,
+        rules: Rules,
+        duty: blocks.Duty,
+        wants: Wants,
+        coils: blocks.Coils,
+        friction: blocks.Friction,
+    ) -> None:
+        """Declare the limits that an engineer adds to this fit."""
+        d.at_least(
+            "hub_wall",
+            coils.hub_diameter,
+            rules.hub_wall_ratio * duty.bore_diameter,
+            "mm",
+            text="The hub has a wall around its bore",
+            source=UNSOURCED,
+        )
+        if wants.overrun_speed is None:
+            return
+        life = d.derive(
+            "overrun_life",
+            "h",
+            formulas.overrun_life(
+                friction.part.wearable_depth,
+                friction.part.wear_rate,
+                friction.part.mu_max,
+                d.derived["overrun_pv"].sx,
+                wants.overrun_duty,
+            ),
+            symbol="t_wear",
+            text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",
+            source=WEAR,
+        )
+        d.at_least("overrun_life", life, rules.overrun_life_min, "h", text="The hubs last long enough", source=WEAR)
 
     def _declare_windup(
         self,
@@ -541,9 +691,10 @@ class WrapSpringClutch(DesignProblem):
             "torque is below required_torque: raise slip_safety",
             source=NOT_IN_S2,
         )
-        d.advise(
-            "overrun_sliding_speed",
-            wants.overrun_speed * coils.hub_radius > friction.part.optional("v_allow"),
-            "the sliding speed when overrunning is above what the friction pair stands",
-            source="table friction_materials, v_allow",
-        )
+        if wants.overrun_speed is not None:
+            d.advise(
+                "overrun_sliding_speed",
+                wants.overrun_speed * coils.hub_radius > friction.part.optional("v_allow"),
+                "the sliding speed when overrunning is above what the friction pair stands",
+                source="table friction_materials, v_allow",
+            )

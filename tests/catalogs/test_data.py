@@ -20,6 +20,7 @@ from synth.units import from_si, parse_unit
 FOLDER = Path(__file__).parents[2] / "catalogs"
 CATALOGUES = {
     "friction_materials": 48, "core_plates": 11, "lined_plates": 9, "strip_thicknesses": 34, "plate_rings": 80,
+    "plate_sets": 77,
     "parallel_keys": 19, "splines": 93, "shaft_ends": 42, "preferred_numbers": 229, "hub_diameters": 51,
     "guide_rolling_bearings": 95, "spring_wire_round": 170, "spring_wire_flat": 46, "compression_springs": 168,
     "disc_springs_DIN2093": 87, "metals": 60, "float_materials": 25, "motors_iec": 22, "balls": 35, "powders": 3,
@@ -222,6 +223,24 @@ def test_plate_rings() -> None:
     np.testing.assert_allclose((outer - inner) / 2, d.ring_width, atol=0.01)
     np.testing.assert_allclose(d.ring_width / d.mean_diameter, d.ring_ratio, atol=1e-3)
     np.testing.assert_allclose(math.pi / 4 * (outer**2 - inner**2), d.area_one_side, rtol=1e-3)
+
+
+def test_plate_sets_follow_from_rings_cores_and_linings() -> None:
+    rings, cores, lined, sets = (view(n) for n in ("plate_rings", "core_plates", "lined_plates", "plate_sets"))
+    wanted = []
+    for outer, inner in zip(rings.ring_outer_diameter, rings.ring_inner_diameter, strict=True):
+        flat = [t for t in cores.thickness if t in lined.core_thickness and outer / t <= 100]
+        if flat:  # the thickest core with lining is for 300 mm
+            linings = lined.lining_thickness[lined.core_thickness == min(flat)]
+            wanted += [(outer, inner, min(flat), lining) for lining in linings]
+    found = zip(sets.ring_outer_diameter, sets.ring_inner_diameter, sets.outer_core_thickness, sets.lining_thickness,
+                strict=True)  # fmt: skip
+    np.testing.assert_allclose(list(found), wanted)
+    np.testing.assert_allclose(sets.inner_core_thickness, sets.outer_core_thickness)
+    np.testing.assert_allclose(sets.inner_spline_diameter, sets.ring_inner_diameter - 6)
+    np.testing.assert_allclose(sets.outer_spline_diameter, sets.ring_outer_diameter + 6)
+    np.testing.assert_array_equal(sets.inner_teeth, sets.inner_spline_diameter // 3)
+    np.testing.assert_array_equal(sets.outer_teeth, sets.outer_spline_diameter // 3)
 
 
 # ---- rollers --------------------------------------------------------------------------------------------------------

@@ -36,7 +36,7 @@ class Design:
     """Sizes, counts and parts of one design."""
 
     sizes: Mapping[str, str]
-    counts: Mapping[str, int]
+    counts: Mapping[str, float]
     parts: Mapping[str, str]
 
 
@@ -63,13 +63,14 @@ class Family:
 
 
 def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
-    """Return variables with rings of a sensible ratio and forces of a sensible size."""
+    """Return variables with rings of a sensible ratio and forces of a sensible size; plates of a list have theirs."""
     low, high = instance.ranges.lower, instance.ranges.upper
     x = low * (high / low) ** rng.random((count, len(low)))
     names = [v.name for v in instance.model.variables]
-    outer = rng.uniform(0.14, 0.5, count)
-    x[:, names.index("ring_outer_diameter")] = outer
-    x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.6, 0.8, count)
+    if "ring_outer_diameter" in names:
+        outer = rng.uniform(0.14, 0.5, count)
+        x[:, names.index("ring_outer_diameter")] = outer
+        x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.6, 0.8, count)
     x[:, names.index("actuation_force")] = rng.uniform(5e3, 5e4, count)
     x[:, names.index("ramp_time")] = rng.uniform(0.05, 4, count)
     return x
@@ -187,6 +188,12 @@ CAR_DISC = Design(
 )
 CONE = {"load_torque": "200 N*m", "driver_speed": "700 rpm", "driven_inertia": "2 kg*m2"}
 MILL = {"required_torque": "300 N*m", "driver_speed": "960 rpm", "offset": "5 mm"}
+MILL_COUPLING = {
+    "arm_radius": "62 mm",
+    "guide_half_length": "72 mm",
+    "offset_capacity": "5.5 mm",
+    "balance": "no",
+}
 INDEXER = {"required_torque": "20 N*m", "bore_diameter": "12 mm"}
 WIRE = {
     "wire_modulus": "206 GPa",
@@ -411,8 +418,42 @@ CASES: dict[str, Family] = {
             "default": {},
             "active": {"load_kind": "active"},
             "worst_case": {"friction_basis": "worst_case", "cooling": "through_oil", "allow_obsolete": "yes"},
+            "practice": {"practice": "on"},
+            "practice_self": {
+                "practice": "on",
+                "cone_release": "self",
+                "friction_basis": "worst_case",
+                "mass_scope": "parts",
+            },
         },
         requirements=CONE,
+        needed={"practice=on": {"wear_life_min": "10000"}},
+        designs={
+            "practice": Design(
+                {
+                    "mean_diameter": "262 mm",
+                    "generator_length": "47 mm",
+                    "cone_half_angle": "12.5 deg",
+                    "shell_thickness": "9 mm",
+                    "actuation_force": "4.8 kN",
+                    "ramp_time": "0.06 s",
+                },
+                {},
+                {"friction_pair": "moulded_dry", "cone_layout": "outer_spring"},
+            ),
+            "practice_self": Design(
+                {
+                    "mean_diameter": "386 mm",
+                    "generator_length": "60 mm",
+                    "cone_half_angle": "12 deg",
+                    "shell_thickness": "13 mm",
+                    "actuation_force": "4.4 kN",
+                    "ramp_time": "0.06 s",
+                },
+                {},
+                {"friction_pair": "ci_ci_dry", "cone_layout": "outer_spring"},
+            ),
+        },
         optional={
             "startup_torque": "340 N*m",
             "overload_torque": "2000 N*m",
@@ -540,6 +581,8 @@ CASES: dict[str, Family] = {
                 "actuator": "external",
                 "friction_basis": "worst_case",
             },
+            "standard": {"plates": "standard"},
+            "practice_standard": {"plates": "standard", "practice": "on"},
         },
         requirements=HOIST,
         optional={
@@ -574,6 +617,16 @@ CASES: dict[str, Family] = {
                 },
                 {"friction_surfaces": 2},
                 {"friction_pair": "metal_ceramic_bronze_dry", "inner_plate": "core 3", "outer_plate": "core 3"},
+            ),
+            "standard": Design(
+                {"actuation_force": "20 kN", "ramp_time": "0.7 s"},
+                {"friction_surfaces": 10},
+                {"friction_pair": "graphitic_wet", "plate_set": "set 160x236 core 2.5 lining 0.5"},
+            ),
+            "practice_standard": Design(
+                {"actuation_force": "20 kN", "ramp_time": "0.7 s"},
+                {"friction_surfaces": 10},
+                {"friction_pair": "graphitic_wet", "plate_set": "set 160x236 core 2.5 lining 0.5"},
             ),
             "practice_catalogue": Design(
                 {
@@ -650,8 +703,27 @@ CASES: dict[str, Family] = {
             "default": {},
             "sideways": {"sideways_removable": "yes"},
             "crowned": {"roller_contact": "crowned"},
+            "practice": {"practice": "on"},
+            "practice_ball_bearings": {
+                "practice": "on",
+                "roller_kind": "any",
+                "roller_contact": "line",
+                "mass_scope": "parts",
+            },
         },
         requirements=MILL,
+        designs={
+            "practice": Design(
+                {**MILL_COUPLING, "rim": "8 mm", "contact_length": "10 mm"},
+                {},
+                {"roller": "NATR 15", "float_material": "100Cr6"},
+            ),
+            "practice_ball_bearings": Design(
+                {**MILL_COUPLING, "rim": "9 mm", "contact_length": "9 mm"},
+                {},
+                {"roller": "6203", "float_material": "100Cr6"},
+            ),
+        },
         optional={"outer_diameter_limit": "400 mm", "mass_limit": "40 kg", "vibration_limit": "2 kN"},
         feasible={
             "mill": Case(
@@ -705,6 +777,8 @@ CASES: dict[str, Family] = {
             "seed": {"model": "seed"},
             "torque_limited": {"overload": "torque_limited", "hub_ladder": "R40"},
             "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+            "practice": {"practice": "on"},
+            "practice_custom": {"practice": "on", "wire_choice": "custom", "mass_scope": "parts"},
         },
         requirements=INDEXER,
         optional={
@@ -714,7 +788,19 @@ CASES: dict[str, Family] = {
             "length_limit": "300 mm",
             "belt_exponent_limit": "20",
         },
-        needed={"wire_choice=custom": WIRE},
+        needed={"wire_choice=custom": WIRE, "practice=on": {"overrun_speed": "3 1/min"}},
+        designs={
+            "practice": Design(
+                {"interference": "0.7 mm", "hub_diameter": "40 mm"},
+                {"coils_per_hub": 6},
+                {"wire": "rect 4x2.5", "friction_pair": "hardened_steel_greased"},
+            ),
+            "practice_custom": Design(
+                {"interference": "0.7 mm", "hub_diameter": "40 mm", "wire_thickness": "2.5 mm", "wire_width": "4 mm"},
+                {"coils_per_hub": 6},
+                {"friction_pair": "hardened_steel_greased"},
+            ),
+        },
         feasible={
             "indexer": Case(
                 requirements={"required_torque": "50 N*m", "bore_diameter": "20 mm", "belt_exponent_limit": "6"},
@@ -741,6 +827,8 @@ CASES: dict[str, Family] = {
             "default": {},
             "seed": {"model": "seed", "hub_ladder": "R40"},
             "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+            "practice": {"practice": "on"},
+            "practice_custom": {"practice": "on", "wire_choice": "custom", "mass_scope": "parts"},
         },
         requirements={**INDEXER, "relative_speed": "500 1/min"},
         optional={
@@ -752,6 +840,24 @@ CASES: dict[str, Family] = {
             "belt_exponent_limit": "20",
         },
         needed={"wire_choice=custom": WIRE},
+        designs={
+            "practice": Design(
+                {"clearance": "0.085 mm", "actuator_torque": "1.95 N*m", "hub_diameter": "28 mm"},
+                {"coils_per_hub": 7.5},
+                {"wire": "rect 2.5x1.5", "friction_pair": "hardened_steel_oil"},
+            ),
+            "practice_custom": Design(
+                {
+                    "clearance": "0.085 mm",
+                    "actuator_torque": "1.95 N*m",
+                    "hub_diameter": "28 mm",
+                    "wire_thickness": "1.5 mm",
+                    "wire_width": "2.5 mm",
+                },
+                {"coils_per_hub": 7.5},
+                {"friction_pair": "hardened_steel_oil"},
+            ),
+        },
         feasible={
             "indexer": Case(
                 requirements={

@@ -19,6 +19,7 @@ from synth.results.front_record import record_text
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
+from synth.tables.table import named_column
 from synth.units import parse_unit
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer, front_of, question, question_to
@@ -163,7 +164,8 @@ def input_dimensions(instance):
             unit = parse_unit(d.requirements[entry.name].unit)
         elif entry.kind in ("part", "row"):
             table = instance.catalogs.table((d.slots if entry.kind == "part" else d.rows)[entry.name].table)
-            unit = next(table.columns[c].scale for c in entry.columns if table.has(c))
+            known = [table.columns[named_column(c)] for c in entry.columns if table.has(named_column(c))]
+            unit = known[0].scale if known and known[0].numeric else parse_unit("-")
         else:
             unit = parse_unit("-")
         result.append(unit.dimension)
@@ -370,7 +372,7 @@ def test_tightening_never_improves_an_objective(example, optimum):
     family, case, _ = example
     objective = first_objective(family)
     assert objective.sense == "min"
-    for name, value in list(case.tighten.items())[: repetitions(2, len(case.tighten))]:
+    for name, value in list(case.tighten.items())[: repetitions(1, len(case.tighten))]:
         tight = best(family, case, objective.name, requirements={name: value})
         if tight is not None:
             assert tight.values[objective.name] >= optimum * (1 - 1e-3), name

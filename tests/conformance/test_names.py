@@ -11,6 +11,7 @@ import pytest
 
 import synth
 from synth.question.catalogs import as_catalogs
+from synth.tables.table import CODE_OF
 from synth.units import from_si, parse_unit
 from tests.conformance.cases import CASES, question
 
@@ -61,6 +62,7 @@ def numbers(text):
     return float(text) if text else None
 
 
+@pytest.mark.slow
 def test_requirements(named):
     plain, rows, (default, *_) = named
     wanted = {r["name"]: r for r in rows if r["kind"] in ("req", "opt")}
@@ -87,6 +89,16 @@ def test_options(named):
         o = declared[name]
         assert (o.symbol, o.default) == (row["symbol"], row["default"]), name
         assert set(o.choices) == set(row["choices"].split(";")), name
+
+
+GROUPS = {"duty", "envelope", "practice", "model", "material", "actuator"}
+
+
+def test_every_requirement_and_option_stands_in_a_group(named):
+    _, _, models = named
+    for model in models:
+        asked = [*model.declaration.requirements.values(), *model.declaration.options.values()]
+        assert {record.name: record.group for record in asked if record.group not in GROUPS} == {}
 
 
 def test_choices(named):
@@ -149,7 +161,8 @@ def test_slots_and_their_columns(named):
     assert set(columns) - text <= used
     conditions = " ".join(w for model in everything for p in model.declaration.slots.values() for w in p.where)
     for name in text:
-        assert name.split(".")[1] in conditions
+        slot, column = name.split(".")
+        assert column in conditions or f"{slot}.{CODE_OF}{column}" in used
     for name, row in columns.items():
         if row["unit"]:
             slot, column = name.split(".")
@@ -199,3 +212,10 @@ def test_a_symbol_works_wherever_the_name_does(named):
             assert spellings[row["symbol"]] == row["name"]
             assert spellings[row["name"]] == row["name"]
     assert {model.title for model in everything} == {plain.model.title}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "structure"), [(f, s) for f, data in CASES.items() for s in data.option_sets])
+def test_every_structure_can_be_described(family, structure):
+    described = synth.describe(synth.load(family, **CASES[family].option_sets[structure]))
+    assert (described.loc[described["kind"] == "column", "text"] != "").all()

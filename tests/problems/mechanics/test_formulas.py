@@ -317,6 +317,11 @@ CASES = [
         },
         "kg",
     ),
+    (cone.pull_ratio, {"half_angle": "-", "static_mu": "-", "mu": "-"}, "-"),
+    (cone.pull_angle, {"static_mu": "-", "mu": "-", "ratio": "-"}, "-"),
+    (cone.hoop_stress, {"pressure": "Pa", "mean_diameter": "m", "shell_thickness": "m"}, "Pa"),
+    (cone.axial_stroke, {"gap": "m", "wear": "m", "half_angle": "-"}, "m"),
+    (cone.spring_mass, {"force": "N", "deflection": "m", "energy": "J/kg"}, "kg"),
 ]
 
 # Not formulas of floats and symbols alike: inverse relations, and a table of many results (tested in test_startup).
@@ -345,6 +350,7 @@ def _ranges(units):
 IDS = [f"{number}-{name_of(case[0])}" for number, case in enumerate(CASES)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("function", "units", "result_unit"), CASES, ids=IDS)
 def test_scales_as_its_unit(function, units, result_unit):
     assert_homogeneous(function, units, result_unit, _ranges(units))

@@ -117,6 +117,18 @@ CASES = [
     (rc.slide_position, {"driving_angle": "-", **SHAFTS}, "m"),
     (rc.axial_slide, {**SHAFTS, "guide_angle": "-"}, "m"),
     (rc.driven_inertia_torque, {"driven_inertia": "kg m2", "shaft_angle": "-", "speed": "1/s"}, "N m"),
+    (
+        rc.coupling_length,
+        {
+            "float_width": "m",
+            "roller_width": "m",
+            "pin_gap": "m",
+            "bore": "m",
+            "shaft_diameter": "m",
+            "counter": "-",
+        },
+        "m",
+    ),
     (rc.backlash_angle, {"play": "m", "arm_radius": "m"}, "-"),
     (rc.refuted_floating_mass, {"float_mass": "kg"}, "kg"),
     (first(rc.floating_mass_travel), MOVING_MASS, "m"),

@@ -349,6 +349,22 @@ CASES = [
     (ws.wrap_angle, {"coils": "-", "clearance": "m", "mean_radius": "m"}, "-"),
     (ws.engagement_peak_torque, {"speed_difference": "1/s", "inertia": "kg m2", "stiffness": "N m"}, "N m"),
     (ws.hub_shear_stress, {"torque": "N m", "hub_diameter": "m", "bore_diameter": "m"}, "Pa"),
+    (
+        ws.collar_mass,
+        {"density": "kg/m3", "spring_diameter": "m", "clearance": "m", "wall": "m", "length": "m"},
+        "kg",
+    ),
+    (ws.collar_diameter, {"spring_diameter": "m", "clearance": "m", "wall": "m"}, "m"),
+    (
+        ws.tang_stress,
+        {"actuator_torque": "N m", "mean_radius": "m", "thickness": "m", "length_ratio": "-"},
+        "Pa",
+    ),
+    (
+        ws.overrun_life,
+        {"depth": "m", "wear_rate": "m3/J", "friction": "-", "rubbing": "W/m2", "duty": "-"},
+        "s",
+    ),
     (ws.overrun_pv, {"pressure": "Pa", "speed": "1/s", "hub_radius": "m"}, "W/m2"),
     (
         ws.overrun_temperature_rise,

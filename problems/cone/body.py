@@ -1,0 +1,400 @@
+"""The complete cone clutch around its cones, and what an engineer demands of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from problems.cone import formulas as cone
+from problems.friction.duty import Duty, Size
+from problems.friction.engagement import Pair, Startup
+from problems.mechanics import plates
+from problems.mechanics.wear import wear_life
+from problems.practice import UNSOURCED, ShaftRequirements, shaft_for
+from problems.sources import DRIVE
+from synth.declaration import Block, Declaration, Option, Requirement
+
+USUAL_ANGLES = "Shop Practice vol. 2, requirements of clutches: cones of 8 to 18 degrees"
+LITTLE_WEDGE = 1.5  # normal force over spring force; a disc with two surfaces has 2 at the same diameter
+
+
+@dataclass(frozen=True)
+class Cone:
+    """The friction cone."""
+
+    force: Any
+    mean_diameter: Any
+    length: Any
+    angle: Any
+    shell_thickness: Any
+    ratio: Any
+    area: Any
+    largest_diameter: Any
+
+
+class ConeBodyRequirements(ShaftRequirements):
+    """What a complete cone clutch has around its cones, all in SI."""
+
+    group = "practice"
+
+    spring_deflection = Requirement(
+        "mm",
+        20,
+        lower=1,
+        upper=500,
+        symbol="f_sp",
+        text=f"Deflection of the spring that engages, which with its force tells how heavy it is ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    spring_energy = Requirement(
+        "J/kg",
+        140,
+        lower=5,
+        upper=1000,
+        symbol="e_sp",
+        text="Energy that a spring stores per mass: tau**2/(4 G rho) of a round wire at 600 N/mm2",
+        source=f"energy of a wire in torsion; stress: {UNSOURCED}",
+    )
+    gap_normal = Requirement(
+        "mm",
+        0.3,
+        lower=0.01,
+        upper=5,
+        symbol="g_n",
+        text=f"Release gap across the friction face ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    wear_depth_limit = Requirement(
+        "mm",
+        1.0,
+        lower=0.01,
+        upper=50,
+        symbol="d_w_max",
+        text="Wear of the lining before it is replaced, where less than its wearable_depth (eight car discs: 1.0 mm)",
+        source=UNSOURCED,
+    )
+
+
+class ConeRules(Block):
+    """Rules for cones, all in SI."""
+
+    group = "practice"
+
+    cone_release = Option(
+        ("forced", "self"),
+        "forced",
+        symbol="rel",
+        text="forced: a lever or spring pulls the cones apart, and release_pull_max limits with what force; self: they "
+        "come apart by themselves, with locking_margin",
+        source=UNSOURCED,
+    )
+    cone_angle_min = Requirement(
+        "deg",
+        8,
+        lower=1,
+        upper=45,
+        symbol="alpha_min",
+        text="Least half angle; below it cones grab and stick",
+        source=USUAL_ANGLES,
+    )
+    cone_angle_max = Requirement(
+        "deg",
+        18,
+        lower=1,
+        upper=60,
+        symbol="alpha_max",
+        text="Largest half angle; above it little is left of the wedge effect",
+        source=USUAL_ANGLES,
+    )
+    release_pull_max = Requirement(
+        "-",
+        0.5,
+        lower=0,
+        upper=5,
+        symbol="k_pull",
+        text=f"Largest force that pulls the engaged cones apart over the spring force; with cone_release forced "
+        f"({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    shell_stiffness_ratio = Requirement(
+        "-",
+        30,
+        lower=2,
+        upper=500,
+        symbol="k_shell",
+        text=f"Mean diameter over thickness of a shell at most ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    hoop_stress_limit = Requirement(
+        "N/mm2",
+        40,
+        lower=1,
+        upper=1000,
+        symbol="sigma_hoop",
+        text=f"Largest stress around a shell under the pressure of seated cones (grey iron; {UNSOURCED})",
+        source=UNSOURCED,
+    )
+    stroke_base = Requirement(
+        "mm",
+        5,
+        lower=0,
+        upper=100,
+        symbol="s_0",
+        text=f"Stroke that any release gear has ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    stroke_per_diameter = Requirement(
+        "-",
+        0.05,
+        lower=0,
+        upper=1,
+        symbol="s_1",
+        text=f"Further stroke over mean diameter of the cone ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    pressure_use_min = Requirement(
+        "-",
+        0.2,
+        lower=0,
+        upper=1,
+        symbol="u_p_min",
+        text="Least share of p_allow that is used while the cones engage (linings of car discs: 0.35 to 0.5)",
+        source=UNSOURCED,
+    )
+    wear_life_min = Requirement(
+        "-",
+        lower=1,
+        upper=1e12,
+        optional=True,
+        symbol="N_w_min",
+        text="Least engagements until the lining is worn",
+        source=DRIVE,
+        group="duty",
+    )
+
+    @property
+    def pull_max(self) -> Any:
+        """Largest pull over the spring force [-]; None where the cones must come apart by themselves."""
+        return self.release_pull_max if self.cone_release == "forced" else None
+
+
+@dataclass(frozen=True)
+class ConeBody:
+    """What is around the cones, the way that parts them, and the whole size."""
+
+    wants: ConeBodyRequirements
+    stroke: Any
+    size: Size
+
+
+def declare_body_requirements(d: Declaration, *, required: Any) -> ConeBodyRequirements:
+    """Declare the requirements of the complete clutch, whose shaft carries the sizing torque M_req [N m]."""
+    return d.block(ConeBodyRequirements, shaft_diameter=shaft_for(required))
+
+
+def declare_cone_rules(d: Declaration) -> ConeRules:
+    """Declare the requirements that rules for cones go by, and refuse angles that no cone can have."""
+    rules = d.block(ConeRules)
+    d.refuse(
+        "bad_angles",
+        rules.cone_angle_min > rules.cone_angle_max,
+        "a cone_angle_min of at most cone_angle_max; otherwise no cone satisfies both",
+    )
+    return rules
+
+
+def wear_depth(wants: ConeBodyRequirements, pair: Pair) -> Any:
+    """Return the wear of the lining before it is replaced [m]."""
+    return np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+
+
+def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair: Pair, pack_size: Size) -> ConeBody:
+    """Return what is around the cones: a web and a boss for each, and the spring.
+
+    Parameters
+    ----------
+    duty : Duty
+        Block duty.
+    wants : ConeBodyRequirements
+        Requirements of the complete clutch.
+    shape : Cone
+        The friction cone.
+    pair : Pair
+        Slot friction_pair.
+    pack_size : Size
+        Mass and room of the shells.
+
+    Returns
+    -------
+    ConeBody
+        The whole size.
+    """
+    rho, wall = duty.steel_density, shape.shell_thickness
+    across, bore = shape.mean_diameter / 2, wants.shaft_diameter / 2
+    added = (
+        plates.annulus_mass(rho, 2, wall, across + bore, across - bore)
+        + 2 * wants.boss_mass(rho)
+        + cone.spring_mass(shape.force, wants.spring_deflection, wants.spring_energy)
+    )
+    return ConeBody(
+        wants=wants,
+        stroke=cone.axial_stroke(wants.gap_normal, wear_depth(wants, pair), shape.angle),
+        size=Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=pack_size.length + 2 * wall),
+    )
+
+
+def declare_body(
+    d: Declaration, *, shape: Cone, pair: Pair, start: Startup, body: ConeBody, pack_size: Size, grip: Any
+) -> None:
+    """Name what a complete clutch adds to its cones: parts of the mass, stroke, wedge effect and wear.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    shape : Cone
+        The friction cone.
+    pair : Pair
+        Slot friction_pair.
+    start : Startup
+        What one engagement costs.
+    body : ConeBody
+        What is around the cones.
+    pack_size : Size
+        Mass and room of the shells.
+    grip : symbol
+        Peripheral force of the clutch that has just engaged, with the friction counted on [N].
+    """
+    d.derive("part_mass", "kg", pack_size.mass, symbol="m_part", text="Both shells and the lining", source="geometry")
+    d.derive(
+        "pack_length",
+        "mm",
+        pack_size.length,
+        symbol="L_pk",
+        text="Length of the cone and what the layout adds to it",
+        source="geometry",
+    )
+    d.derive(
+        "stroke",
+        "mm",
+        body.stroke,
+        symbol="s_st",
+        text="Way along the axis that opens the gap of a worn lining",
+        source="geometry",
+    )
+    gain = d.derive(
+        "wedge_gain",
+        "-",
+        grip / pair.mu_low / shape.force,
+        symbol="k_wedge",
+        text="Normal force over spring force; a disc with two surfaces has 2 at the same diameter",
+        source="derived, 1/(sin(alpha) + mu cos(alpha))",
+    )
+    d.advise(
+        "little_wedge",
+        gain < LITTLE_WEDGE,
+        "the wedge effect gains less than 1.5: a disc with two surfaces of the same diameter gains 2",
+        source="derived",
+    )
+    d.derive(
+        "wear_life",
+        "-",
+        wear_life(shape.area, wear_depth(body.wants, pair), pair.part.wear_rate, start.friction_work),
+        symbol="N_w",
+        text="Engagements until the lining is worn",
+        source="wear volume in proportion to friction work (Archard)",
+    )
+
+
+def declare_rules(d: Declaration, *, rules: ConeRules, shape: Cone, pair: Pair, body: ConeBody) -> None:
+    """Declare the limits that an engineer adds to cones.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : ConeRules
+        What the limits go by.
+    shape : Cone
+        The friction cone.
+    pair : Pair
+        Slot friction_pair.
+    body : ConeBody
+        What is around the cones.
+    """
+    d.at_least(
+        "cone_angle_min",
+        shape.angle,
+        rules.cone_angle_min,
+        "deg",
+        text="The cones do not grab",
+        source=USUAL_ANGLES,
+    )
+    d.at_most(
+        "cone_angle_max",
+        shape.angle,
+        rules.cone_angle_max,
+        "deg",
+        text="The cones wedge",
+        source=USUAL_ANGLES,
+    )
+    d.at_least(
+        "shell_stiffness",
+        shape.shell_thickness,
+        shape.mean_diameter / rules.shell_stiffness_ratio,
+        "mm",
+        text="The shells stay round",
+        source=UNSOURCED,
+    )
+    stress = d.derive(
+        "hoop_stress",
+        "N/mm2",
+        cone.hoop_stress(d.derived["seated_pressure"].sx, shape.mean_diameter, shape.shell_thickness),
+        symbol="sigma_h",
+        text="Stress around a shell under the pressure of seated cones",
+        source="thin ring under pressure",
+    )
+    d.at_most(
+        "shell_hoop",
+        stress,
+        rules.hoop_stress_limit,
+        "N/mm2",
+        text="The shells do not burst or buckle",
+        source=UNSOURCED,
+    )
+    d.at_most(
+        "stroke",
+        body.stroke,
+        rules.stroke_base + rules.stroke_per_diameter * shape.mean_diameter,
+        "mm",
+        text="The release gear has the stroke",
+        source=UNSOURCED,
+    )
+    inside = shape.mean_diameter - shape.length * np.sin(shape.angle) - 2 * shape.shell_thickness
+    d.at_least(
+        "hub_room",
+        inside,
+        body.wants.hub_diameter,
+        "mm",
+        text="The hub of the shaft fits inside the inner cone",
+        source="geometry",
+    )
+    d.at_least(
+        "pressure_use",
+        d.derived["surface_pressure"].sx,
+        rules.pressure_use_min * pair.part.p_allow,
+        "N/mm2",
+        text="The lining is used",
+        source=UNSOURCED,
+    )
+    if rules.wear_life_min is not None:
+        d.at_least(
+            "wear_life",
+            d.derived["wear_life"].sx,
+            rules.wear_life_min,
+            "-",
+            text="The lining lasts long enough",
+            source=DRIVE,
+        )

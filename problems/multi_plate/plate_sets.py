@@ -1,0 +1,137 @@
+"""Plates of a list: each row is an inner and an outer plate that fit together."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from problems.friction.engagement import Pair
+from problems.friction.ring import Ring
+from problems.multi_plate.pack import Pack, Plates
+from problems.multi_plate.requirements import PackRequirements
+from synth.declaration import Declaration, Part
+
+TABLE = "plate_sets"
+
+
+def declare_plate_set(d: Declaration) -> Part | None:
+    """Declare the option plates, and the slot plate_set where plates are those of a list.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+
+    Returns
+    -------
+    Part or None
+        The row of the list; None where plates are made to size.
+    """
+    plates = d.option(
+        "plates",
+        ("made", "standard"),
+        "made",
+        symbol="pls",
+        text="made: ring, cores and splines to the sizes found; standard: a row of table plate_sets, your maker's list",
+        source=f"table {TABLE}",
+        group="model",
+    )
+    if plates == "made":
+        return None
+    return d.part(
+        "plate_set",
+        TABLE,
+        symbol="set",
+        text="Inner and outer plate that fit together",
+        source=f"table {TABLE}",
+    )
+
+
+def ring_diameters(row: Part) -> tuple[Any, Any]:
+    """Return outer and inner diameter [m] of the friction ring of a row."""
+    return row.ring_outer_diameter, row.ring_inner_diameter
+
+
+def standard_plates(row: Part, *, wants: PackRequirements, ring: Ring) -> Plates:
+    """Return the plates of a row.
+
+    Parameters
+    ----------
+    row : Part
+        Row of plate_sets.
+    wants : PackRequirements
+        Requirements of the pack, which know how many of all teeth carry.
+    ring : Ring
+        Block ring, with the diameters of the row.
+
+    Returns
+    -------
+    Plates
+        Cores, splines, teeth and lining of the row.
+    """
+    a, b = row.inner_spline_diameter / 2, row.outer_spline_diameter / 2
+    return Plates(
+        inner_thickness=row.inner_core_thickness,
+        outer_thickness=row.outer_core_thickness,
+        inner_spline_radius=a,
+        outer_spline_radius=b,
+        inner_mean_diameter=ring.outer_radius + a,
+        inner_width=ring.outer_radius - a,
+        outer_mean_diameter=b + ring.inner_radius,
+        outer_width=b - ring.inner_radius,
+        spline_mean_diameter=b + a,
+        spline_width=b - a,
+        inner_lug_count=wants.carrying(row.inner_teeth),
+        inner_lug_height=row.tooth_height,
+        outer_lug_count=wants.carrying(row.outer_teeth),
+        outer_lug_height=row.tooth_height,
+        lining_thickness=row.lining_thickness,
+    )
+
+
+def declare_set_limits(d: Declaration, row: Part, *, pair: Pair, pack: Pack, pressure: Any) -> None:
+    """Declare what a list says of its plates: which lining they carry, how many surfaces, how much pressure.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    row : Part
+        Row of plate_sets.
+    pair : Pair
+        Slot friction_pair.
+    pack : Pack
+        The pack.
+    pressure : symbol
+        Largest pressure on the linings [Pa].
+    """
+    if d.has_column(TABLE, "lining"):
+        d.refuse(
+            "lining_of_plates",
+            np.logical_not(np.logical_or(row.says("lining", ""), row.code("lining") == pair.part.code("designation"))),
+            "plates with the lining that their list names",
+        )
+    d.at_most(
+        "set_surfaces",
+        pack.surfaces,
+        row.optional("surfaces_max"),
+        "-",
+        text="No more surfaces than the list of the plates allows",
+        source=f"table {TABLE}",
+    )
+    d.at_most(
+        "set_pressure",
+        pressure,
+        row.optional("p_max"),
+        "N/mm2",
+        text="No more pressure than the list of the plates allows",
+        source=f"table {TABLE}",
+    )
+    if d.has_column(TABLE, "confidence"):
+        d.advise(
+            "computed_plates",
+            row.says("confidence", "computed"),
+            "these plates are of a computed series, no maker lists them: give a maker's list as table plate_sets",
+            source=f"table {TABLE}",
+        )

@@ -1,0 +1,93 @@
+"""What the rules of practice reject of fronts that are asked without them, and what they cost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import synth
+from tests.benchmarks.tables import Report
+
+POINTS = 30
+THREADS = 2
+
+
+@dataclass(frozen=True)
+class Duty:
+    """One duty of a family."""
+
+    family: str
+    size: str
+    requirements: Mapping[str, Any]
+    options: Mapping[str, str] = field(default_factory=dict)
+
+
+def _start(torque: str, speed: str, inertia: str, **more: str) -> dict[str, Any]:
+    return {"load_torque": torque, "driver_speed": speed, "driven_inertia": inertia, **more}
+
+
+DUTIES = [
+    Duty("multi_plate_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.01 kg*m2")),
+    Duty("multi_plate_clutch", "5 N m, dry", _start("5 N*m", "1500 1/min", "0.01 kg*m2"), {"lubrication": "dry"}),
+    Duty("multi_plate_clutch", "200 N m", _start("200 N*m", "1450 1/min", "0.5 kg*m2")),
+    Duty("multi_plate_clutch", "600 N m, hoist", _start("600 N*m", "254 1/min", "30 kg*m2", jerk_limit="18 rad/s3")),
+    Duty("multi_plate_clutch", "20 kN m", _start("20 kN*m", "150 1/min", "800 kg*m2", slip_time_limit="6 s")),
+    Duty("disc_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.02 kg*m2")),
+    Duty("disc_clutch", "60 N m, car", _start("60 N*m", "1500 1/min", "0.7 kg*m2", engagements_per_hour="20 1/h")),
+    Duty("disc_clutch", "200 N m", _start("200 N*m", "1500 1/min", "1 kg*m2", engagements_per_hour="20 1/h")),
+    Duty("cone_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.02 kg*m2")),
+    Duty("cone_clutch", "200 N m", _start("200 N*m", "700 1/min", "2 kg*m2", engagements_per_hour="30 1/h")),
+    Duty("roller_coupling", "20 N m", {"required_torque": "20 N*m", "driver_speed": "960 1/min", "offset": "2 mm"}),
+    Duty("roller_coupling", "300 N m", {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}),
+    Duty("roller_coupling", "5 kN m", {"required_torque": "5 kN*m", "driver_speed": "300 1/min", "offset": "10 mm"}),
+]
+
+
+def asked(duty: Duty, practice: str, time_limit: float) -> tuple[synth.ParetoFront, float]:
+    """Return the front of a duty with the defaults of its family, and the processor seconds it took."""
+    problem = synth.load(duty.family, practice=practice, **duty.options)
+    synth.synthesize(problem, duty.requirements, points=1, gap=0.5)  # tracing and compiling are not counted
+    begin = time.process_time()
+    front = synth.synthesize(problem, duty.requirements, points=POINTS, time_limit=time_limit, workers=THREADS)
+    return front, time.process_time() - begin
+
+
+def broken(duty: Duty, design: synth.Design) -> set[str]:
+    """Return which rules a design breaks; a part that is built no more is one of them."""
+    problem = synth.load(duty.family, practice="on", **duty.options)
+    stated = design.to_spec()
+    try:
+        found = synth.evaluate(problem, duty.requirements, values=stated["values"], parts=stated["parts"])
+    except synth.InputError as error:
+        return {error.field}
+    return set(found.violated)
+
+
+def practice(time_limit: float, quick: bool) -> list[Report]:
+    """Return what is rejected of each duty's front without the rules and with them."""
+    rows, reasons = [], []
+    for duty in DUTIES[: 1 if quick else None]:
+        row: dict[str, Any] = {"family": duty.family, "duty": duty.size}
+        for word in ("off", "on"):
+            front, seconds = asked(duty, word, time_limit)
+            faults = [broken(duty, design) for design in front.designs]
+            share = f"{sum(map(bool, faults))} of {len(faults)}"
+            row |= {
+                f"{word}: break a rule": share,
+                f"{word}: s": seconds,
+                f"{word}: certificate": front.certificate.kind,
+            }
+            if word == "off" and faults:
+                counted = {name: sum(name in one for one in faults) for name in set().union(*faults)}
+                told = ", ".join(f"{n} {k}" for n, k in sorted(counted.items(), key=lambda item: -item[1])[:4])
+                reasons.append({"family": duty.family, "duty": duty.size, "rules that are broken, by designs": told})
+        if front.designs:
+            best = front.designs[0].values
+            row |= {"#1 kg": best["mass"], "#1 mm": 1000 * best["outer_diameter"]}
+        rows.append(row)
+    return [
+        Report("practice", rows, [f"fronts of at most {POINTS} to 0.1 %, makeable sizes, processor seconds"]),
+        Report("practice: what is rejected without the rules", reasons, []),
+    ]
