@@ -7,8 +7,11 @@ import os
 import resource
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
+import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -65,6 +68,20 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def out(small: Path, tmp_path: Path) -> Path:
     """A copy of a finished front."""
     return Path(shutil.copytree(small / "out", tmp_path / "out"))
+
+
+def until_it_works(database: Path, rows: int) -> None:
+    """Wait until a worker has taken the first rows of a batch of so many."""
+    taken = (
+        "SELECT count(*) FROM batch_unit JOIN batch_job ON batch_unit.job = batch_job.id WHERE rows = ? AND owner <> ''"
+    )
+    deadline = time.monotonic() + 100
+    while time.monotonic() < deadline:
+        with closing(sqlite3.connect(database)) as connection:
+            if connection.execute(taken, (rows,)).fetchone()[0]:
+                return
+        time.sleep(0.02)
+    pytest.fail("the batch has not begun")
 
 
 def begun(folder: Path, *words: object) -> subprocess.Popen[str]:
@@ -245,8 +262,7 @@ def test_a_batch_of_other_rows_that_is_stopped_stands_beside(tmp_path: Path) -> 
         text=True,
         start_new_session=True,
     ) as process:
-        assert process.stderr is not None
-        assert "rows" in process.stderr.readline()  # of the progress: it is at work
+        until_it_works(out / "jobs.sqlite", 2400)
         os.killpg(process.pid, signal.SIGTERM)  # its workers as well, as a scheduler does
         said, errors = process.communicate(timeout=100)
     assert process.returncode == 4, errors
