@@ -19,6 +19,8 @@ UNIT_COST = "unit_cost"
 SQUARE_DECIMETRE = 1e-2  # m2, for which unit_cost of a lining is given
 NONE = 0.0  # stands where a row says no cost; costs are above it
 SPRING_WIRE = 3.0  # a kilogram of a spring over one of plain steel
+COPPER = 10.0  # a kilogram of winding wire over one of plain steel
+POWDER = 20.0  # a kilogram of magnetic powder over one of plain steel
 ROLLER = 2.0  # a track roller or bearing over a part that is turned
 
 

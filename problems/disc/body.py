@@ -28,7 +28,6 @@ class DiscBodyRequirements(ShaftRequirements):
 
     wear_depth_limit = Requirement(
         "mm",
-        1.0,
         lower=0.01,
         upper=50,
         symbol="d_w_max",
@@ -109,9 +108,24 @@ class DiscBody:
     size: Size
 
 
-def declare_body_requirements(d: Declaration, *, required: Any) -> DiscBodyRequirements:
-    """Declare the requirements of the complete clutch, whose shaft carries the sizing torque M_req [N m]."""
-    return d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required))
+def declare_body_requirements(d: Declaration, *, required: Any, wear_depth_limit: float = 1.0) -> DiscBodyRequirements:
+    """Declare the requirements of the complete clutch.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    required : symbol
+        Sizing torque M_req [N m], which the shaft carries.
+    wear_depth_limit : float
+        Default of the requirement [mm].
+
+    Returns
+    -------
+    DiscBodyRequirements
+        Symbols of the block.
+    """
+    return d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=wear_depth_limit)
 
 
 def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> DiscRequirements:
@@ -148,6 +162,38 @@ def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: 
     )
     length = pack_size.length + disc.cover_thickness(pack_size.diameter) + disc.SPRING_ROOM * 2 * ring.outer_radius
     return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
+
+
+def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, pack_size: Size) -> DiscBody:
+    """Return what is around discs that an armature presses: hub and cover, no diaphragm spring.
+
+    Parameters
+    ----------
+    duty : Duty
+        Block duty.
+    wants : DiscBodyRequirements
+        Requirements of the complete clutch.
+    pack : DiscPack
+        The discs.
+    pack_size : Size
+        Mass and room of discs and pressure plates.
+
+    Returns
+    -------
+    DiscBody
+        The whole size, without the magnet.
+    """
+    rho = duty.steel_density
+    added = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter) + disc.cover_mass(
+        rho, pack_size.diameter, pack_size.length
+    )
+    length = pack_size.length + disc.cover_thickness(pack_size.diameter)
+    return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
+
+
+def wear_depth(wants: DiscBodyRequirements, pair: Pair) -> Any:
+    """Return the wear of one lining before it is replaced [m]."""
+    return np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
 
 
 def declare_body(
@@ -188,7 +234,7 @@ def declare_body(
         "-",
         wear_life(
             pack.surfaces * ring.area,
-            np.minimum(pair.part.wearable_depth, body.wants.wear_depth_limit),
+            wear_depth(body.wants, pair),
             pair.part.wear_rate,
             start.friction_work,
         ),

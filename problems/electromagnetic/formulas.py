@@ -259,3 +259,12 @@ class Circuit:
         """Ampere-turns that the flux density needs [A]."""
         field = magnetics.iron_field(self.densest(flux_density), self.iron_reluctance, self.iron_saturation)
         return engaged_ampere_turns(flux_density, self.shape, field)
+
+    def linkage(self, flux_density: Quantity) -> Quantity:
+        """Flux of the coil over its ampere-turns, leak A_p/(2 g_r/mu0 + l_fe H/B) [Wb/A].
+
+        The flux density stands in it once, as far as the iron saturates, so that bounds are tight.
+        """
+        ratio = magnetics.iron_reluctivity(self.densest(flux_density), self.iron_reluctance, self.iron_saturation)
+        field = ratio * self.densest(1.0)
+        return self.leakage_factor * self.shape.pole_area / engaged_ampere_turns(1.0, self.shape, field)

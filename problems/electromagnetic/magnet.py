@@ -8,9 +8,10 @@ from typing import Any
 from problems.electromagnetic import formulas as pot_magnet
 from problems.friction.duty import Duty
 from problems.magnet import coil as coil_blocks
-from problems.mechanics import heat, magnetics
+from problems.mechanics import heat, magnetics, plates
+from problems.practice import UNSOURCED
 from problems.sources import S0, S4, TYPICAL
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Block, Declaration, Option, Requirement
 
 HOLDS = "magnet_overcomes_springs"
 
@@ -68,6 +69,48 @@ class MagnetRequirements(Block):
     )
 
 
+class MagnetRules(coil_blocks.CoilRules):
+    """Rules for magnets that press a pack, all in SI."""
+
+    group = "practice"
+
+    wear_adjust = Option(
+        ("no", "yes"),
+        "no",
+        symbol="adj",
+        text="no: the armature follows the wear, and the magnet draws it in over the gap of worn linings; yes: the gap "
+        "is set again as they wear",
+        source="the armature follows the wear; derived",
+        group="actuator",
+    )
+    ramp_time_min = Requirement(
+        "ms",
+        20,
+        lower=0,
+        upper=10000,
+        symbol="t_r_min",
+        text=f"Least ramp_time: no armature is faster ({UNSOURCED}; four units)",
+        source=UNSOURCED,
+    )
+
+
+@dataclass(frozen=True)
+class Practice:
+    """What rules for magnets go by: the block, wear of a lining [m], and the ramp that the current must follow [s]."""
+
+    rules: MagnetRules
+    wear_depth: Any
+    ramp_time: Any
+
+
+@dataclass(frozen=True)
+class MagnetSize:
+    """Mass of the magnet and of the copper in it [kg]."""
+
+    mass: Any
+    copper: Any
+
+
 @dataclass(frozen=True)
 class Magnet:
     """The magnet and what it leaves for the pack."""
@@ -79,20 +122,29 @@ class Magnet:
     actuation_force: Any
 
 
-def declare_magnet(d: Declaration) -> Magnet:
+def declare_magnet_rules(d: Declaration) -> MagnetRules:
+    """Declare the requirements that rules for magnets go by, and refuse windows that no coil can have."""
+    rules = d.block(MagnetRules)
+    coil_blocks.refuse_bad_window(d, rules)
+    return rules
+
+
+def declare_magnet(d: Declaration, *, bore_radius: Any = None) -> Magnet:
     """Declare requirements and unknowns of the magnet, its force, and what is left for the pack.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
+    bore_radius : symbol, optional
+        Default of magnet_bore_radius where it follows from the shaft [m].
 
     Returns
     -------
     Magnet
         Symbols of the block.
     """
-    wants = d.block(MagnetRequirements)
+    wants = d.block(MagnetRequirements, **({} if bore_radius is None else {"magnet_bore_radius": bore_radius}))
     iron = coil_blocks.declare_coil_requirements(d)
     pole_width = d.variable(
         "inner_pole_width",
@@ -142,7 +194,16 @@ def declare_magnet(d: Declaration) -> Magnet:
     return Magnet(wants, iron, unknowns, shape, force)
 
 
-def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces: Any, friction_work: Any) -> Any:
+def declare_magnet_coil(
+    d: Declaration,
+    *,
+    duty: Duty,
+    magnet: Magnet,
+    surfaces: Any,
+    gap: Any,
+    friction_work: Any,
+    practice: Practice | None = None,
+) -> MagnetSize:
     """Declare the circuit, the pull on the released armature and the coil with their limits.
 
     Parameters
@@ -154,14 +215,18 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
     magnet : Magnet
         The magnet.
     surfaces : symbol
-        Friction surfaces of the pack, each with plate_gap when released [-].
+        Friction surfaces of the pack [-].
+    gap : symbol
+        Gap of each of them when released [m].
     friction_work : symbol
         Per engagement; it heats the magnet too [J].
+    practice : Practice, optional
+        What the rules of practice go by, where they count.
 
     Returns
     -------
-    symbol
-        Mass of the magnet [kg].
+    MagnetSize
+        Its mass.
     """
     wants, iron, unknowns, shape = magnet.wants, magnet.iron, magnet.unknowns, magnet.shape
     circuit = pot_magnet.Circuit(shape, iron.leakage_factor, iron.iron_reluctance, iron.iron_saturation)
@@ -184,7 +249,7 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
         source=f"{S4}, section 6.6",
     )
     ampere_turns = circuit.ampere_turns(flux_density)
-    released, springs = _name_release(d, duty=duty, wants=wants, surfaces=surfaces)
+    released, springs = _name_release(d, wants=wants, surfaces=surfaces, gap=gap)
     pull_in = d.derive(
         "pull_in_force",
         "N",
@@ -194,14 +259,15 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
         text="Pull on the released armature, across all gaps of the pack",
         source=f"{S4}, section 6.6",
     )
-    d.at_least(
-        "pull_in",
-        pull_in,
-        wants.pull_in_margin * springs,
-        "N",
-        text="The magnet draws the released armature in",
-        source=f"{S4}, section 6.6",
-    )
+    if practice is None or practice.rules.wear_adjust == "yes":
+        d.at_least(
+            "pull_in",
+            pull_in,
+            wants.pull_in_margin * springs,
+            "N",
+            text="The magnet draws the released armature in",
+            source=f"{S4}, section 6.6",
+        )
     d.derive(
         "magnet_diameter",
         "mm",
@@ -217,20 +283,90 @@ def declare_magnet_coil(d: Declaration, *, duty: Duty, magnet: Magnet, surfaces:
         surface=magnetics.cylinder_surface(shape.outer_radius, shape.body_length),
         other_heat=heat.hourly_heat(friction_work, duty.engagements_per_hour),
     )
-    copper_section = coil_blocks.declare_winding(
+    winding = coil_blocks.declare_winding(
         d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=shape.inner_pole_radius, around=around
     )
     _declare_remarks(d, wants=wants)
-    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, copper_section)
-    return pot_magnet.magnet_mass(duty.steel_density, shape, copper)
+    if practice is not None:
+        coil_blocks.limit_coil(d, rules=practice.rules, wants=iron, unknowns=unknowns)
+        rise = coil_blocks.declare_rise_time(
+            d, rules=practice.rules, winding=winding, linkage=circuit.linkage(flux_density)
+        )
+        worn = wants.residual_gap + plates.stroke(surfaces, gap, practice.wear_depth)
+        _limit_magnet(
+            d,
+            wants=wants,
+            practice=practice,
+            springs=springs,
+            rise=rise,
+            worn_gap=worn,
+            worn_pull=pot_magnet.pull_in_force(ampere_turns, worn, shape.pole_area),
+        )
+    copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, winding.copper_section)
+    return MagnetSize(mass=pot_magnet.magnet_mass(duty.steel_density, shape, copper), copper=copper)
 
 
-def _name_release(d: Declaration, *, duty: Duty, wants: MagnetRequirements, surfaces: Any) -> tuple[Any, Any]:
+def _limit_magnet(
+    d: Declaration,
+    *,
+    wants: MagnetRequirements,
+    practice: Practice,
+    springs: Any,
+    rise: Any,
+    worn_gap: Any,
+    worn_pull: Any,
+) -> None:
+    """Declare the limits that an engineer adds to a magnet that presses a pack."""
+    d.step(
+        "worn_gap",
+        "mm",
+        worn_gap,
+        symbol="g_worn",
+        text="Gap at each pole of the released magnet over worn linings",
+        source="the armature follows the wear; derived",
+    )
+    pull = d.derive(
+        "worn_pull_in_force",
+        "N",
+        worn_pull,
+        symbol="F_in_worn",
+        needs="iron_saturation",
+        text="Pull on the released armature over worn linings",
+        source=f"{S4}, section 6.6; the armature follows the wear",
+    )
+    if practice.rules.wear_adjust == "no":
+        d.at_least(
+            "pull_in_worn",
+            pull,
+            wants.pull_in_margin * springs,
+            "N",
+            text="The magnet draws the armature in over worn linings as well",
+            source=f"{S4}, section 6.6; the armature follows the wear",
+        )
+    d.at_most(
+        "rise_time",
+        rise,
+        practice.ramp_time,
+        "s",
+        text="The current rises within the ramp that is counted on",
+        source="L/R of the circuit; derived",
+    )
+    d.at_least(
+        "ramp_time",
+        practice.ramp_time,
+        practice.rules.ramp_time_min,
+        "s",
+        text="An armature needs its time",
+        source=UNSOURCED,
+    )
+
+
+def _name_release(d: Declaration, *, wants: MagnetRequirements, surfaces: Any, gap: Any) -> tuple[Any, Any]:
     """Name what the magnet pulls against when it draws the armature in; return gap [m] and force [N]."""
-    gap = d.step(
+    released = d.step(
         "released_gap",
         "mm",
-        wants.residual_gap + surfaces * duty.plate_gap,
+        wants.residual_gap + surfaces * gap,
         symbol="g_rel",
         text="Gap at each pole of the released magnet",
         source=f"{S4}, section 6.6",
@@ -243,7 +379,7 @@ def _name_release(d: Declaration, *, duty: Duty, wants: MagnetRequirements, surf
         text="What holds the released armature back",
         source=f"{S4}, section 6.6",
     )
-    return gap, force
+    return released, force
 
 
 def _declare_remarks(d: Declaration, *, wants: MagnetRequirements) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import friction
+from problems import cost, friction, practice
+from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
 from problems.electromagnetic import curves as magnet_curves
@@ -13,15 +14,20 @@ from problems.electromagnetic import magnet as magnet_blocks
 from problems.friction import startup_curves
 from problems.mechanics import magnetics
 from problems.mechanics import ring as ring_formulas
+from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
 from problems.multi_plate import pack as plate_pack
-from problems.multi_plate.requirements import MadePackOptions
+from problems.multi_plate.requirements import MadePackOptions, PackBodyRequirements, PackRules
 from problems.sources import S4
 from synth import DesignProblem
 from synth.declaration import Declaration
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+MAGNET_PARTS = 3  # pot, armature and coil
+WEAR_AT_MAGNET = 0.3  # mm, default of wear_depth_limit of dry linings: a magnet does not reach over more
 
 
 class ElectromagneticClutch(DesignProblem):
@@ -54,15 +60,23 @@ class ElectromagneticClutch(DesignProblem):
             source=f"{S4}, section 6.6",
             group="model",
         )
+        scope = practice.declare_scope(d)
         if pack == "disc":
-            self._declare_disc(d)
+            self._declare_disc(d, scope=scope)
         else:
-            self._declare_multi_plate(d)
-        d.objective("coil_power")
+            self._declare_multi_plate(d, scope=scope)
+        # Least power asks for ever larger magnets; with the rules of practice the supply limits it, and size counts.
+        d.objective("coil_power", default=not scope.rules)
         d.objective("mass")
+        d.objective("outer_diameter", default=scope.rules)
         extra = "disc_inertia" if pack == "disc" else "drag_torque"
-        for name in ("outer_diameter", "volume", "friction_work", extra):
+        for name in ("volume", "friction_work", extra):
             d.objective(name, default=False)
+        if scope.rules or scope.complete:
+            d.objective("wear_life", "max", default=False)
+            d.objective("length", default=False)
+            if pack == "multi_plate":
+                d.objective("inner_inertia", default=False)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pack over repeated engagements.
@@ -100,19 +114,39 @@ class ElectromagneticClutch(DesignProblem):
             frames["heat_balance"] = coil.heat_balance()
         return frames
 
-    def _declare_multi_plate(self, d: Declaration) -> None:
+    def _declare_multi_plate(self, d: Declaration, *, scope: practice.Scope) -> None:
         lubrication = plate_pack.declare_lubrication(d)
         duty = friction.declare_duty(
-            d, cooling_default="oil_bath" if lubrication == "oil" else "still_air", lubrication=lubrication
+            d,
+            cooling_default="oil_bath" if lubrication == "oil" else "still_air",
+            lubrication=lubrication,
+            kind=friction.DutyOfPack if scope.rules else friction.Duty,
         )
         options = d.block(MadePackOptions)
-        wants = plate_pack.declare_pack_requirements(d, duty=duty, options=options, lubrication=lubrication)
-        ring = friction.declare_ring(d, ratio_min=0.10, ratio_max=0.25)
-        magnet = magnet_blocks.declare_magnet(d)
-        ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication=lubrication)
-        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
+        wants = plate_pack.declare_pack_requirements(
+            d, duty=duty, options=options, lubrication=lubrication, rules=scope.rules
+        )
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
+        body_wants = rules = coil_rules = None
+        if scope.rules or scope.complete:
+            body_wants = d.block(
+                PackBodyRequirements,
+                shaft_diameter=practice.shaft_for(required),
+                wear_depth_limit=0.2 if lubrication == "oil" else WEAR_AT_MAGNET,
+            )
+        if scope.rules:
+            oil = lubrication == "oil"
+            rules = d.block(PackRules, friction_surfaces_max=12 if oil else 8, release_gap_min=0.05 if oil else 0.3)
+            coil_rules = magnet_blocks.declare_magnet_rules(d)
+        ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
+        magnet = magnet_blocks.declare_magnet(
+            d, bore_radius=None if body_wants is None or rules is None else body_wants.hub_diameter / 2
+        )
+        ramp_time = friction.declare_ramp_time(d)
+        pair = friction.declare_friction_pair(
+            d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
+        )
+        pack = plate_pack.declare_pack(d, duty=duty, options=options, wants=wants, ring=ring)
         plate_pack.refuse_impossible_pack(
             d, duty=duty, options=options, wants=wants, ring=ring, pack=pack, required=required
         )
@@ -137,24 +171,85 @@ class ElectromagneticClutch(DesignProblem):
             rubbing_radius=ring.outer_radius,
         )
         size = plate_pack.pack_size(duty, wants, ring, pair, pack)
-        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size)
-        plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
-        self._declare_magnet_and_size(d, duty=duty, magnet=magnet, surfaces=pack.surfaces, start=start, pack=size)
+        plate_pack.declare_pack_temperature(d, duty=duty, pair=pair, start=start, size=size, rules=scope.rules)
+        drag = plate_pack.declare_drag(d, duty=duty, wants=wants, ring=ring, pack=pack)
+        body = habits = None
+        if body_wants is not None:
+            body = plate_body.body_at_magnet(
+                duty=duty, wants=body_wants, pack_wants=wants, ring=ring, pack=pack, pack_size=size
+            )
+            plate_body.declare_body(
+                d,
+                duty=duty,
+                pack_wants=wants,
+                ring=ring,
+                pair=pair,
+                pack=pack,
+                start=start,
+                body=body,
+                pack_size=size,
+            )
+            if rules is not None and coil_rules is not None:
+                plate_body.declare_rules(
+                    d,
+                    rules=rules,
+                    duty=duty,
+                    pack_wants=wants,
+                    ring=ring,
+                    pair=pair,
+                    pack=pack,
+                    start=start,
+                    drag=drag,
+                    body=body,
+                    cooled_area=size.cooled_area,
+                )
+                depth = plate_body.wear_depth(body_wants, pair, pack)
+                habits = magnet_blocks.Practice(rules=coil_rules, wear_depth=depth, ramp_time=ramp_time)
+        built = magnet_blocks.declare_magnet_coil(
+            d,
+            duty=duty,
+            magnet=magnet,
+            surfaces=pack.surfaces,
+            gap=pack.gap,
+            friction_work=start.friction_work,
+            practice=habits,
+        )
+        whole = size if body is None or not scope.complete else body.size
+        self._declare_size(d, scope=scope, duty=duty, magnet=magnet, built=built, pack=whole)
+        if body is not None:
+            self._declare_cost(
+                d, magnet=magnet, built=built, mass=body.size.mass, parts=pack.surfaces + 1, pair=pair, area=area
+            )
         plate_pack.declare_pack_remarks(d, options=options, lubrication=lubrication)
 
-    def _declare_disc(self, d: Declaration) -> None:
-        duty = friction.declare_duty(d, cooling_default="still_air", lubrication="dry")
-        ring = friction.declare_ring(d, ratio_min=0.11, ratio_max=0.13)
-        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring)
-        magnet = magnet_blocks.declare_magnet(d)
+    def _declare_disc(self, d: Declaration, *, scope: practice.Scope) -> None:
+        duty = friction.declare_duty(
+            d,
+            cooling_default="still_air",
+            lubrication="dry",
+            kind=friction.DutyOfDiscs if scope.rules else friction.Duty,
+        )
+        required = friction.sizing_torque(duty)
+        body_wants = wants = rules = coil_rules = None
+        if scope.rules or scope.complete:
+            body_wants = disc_body.declare_body_requirements(d, required=required, wear_depth_limit=WEAR_AT_MAGNET)
+            wants = disc_body.declare_disc_requirements(d, body=body_wants)
+        if scope.rules:
+            rules = d.block(disc_body.DiscRules)
+            coil_rules = magnet_blocks.declare_magnet_rules(d)
+        least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
+        ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants)
+        magnet = magnet_blocks.declare_magnet(
+            d, bore_radius=None if body_wants is None or rules is None else body_wants.hub_diameter / 2
+        )
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
-        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry")
+        pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)
 
         def torque(mu: Any) -> Any:
             return ring_formulas.friction_torque(mu, force, ring.friction_radius, pack.surfaces)
 
-        required = friction.sizing_torque(duty)
         low, high = torque(pair.mu_low), torque(pair.mu_high)
         torques = friction.declare_torque(
             d, duty=duty, pair=pair, required=required, torque_low=low, torque_high=high, needs=(magnet_blocks.HOLDS,)
@@ -175,34 +270,71 @@ class ElectromagneticClutch(DesignProblem):
         size = disc_pack.disc_size(duty, ring, pair, pack)
         disc_pack.declare_disc_inertia(d, duty=duty, ring=ring, pair=pair, pack=pack)
         disc_pack.declare_disc_temperature(d, duty=duty, pair=pair, start=start, ring=ring, pack=pack, size=size)
-        self._declare_magnet_and_size(d, duty=duty, magnet=magnet, surfaces=pack.surfaces, start=start, pack=size)
+        body = habits = None
+        if body_wants is not None:
+            body = disc_body.body_at_magnet(duty=duty, wants=body_wants, pack=pack, pack_size=size)
+            disc_body.declare_body(d, ring=ring, pair=pair, pack=pack, start=start, body=body, pack_size=size)
+            if rules is not None and coil_rules is not None:
+                disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
+                habits = magnet_blocks.Practice(
+                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, pair), ramp_time=ramp_time
+                )
+        built = magnet_blocks.declare_magnet_coil(
+            d,
+            duty=duty,
+            magnet=magnet,
+            surfaces=pack.surfaces,
+            gap=duty.plate_gap,
+            friction_work=start.friction_work,
+            practice=habits,
+        )
+        whole = size if body is None or not scope.complete else body.size
+        self._declare_size(d, scope=scope, duty=duty, magnet=magnet, built=built, pack=whole)
+        if body is not None:
+            self._declare_cost(
+                d, magnet=magnet, built=built, mass=body.size.mass, parts=2 * pack.discs + 2, pair=pair, area=area
+            )
 
-    def _declare_magnet_and_size(
+    def _declare_size(
         self,
         d: Declaration,
         *,
+        scope: practice.Scope,
         duty: friction.Duty,
         magnet: magnet_blocks.Magnet,
-        surfaces: Any,
-        start: friction.Startup,
+        built: magnet_blocks.MagnetSize,
         pack: friction.Size,
     ) -> None:
-        mass = magnet_blocks.declare_magnet_coil(
-            d, duty=duty, magnet=magnet, surfaces=surfaces, friction_work=start.friction_work
-        )
         size = friction.Size(
-            mass=pack.mass + mass,
+            mass=pack.mass + built.mass,
             diameter=2 * magnetics.larger(magnet.shape.outer_radius, pack.diameter / 2),
             length=pack.length + magnet.shape.length,
         )
         friction.declare_size(
             d,
             size=size,
-            mass_of="Pack and magnet with armature and coil",
+            mass_of="The whole clutch" if scope.complete else "Pack and magnet with armature and coil",
             outside="Outside of pack or magnet",
             across="the larger of both",
-            along="Released pack and engaged magnet",
+            along="The whole clutch" if scope.complete else "Released pack and engaged magnet",
         )
         friction.declare_envelope(
             d, duty=duty, force=magnet.actuation_force, diameter=size.diameter, length=size.length
+        )
+
+    def _declare_cost(
+        self,
+        d: Declaration,
+        *,
+        magnet: magnet_blocks.Magnet,
+        built: magnet_blocks.MagnetSize,
+        mass: Any,
+        parts: Any,
+        pair: friction.Pair,
+        area: Any,
+    ) -> None:
+        wire = magnet.unknowns.winding_wire
+        coil = cost.Special(wire, amount=built.copper, mass=built.copper, pieces=1, factor=cost.COPPER)
+        cost.declare_cost(
+            d, mass=mass + built.mass, parts=parts + MAGNET_PARTS, lining=(pair.part, area), special=[coil]
         )

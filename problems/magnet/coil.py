@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from problems.mechanics import magnetics
+from problems.practice import UNSOURCED
 from problems.sources import S4, TYPICAL
 from synth.declaration import Block, Declaration, Requirement, Slot, Variable
 
@@ -97,6 +98,49 @@ class CoilRequirements(Block):
     )
 
 
+class CoilRules(Block):
+    """Rules for coils, all in SI."""
+
+    group = "practice"
+
+    over_excitation = Requirement(
+        "-",
+        2,
+        lower=1.01,
+        upper=100,
+        symbol="k_over",
+        text=f"Voltage while the current rises over that of the steady coil ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    coil_aspect_min = Requirement(
+        "-",
+        0.5,
+        lower=0.01,
+        upper=10,
+        symbol="k_coil_min",
+        text=f"Least length over height of the coil window ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    coil_aspect_max = Requirement(
+        "-",
+        3,
+        lower=0.1,
+        upper=100,
+        symbol="k_coil_max",
+        text=f"Largest length over height of the coil window ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    voltage_use_min = Requirement(
+        "-",
+        0.85,
+        lower=0,
+        upper=1,
+        symbol="u_U_min",
+        text=f"Least share of coil_voltage_limit that the coil takes: it is wound for its supply ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
 class CoilUnknowns(Block):
     """What the search decides of a coil."""
 
@@ -118,6 +162,14 @@ class CoilUnknowns(Block):
         source=f"{S4} [P4], section 8",
     )
     winding_wire = Slot("winding_wire", symbol="wire", text="Enamelled copper wire", source="table winding_wire")
+
+
+@dataclass(frozen=True)
+class Winding:
+    """What a family needs of the winding, all in SI: copper of all turns and loss of the hot copper per NI**2."""
+
+    copper_section: Any
+    unit_loss: Any
 
 
 @dataclass(frozen=True)
@@ -146,6 +198,15 @@ def declare_coil_requirements(d: Declaration) -> CoilRequirements:
     return wants
 
 
+def refuse_bad_window(d: Declaration, rules: CoilRules) -> None:
+    """Refuse windows that no coil can have."""
+    d.refuse(
+        "bad_coil_aspect",
+        rules.coil_aspect_min > rules.coil_aspect_max,
+        "a coil_aspect_min of at most coil_aspect_max; otherwise no window satisfies both",
+    )
+
+
 def declare_saturation(d: Declaration, *, wants: CoilRequirements, iron_flux_density: Any) -> None:
     """Declare the guard of the iron: its field exists only below saturation."""
     d.at_most(
@@ -167,7 +228,7 @@ def declare_winding(
     ampere_turns: Any,
     bore_radius: Any,
     around: Surroundings,
-) -> Any:
+) -> Winding:
     """Declare winding, current, voltage, temperature and power of the coil with their limits.
 
     Parameters
@@ -187,8 +248,8 @@ def declare_winding(
 
     Returns
     -------
-    symbol
-        Copper section of all turns [m2].
+    Winding
+        Copper and its loss.
     """
     wire = unknowns.winding_wire
     needs = "iron_saturation"
@@ -327,7 +388,83 @@ def declare_winding(
         text="The window holds the wire at least once",
         source=f"{S4}, section 9",
     )
-    return copper_share * window
+    unit_loss = magnetics.cold_copper_loss(
+        1.0, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
+    ) * (ratio + resistance_rise)
+    return Winding(copper_section=copper_share * window, unit_loss=unit_loss)
+
+
+def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, linkage: Any) -> Any:
+    """Declare the time in which the current rises and the objective that asks for it; return it [s].
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : CoilRules
+        Rules for coils.
+    winding : Winding
+        Copper and its loss.
+    linkage : symbol
+        Flux of the coil over its ampere-turns [Wb/A].
+
+    Returns
+    -------
+    symbol
+        Rise time [s].
+    """
+    rise = d.derive(
+        "rise_time",
+        "s",
+        magnetics.current_rise_time(magnetics.time_constant(linkage, winding.unit_loss), rules.over_excitation),
+        symbol="t_rise",
+        needs=("iron_saturation", "thermal_stability"),
+        text="Current of the hot coil up to its steady value, with over_excitation",
+        source="L/R of the circuit; derived",
+    )
+    d.objective("rise_time", default=False)
+    return rise
+
+
+def limit_coil(d: Declaration, *, rules: CoilRules, wants: CoilRequirements, unknowns: CoilUnknowns) -> None:
+    """Declare the limits that an engineer adds to every coil: its window, and the supply it is wound for.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : CoilRules
+        What the limits go by.
+    wants : CoilRequirements
+        Requirements of the coil.
+    unknowns : CoilUnknowns
+        Window and wire.
+    """
+    length, height = unknowns.coil_length, unknowns.coil_height
+    d.at_least(
+        "coil_aspect_min",
+        length,
+        rules.coil_aspect_min * height,
+        "mm",
+        text="The coil is not a flat disc",
+        source=UNSOURCED,
+    )
+    d.at_most(
+        "coil_aspect_max",
+        length,
+        rules.coil_aspect_max * height,
+        "mm",
+        text="The coil is not a long tube",
+        source=UNSOURCED,
+    )
+    d.at_least(
+        "coil_voltage_min",
+        d.derived["coil_voltage"].sx,
+        rules.voltage_use_min * wants.coil_voltage_limit,
+        "V",
+        text="The coil is wound for its supply",
+        source=UNSOURCED,
+    )
 
 
 def _name_heat(

@@ -293,10 +293,12 @@ class MagneticPowderClutch(DesignProblem):
             other_heat=slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
         )
-        copper = coil_blocks.declare_winding(
+        winding = coil_blocks.declare_winding(
             d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=layout.bore, around=around
         )
-        _declare_size(d, wants=wants, part=part, coil=coil, layout=layout, rim=rim, copper_section=copper)
+        _declare_size(
+            d, wants=wants, part=part, coil=coil, layout=layout, rim=rim, copper_section=winding.copper_section
+        )
         _declare_remarks(d, wants=wants, coil=coil, part=part, layout=layout)
         d.objective("coil_power")
         d.objective("input_inertia")

@@ -91,6 +91,37 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
     return iron_reluctance * flux_density / (1 - flux_density / iron_saturation)
 
 
+def iron_reluctivity(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
+    """Field over flux density of iron after Froehlich, H/B = a_fe/(1 - B/B_s).
+
+    Parameters
+    ----------
+    flux_density : scalar, array or symbol
+        B [T], below B_s.
+    iron_reluctance : scalar, array or symbol
+        a_fe [A/(m T)].
+    iron_saturation : scalar, array or symbol
+        B_s [T].
+
+    Returns
+    -------
+    scalar, array or symbol
+        H/B [A/(m T)]; it has a pole at B_s.
+
+    References
+    ----------
+    Froehlich (1881), as in :func:`iron_field`.
+
+    Examples
+    --------
+    By hand, 160/0.25:
+
+    >>> float(iron_reluctivity(1.5, 160.0, 2.0))
+    640.0
+    """
+    return iron_reluctance / (1 - flux_density / iron_saturation)
+
+
 def larger(first: Quantity, second: Quantity) -> Quantity:
     """Return the larger of two: of two flux densities in series, or of two radii outside.
 
@@ -583,3 +614,63 @@ def hot_copper_loss(
     35.45
     """
     return cold_loss * (ambient_ratio + other_heat / runaway_loss) / (1 - cold_loss / runaway_loss)
+
+
+def time_constant(linkage: Quantity, unit_loss: Quantity) -> Quantity:
+    """Time constant of the current of a coil, tau = L/R = (Phi/NI)/(P/NI**2).
+
+    L = N Phi/I and R = P/I**2; the turns cancel.
+
+    Parameters
+    ----------
+    linkage : scalar, array or symbol
+        Flux of the coil over its ampere-turns Phi/NI [Wb/A].
+    unit_loss : scalar, array or symbol
+        Copper loss over the square of the ampere-turns P/NI**2 [W/A2].
+
+    Returns
+    -------
+    scalar, array or symbol
+        tau [s].
+
+    References
+    ----------
+    Circuit of a resistance and an inductance; derived.
+
+    Examples
+    --------
+    By hand, 2.5 mWb of 900 A that lose 6.3 W:
+
+    >>> round(float(time_constant(2.5e-3 / 900, 6.3 / 900**2)), 4)
+    0.3571
+    """
+    return linkage / unit_loss
+
+
+def current_rise_time(time_constant: Quantity, over_excitation: Quantity) -> Quantity:
+    """Time in which the current rises to that of the steady coil, tau ln(k/(k - 1)).
+
+    Parameters
+    ----------
+    time_constant : scalar, array or symbol
+        tau = L/R [s].
+    over_excitation : scalar, array or symbol
+        Voltage while the current rises over that of the steady coil k [-], above 1.
+
+    Returns
+    -------
+    scalar, array or symbol
+        t [s].
+
+    References
+    ----------
+    I(t) = k I (1 - exp(-t/tau)).
+
+    Examples
+    --------
+    By hand, 0.1 s x ln 2:
+
+    >>> round(float(current_rise_time(0.1, 2.0)), 4)
+    0.0693
+    """
+    return time_constant * np.log(over_excitation / (over_excitation - 1))

@@ -14,7 +14,14 @@ from problems.mechanics import heat, plates
 from problems.mechanics import ring as ring_formulas
 from problems.mechanics.wear import wear_life
 from problems.multi_plate.pack import Pack, PackSize
-from problems.multi_plate.requirements import FLATNESS, BodyRequirements, PackRequirements, PackRules
+from problems.multi_plate.requirements import (
+    FLATNESS,
+    BodyRequirements,
+    PackBodyRequirements,
+    PackRequirements,
+    PackRules,
+    PistonPackRules,
+)
 from problems.practice import UNSOURCED, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Declaration
@@ -25,13 +32,17 @@ INERTIA_COUNTS = 0.05  # of driven_inertia: what turns with the inner plates is 
 
 @dataclass(frozen=True)
 class Body:
-    """What is around a pack: thickness of its end plates, way and piston of its actuator, and the whole size."""
+    """What is around a pack: its end plates that are thicker, way and piston of its actuator, and the whole size.
 
-    wants: BodyRequirements
+    ``stroke`` is None where a magnet presses, ``piston_area`` also where something outside does.
+    """
+
+    wants: PackBodyRequirements
+    end_plates: int
     end_thickness: Any
-    stroke: Any
-    piston_area: Any
     size: Size
+    stroke: Any = None
+    piston_area: Any = None
 
 
 def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any) -> BodyRequirements:
@@ -61,8 +72,8 @@ def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any
     )
 
 
-def declare_pack_rules(d: Declaration, *, lubrication: str) -> PackRules:
-    """Declare the requirements that rules for packs go by.
+def declare_pack_rules(d: Declaration, *, lubrication: str) -> PistonPackRules:
+    """Declare the requirements that rules for packs with a piston go by.
 
     Parameters
     ----------
@@ -73,14 +84,14 @@ def declare_pack_rules(d: Declaration, *, lubrication: str) -> PackRules:
 
     Returns
     -------
-    PackRules
+    PistonPackRules
         Symbols of the block.
     """
     oil = lubrication == "oil"
-    return d.block(PackRules, friction_surfaces_max=20 if oil else 8, release_gap_min=0.05 if oil else 0.3)
+    return d.block(PistonPackRules, friction_surfaces_max=20 if oil else 8, release_gap_min=0.05 if oil else 0.3)
 
 
-def wear_depth(wants: BodyRequirements, pair: Pair, pack: Pack) -> Any:
+def wear_depth(wants: PackBodyRequirements, pair: Pair, pack: Pack) -> Any:
     """Return the wear of one lining before it is replaced [m]; plates of a list wear no deeper than they are lined."""
     depth = np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
     lining = pack.plates.lining_thickness
@@ -125,30 +136,88 @@ def complete_body(
         Its mass adds end plates, drum, hub, web, bosses and piston to plates and linings.
     """
     rho, wall, shaft = duty.steel_density, pack_wants.drum_wall, wants.shaft_diameter / 2
-    a, b = pack.inner_spline_radius, pack.outer_spline_radius
+    b = pack.outer_spline_radius
     end = 2 * ring.outer_radius / wants.end_plate_ratio
     along = pack_size.length + 2 * (end - pack.inner_thickness)
     way = plates.stroke(pack.surfaces, pack.gap, wear_depth(wants, pair, pack))
     piston = force / wants.actuator_pressure
     actuator = 0.0 if wants.actuator == "external" else way + end
     length = along + end + actuator
-    thicker = end - pack.inner_thickness
     mass = (
         pack_size.mass
-        + plates.annulus_mass(rho, 2, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width)  # end plates
-        + plates.annulus_mass(rho, 1, length, 2 * b + wall, wall)  # drum
-        + plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)  # its bottom
-        + plates.annulus_mass(rho, 1, along, 2 * a - wall, wall)  # rim of the hub
-        + plates.annulus_mass(rho, 1, end, a - wall + shaft, a - wall - shaft)  # its web
-        + 2 * wants.boss_mass(rho)
+        + _mass_around(duty, wants, pack_wants, pack, end=end, end_plates=2, along=along, drum_length=length)
+        + plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)  # bottom of the drum
         + rho * piston * actuator
     )
     return Body(
         wants=wants,
+        end_plates=2,
         end_thickness=end,
-        stroke=way,
-        piston_area=piston,
         size=Size(mass=mass, diameter=plates.drum_diameter(b, wall), length=length),
+        stroke=way,
+        piston_area=None if wants.actuator == "external" else piston,
+    )
+
+
+def body_at_magnet(
+    *,
+    duty: Duty,
+    wants: PackBodyRequirements,
+    pack_wants: PackRequirements,
+    ring: Ring,
+    pack: Pack,
+    pack_size: PackSize,
+) -> Body:
+    """Return what is around a pack that an armature presses: it is one of the end plates, and there is no piston.
+
+    Parameters
+    ----------
+    duty : Duty
+        Block duty.
+    wants : PackBodyRequirements
+        Requirements of the complete clutch.
+    pack_wants : PackRequirements
+        Requirements of the pack.
+    ring : Ring
+        Block ring.
+    pack : Pack
+        The plates.
+    pack_size : PackSize
+        Mass and size of the pack alone.
+
+    Returns
+    -------
+    Body
+        Its mass adds an end plate, the shell of the drum, hub, web and bosses to plates and linings.
+    """
+    end = 2 * ring.outer_radius / wants.end_plate_ratio
+    along = pack_size.length + (end - pack.inner_thickness)
+    around = _mass_around(duty, wants, pack_wants, pack, end=end, end_plates=1, along=along, drum_length=along)
+    size = Size(mass=pack_size.mass + around, diameter=pack_size.diameter, length=along)
+    return Body(wants=wants, end_plates=1, end_thickness=end, size=size)
+
+
+def _mass_around(
+    duty: Duty,
+    wants: PackBodyRequirements,
+    pack_wants: PackRequirements,
+    pack: Pack,
+    *,
+    end: Any,
+    end_plates: int,
+    along: Any,
+    drum_length: Any,
+) -> Any:
+    """Return the mass of what every pack has around it [kg]: end plates over cores, drum shell, hub and bosses."""
+    rho, wall, shaft = duty.steel_density, pack_wants.drum_wall, wants.shaft_diameter / 2
+    a, b = pack.inner_spline_radius, pack.outer_spline_radius
+    thicker = end - pack.inner_thickness
+    return (
+        plates.annulus_mass(rho, end_plates, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width)
+        + plates.annulus_mass(rho, 1, drum_length, 2 * b + wall, wall)  # shell of the drum
+        + plates.annulus_mass(rho, 1, along, 2 * a - wall, wall)  # rim of the hub
+        + plates.annulus_mass(rho, 1, end, a - wall + shaft, a - wall - shaft)  # its web
+        + 2 * wants.boss_mass(rho)
     )
 
 
@@ -198,9 +267,10 @@ def declare_body(
     d.derive(
         "pack_length", "mm", pack_size.length, symbol="L_pk", text="Released pack without end stops", source="geometry"
     )
-    d.derive(
-        "stroke", "mm", body.stroke, symbol="s_st", text="Way of the actuator with worn linings", source="geometry"
-    )
+    if body.stroke is not None:
+        d.derive(
+            "stroke", "mm", body.stroke, symbol="s_st", text="Way of the actuator with worn linings", source="geometry"
+        )
     d.derive(
         "wear_life",
         "-",
@@ -215,13 +285,14 @@ def declare_body(
         source="wear volume in proportion to friction work (Archard)",
     )
     inner = ring_formulas.inner_plate_count(pack.surfaces) * pack.inner_thickness
+    thicker = body.end_plates * (body.end_thickness - pack.inner_thickness)
     inertia = d.derive(
         "inner_inertia",
         "kg*m2",
         plates.pack_inner_inertia(
             duty.steel_density,
-            inner + 2 * (body.end_thickness - pack.inner_thickness),
-            pack_size.length + 2 * (body.end_thickness - pack.inner_thickness),
+            inner + thicker,
+            pack_size.length + thicker,
             body.end_thickness,
             ring.outer_radius,
             pack.inner_spline_radius,
@@ -295,14 +366,15 @@ def declare_rules(
         text="The cores are thick enough to stay flat",
         source=f"{UNSOURCED}; {FLATNESS}",
     )
-    d.at_most(
-        "stroke",
-        body.stroke,
-        rules.stroke_base + rules.stroke_per_diameter * across,
-        "mm",
-        text="An actuator has the stroke",
-        source=UNSOURCED,
-    )
+    if isinstance(rules, PistonPackRules):
+        d.at_most(
+            "stroke",
+            body.stroke,
+            rules.stroke_base + rules.stroke_per_diameter * across,
+            "mm",
+            text="An actuator has the stroke",
+            source=UNSOURCED,
+        )
     if duty.plate_gap is not None:
         d.at_least(
             "release_clearance",
@@ -312,7 +384,7 @@ def declare_rules(
             text="The plates come free although they are not quite flat",
             source=f"{UNSOURCED}; {FLATNESS}",
         )
-    if body.wants.actuator != "external":
+    if isinstance(rules, PistonPackRules) and body.piston_area is not None:
         d.at_most(
             "piston_fits",
             body.piston_area,

@@ -309,6 +309,31 @@ class PackRules(Block):
         text=f"Largest drag of the released clutch over the torque of the load ({UNSOURCED})",
         source=UNSOURCED,
     )
+    release_gap_min = Requirement(
+        "mm",
+        lower=0.01,
+        upper=5,
+        symbol="gap_min",
+        text="Least release gap per surface where plate_gap is given (a transmission pack has 0.06 to 0.09 mm)",
+        source=UNSOURCED,
+    )
+    wear_life_min = Requirement(
+        "-",
+        lower=1,
+        upper=1e12,
+        optional=True,
+        symbol="N_w_min",
+        text="Least engagements until the linings are worn",
+        source="requirement of the drive",
+        group="duty",
+    )
+
+
+class PistonPackRules(PackRules):
+    """Rules for packs that a piston presses, all in SI."""
+
+    group = "practice"
+
     stroke_base = Requirement(
         "mm",
         4,
@@ -336,27 +361,34 @@ class PackRules(Block):
         text=f"Share of the room between the splines that a ring piston can use ({UNSOURCED})",
         source=UNSOURCED,
     )
-    release_gap_min = Requirement(
-        "mm",
-        lower=0.01,
-        upper=5,
-        symbol="gap_min",
-        text="Least release gap per surface where plate_gap is given (a transmission pack has 0.06 to 0.09 mm)",
+
+
+class PackBodyRequirements(ShaftRequirements):
+    """What is around a pack whatever presses it, all in SI."""
+
+    group = "practice"
+
+    end_plate_ratio = Requirement(
+        "-",
+        30,
+        lower=5,
+        upper=200,
+        symbol="k_end",
+        text=f"Ring diameter over thickness of end plates, web of the hub, drum bottom and piston ({UNSOURCED})",
         source=UNSOURCED,
     )
-    wear_life_min = Requirement(
-        "-",
-        lower=1,
-        upper=1e12,
-        optional=True,
-        symbol="N_w_min",
-        text="Least engagements until the linings are worn",
-        source="requirement of the drive",
-        group="duty",
+    wear_depth_limit = Requirement(
+        "mm",
+        lower=0.01,
+        upper=50,
+        symbol="d_w_max",
+        text="Wear of one lining before it is replaced, where less than its wearable_depth (six packs in oil: 0.2 mm; "
+        "eight dry car discs: 1.0 mm)",
+        source=UNSOURCED,
     )
 
 
-class BodyRequirements(ShaftRequirements):
+class BodyRequirements(PackBodyRequirements):
     """What a complete multi-plate clutch has around its pack, all in SI."""
 
     group = "actuator"
@@ -374,24 +406,4 @@ class BodyRequirements(ShaftRequirements):
         symbol="p_act",
         text="Pressure on the ring piston; air up to 0.9 (three oil units at 1.1 to 1.7, two makers of air clutches)",
         source=UNSOURCED,
-    )
-    end_plate_ratio = Requirement(
-        "-",
-        30,
-        lower=5,
-        upper=200,
-        symbol="k_end",
-        text=f"Ring diameter over thickness of end plates, drum bottom, web and piston ({UNSOURCED})",
-        source=UNSOURCED,
-        group="practice",
-    )
-    wear_depth_limit = Requirement(
-        "mm",
-        lower=0.01,
-        upper=50,
-        symbol="d_w_max",
-        text="Wear of one lining before it is replaced, where less than its wearable_depth (six packs in oil: 0.2 mm; "
-        "eight dry car discs: 1.0 mm)",
-        source=UNSOURCED,
-        group="practice",
     )
