@@ -52,6 +52,12 @@ class PotMagnet:
         return np.sqrt(self.coil_outer_radius**2 + self._pole_section)
 
     @property
+    def disc_section(self) -> Quantity:
+        """Section of yoke and of armature over pi, r_4**2 - r_1**2 as a sum, of which bounds are tight [m2]."""
+        inside = self.pole_width + self.coil_height
+        return inside * (2 * self.bore + inside) + self._pole_section
+
+    @property
     def outer_pole_width(self) -> Quantity:
         """Width r_4 - r_3 of the outer pole [m]."""
         return self._pole_section / (self.coil_outer_radius + self.outer_radius)
@@ -227,7 +233,7 @@ def magnet_mass(density: Quantity, magnet: PotMagnet, copper: Quantity) -> Quant
     >>> round(float(magnet_mass(7850.0, PotMagnet(0.02, 0.015, 0.03, 0.02, 0.01, 0.4e-3), 0.5)), 3)
     3.422
     """
-    discs = 2 * np.pi * (magnet.outer_radius**2 - magnet.bore**2) * magnet.thickness
+    discs = 2 * np.pi * magnet.disc_section * magnet.thickness
     return density * (2 * magnet.pole_area * magnet.coil_length + discs) + copper
 
 

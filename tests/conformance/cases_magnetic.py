@@ -110,6 +110,15 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                 "catalogue": {"spline_choice": "catalogue"},
                 "disc": {"pack": "disc"},
                 "disc_obsolete": {"pack": "disc", "friction_basis": "worst_case", "allow_obsolete": "yes"},
+                "practice": {"practice": "on"},
+                "practice_dry": {
+                    "practice": "on",
+                    "lubrication": "dry",
+                    "wear_adjust": "yes",
+                    "friction_basis": "worst_case",
+                    "mass_scope": "parts",
+                },
+                "practice_disc": {"practice": "on", "pack": "disc"},
             },
             requirements=DRUM,
             optional={
@@ -123,6 +132,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                 "hub_bore_diameter": "40 mm",
                 "drag_torque_limit": "5 N*m",
             },
+            needed={"practice=on": {"wear_life_min": "10000"}},
             unknown={"pack=disc": frozenset({"hub_bore_diameter", "drag_torque_limit"})},
             feasible={
                 "spindle": case(

@@ -22,6 +22,7 @@ TUBE = {"density": "kg/m3", "inner_radius": "m", "thickness": "m", "length": "m"
 RANGES = {
     "cold_loss": (0.1, 0.45),
     "iron_saturation": (2.1, 4.0),
+    "over_excitation": (1.5, 4.0),
     "coil_length": (0.1, 0.4),
     "web_thickness": (0.1, 0.4),
 }
@@ -38,6 +39,13 @@ CASES = [
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
         "A/m",
     ),
+    (
+        magnetics.iron_reluctivity,
+        {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
+        "A/(m T)",
+    ),
+    (lambda linkage, resistance: magnetics.time_constant(linkage, resistance), {"linkage": "V s/A", "resistance": "ohm"}, "s"),
+    (magnetics.current_rise_time, {"time_constant": "s", "over_excitation": "-"}, "s"),
     (positional(magnetics.larger), {"first": "T", "second": "T"}, "T"),
     (magnetics.pole_force, {"flux_density": "T", "area": "m2"}, "N"),
     (magnetics.turns, {"winding_factor": "-", "window_area": "m2", "wire_diameter": "m"}, "-"),
