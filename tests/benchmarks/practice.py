@@ -22,6 +22,7 @@ class Duty:
     size: str
     requirements: Mapping[str, Any]
     options: Mapping[str, str] = field(default_factory=dict)
+    fix: Mapping[str, str] = field(default_factory=dict)
 
 
 def _start(torque: str, speed: str, inertia: str, **more: str) -> dict[str, Any]:
@@ -39,6 +40,24 @@ DUTIES = [
     Duty("disc_clutch", "200 N m", _start("200 N*m", "1500 1/min", "1 kg*m2", engagements_per_hour="20 1/h")),
     Duty("cone_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.02 kg*m2")),
     Duty("cone_clutch", "200 N m", _start("200 N*m", "700 1/min", "2 kg*m2", engagements_per_hour="30 1/h")),
+    Duty(
+        "electromagnetic_clutch",
+        "5 N m",
+        _start("5 N*m", "1500 1/min", "0.01 kg*m2"),
+        fix={"ramp_time": "0.1 s", "coil_height": "14 mm"},
+    ),
+    Duty(
+        "electromagnetic_clutch",
+        "40 N m",
+        _start("40 N*m", "1000 1/min", "0.1 kg*m2"),
+        fix={"ramp_time": "0.1 s", "coil_height": "15 mm"},
+    ),
+    Duty(
+        "electromagnetic_clutch",
+        "200 N m",
+        _start("200 N*m", "750 1/min", "0.5 kg*m2"),
+        fix={"ramp_time": "0.2 s", "coil_height": "15 mm"},
+    ),
     Duty("roller_coupling", "20 N m", {"required_torque": "20 N*m", "driver_speed": "960 1/min", "offset": "2 mm"}),
     Duty("roller_coupling", "300 N m", {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}),
     Duty("roller_coupling", "5 kN m", {"required_torque": "5 kN*m", "driver_speed": "300 1/min", "offset": "10 mm"}),
@@ -48,9 +67,11 @@ DUTIES = [
 def asked(duty: Duty, practice: str, time_limit: float) -> tuple[synth.ParetoFront, float]:
     """Return the front of a duty with the defaults of its family, and the processor seconds it took."""
     problem = synth.load(duty.family, practice=practice, **duty.options)
-    synth.synthesize(problem, duty.requirements, points=1, gap=0.5)  # tracing and compiling are not counted
+    synth.synthesize(problem, duty.requirements, points=1, gap=0.5, fix=duty.fix)  # compiling is not counted
     begin = time.process_time()
-    front = synth.synthesize(problem, duty.requirements, points=POINTS, time_limit=time_limit, workers=THREADS)
+    front = synth.synthesize(
+        problem, duty.requirements, points=POINTS, time_limit=time_limit, workers=THREADS, fix=duty.fix
+    )
     return front, time.process_time() - begin
 
 

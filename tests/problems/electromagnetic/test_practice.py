@@ -75,8 +75,8 @@ def missed(found):
     return {name for name, residual in found.residuals.items() if residual > 1e-6}
 
 
-# Sizes, pole area [m2], ampere-turns [A], coil_power [W], time constant and rise [s], share of the voltage, whether the current
-# rises within a ramp of 0.1 s.
+# Sizes, pole area [m2], ampere-turns [A], coil_power [W], time constant and rise [s], share of the voltage, whether the
+# current rises within a ramp of 0.1 s.
 WORKED = {
     "long": (LONG, 15.7080e-4, 899.596, 6.27269, 0.309726, 0.214687, 0.984688, False),
     "short": (SHORT, 23.7504e-4, 731.596, 23.5046, 0.0902844, 0.0625803, 0.999688, True),

@@ -44,7 +44,13 @@ CASES = [
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
         "A/(m T)",
     ),
-    (lambda linkage, resistance: magnetics.time_constant(linkage, resistance), {"linkage": "V s/A", "resistance": "ohm"}, "s"),
+    (
+        lambda flux_density, area, turned, loss: magnetics.time_constant(
+            flux_density * area / turned, loss / turned**2
+        ),
+        {"flux_density": "T", "area": "m2", "turned": "A", "loss": "W"},
+        "s",
+    ),
     (magnetics.current_rise_time, {"time_constant": "s", "over_excitation": "-"}, "s"),
     (positional(magnetics.larger), {"first": "T", "second": "T"}, "T"),
     (magnetics.pole_force, {"flux_density": "T", "area": "m2"}, "N"),
@@ -152,7 +158,8 @@ def test_floats_arrays_and_symbols_agree(function, units, result_unit):
 
 
 def test_no_formula_is_left_out():
-    covered = {*NAMES, "coil_resistance", "yoke_flux_density", "rotor_flux_density", "ampere_turns", "flux_density_at"}
+    covered = {*NAMES, "coil_resistance", "yoke_flux_density", "rotor_flux_density", "ampere_turns"}
+    covered |= {"flux_density_at", "time_constant"}
     for module in (magnetics, powder):
         public = {
             name
