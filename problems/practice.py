@@ -30,6 +30,11 @@ class Scope:
     rules: bool
     complete: bool
 
+    @property
+    def whole(self) -> bool:
+        """Whether what is around the parts of the formulas must be known at all."""
+        return self.rules or self.complete
+
 
 def declare_scope(d: Declaration) -> Scope:
     """Declare the options practice and mass_scope; they come early, because defaults of others depend on them."""
@@ -53,6 +58,24 @@ def declare_scope(d: Declaration) -> Scope:
         group="practice",
     )
     return Scope(rules=rules == "on", complete=scope == "complete")
+
+
+def lining_conditions(d: Declaration, allow_obsolete: str, *, rules: bool) -> list[str]:
+    """Return the conditions on rows of friction_materials that leave out what is built no more.
+
+    Parameters
+    ----------
+    d : Declaration
+        Knows the tables.
+    allow_obsolete : {"no", "historical", "yes"}
+        What the user accepts.
+    rules : bool
+        Whether the rules of practice count: then historical linings are left out too, where a table tells.
+    """
+    conditions = [] if allow_obsolete == "yes" else ["new_design_allowed == 1"]
+    if rules and allow_obsolete == "no" and d.has_column("friction_materials", "status"):
+        conditions.append("status == 'current'")
+    return conditions
 
 
 class ShaftRequirements(Block):

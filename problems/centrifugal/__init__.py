@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+from problems.centrifugal.body import (
+    LeverRules,
+    Rules,
+    Surroundings,
+    declare_rules,
+    limit_discs,
+    limit_set,
+    limit_spring_circle,
+)
 from problems.centrifugal.duty import COMMON, SOURCES, Duty, declare_duty
 from problems.centrifugal.engagement import (
     Contact,
@@ -36,8 +45,11 @@ __all__ = [
     "Contact",
     "Duty",
     "Flyweights",
+    "LeverRules",
     "Lining",
+    "Rules",
     "SpringSet",
+    "Surroundings",
     "Weights",
     "advise_gravity",
     "advise_release_gap",
@@ -51,12 +63,16 @@ __all__ = [
     "declare_lining",
     "declare_objectives",
     "declare_rest_radius",
+    "declare_rules",
     "declare_size",
     "declare_springs",
     "declare_stop_force",
     "declare_wear",
     "declare_weights",
+    "limit_discs",
+    "limit_set",
     "limit_share_of_force",
+    "limit_spring_circle",
     "limit_spring_force",
     "limit_weight_room",
 ]

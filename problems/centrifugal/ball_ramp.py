@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
+from problems import practice
 from problems.centrifugal import balls as ball_blocks
 from problems.centrifugal import curves
 from problems.centrifugal import state as states
@@ -32,7 +33,10 @@ class CentrifugalBallRamp(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = blocks.declare_duty(d)
+        scope = practice.declare_scope(d)
+        duty = blocks.declare_duty(d, scope=scope)
+        rules = blocks.declare_rules(d, blocks.Rules, scope=scope)
+        wear = blocks.declare_wear(d) if scope.whole else None
         wants = ball_blocks.declare_force_limits(d, duty=duty)
         rest = blocks.declare_rest_radius(d)
         gap = d.variable(
@@ -58,7 +62,7 @@ class CentrifugalBallRamp(DesignProblem):
         springs = blocks.declare_springs(
             d, slot="return_spring", symbol="sp", count_symbol="N_s", text="they push the pressure plate back"
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)
@@ -130,16 +134,20 @@ class CentrifugalBallRamp(DesignProblem):
             duty=duty,
             lining=lining,
             rest_radius=rest,
-            flyweights=blocks.Flyweights(balls.mass, end, balls.radius),
+            flyweights=blocks.Flyweights(balls.mass, end, balls.radius, balls.part.diameter, balls.count),
             springs=[springs],
+            around=blocks.Surroundings(scope, wear, gap, balls.part),
         )
+        if rules is not None:
+            blocks.limit_discs(d, rules=rules, lining=lining, travel=gap)
+            blocks.limit_set(d, rules=rules, springs=springs, deflection=deflection)
         start = centrifugal.speed_for_force(springs.force(deflection), balls.mass, rest, balls.push)
         blocks.advise_gravity(d, rest_radius=rest, start_speed=start)
         blocks.advise_release_gap(d, gap=gap, lining=lining)
         blocks.advise_springs(
             d, duty=duty, springs=springs, radius=rest, preload=deflection, travel=gap, what="the return springs"
         )
-        blocks.declare_objectives(d)
+        blocks.declare_objectives(d, scope=scope)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return what friction at the balls costs and what torque asks for; of a design forces and travel over speed.

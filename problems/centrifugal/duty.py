@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+from problems.mechanics import centrifugal
+from problems.mechanics.shaft import shaft_diameter
+from problems.practice import UNSOURCED, Scope, ShaftRequirements
 from problems.sources import DRIVE, TYPICAL, UNIFORM_WEAR
 from synth.declaration import Block, Declaration, Requirement
 
@@ -29,8 +33,8 @@ COMMON = (
 )
 
 
-class Duty(Block):
-    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+class Load(Block):
+    """Torque that is asked for, in SI."""
 
     group = "duty"
 
@@ -46,6 +50,18 @@ class Duty(Block):
         text="Torque of the clutch over required_torque",
         source="practice, 1.1 to 2.5",
     )
+
+    @property
+    def torque_to_carry(self) -> Any:
+        """Torque that the clutch is sized for [N m]."""
+        return self.torque_reserve * self.required_torque
+
+
+class Duty(Load):
+    """What the drive asks of the clutch, all in SI; None where an optional requirement is not given."""
+
+    group = "duty"
+
     idle_speed = Requirement(
         "1/min",
         lower=10,
@@ -177,25 +193,47 @@ class Duty(Block):
     )
 
     @property
-    def torque_to_carry(self) -> Any:
-        """Torque that the clutch is sized for [N m]."""
-        return self.torque_reserve * self.required_torque
+    def engagement_energy(self) -> Any:
+        """Heat of bringing driven_inertia up to full_torque_speed, without a load torque [J]."""
+        return centrifugal.engagement_energy(self.driven_inertia, self.full_torque_speed)
 
 
-def declare_duty(d: Declaration) -> Duty:
+class Shaft(ShaftRequirements, Load):
+    """Shaft for the torque that the clutch is sized for, all in SI."""
+
+    shaft_diameter = replace(
+        ShaftRequirements.shaft_diameter,
+        default=lambda block: shaft_diameter(block.torque_to_carry, block.shaft_shear_allow),
+    )
+
+
+class WholeDuty(Duty, Shaft):
+    """Duty of a clutch that is looked at as a whole, on a shaft from which its hub follows; all in SI."""
+
+    group = "envelope"
+
+    hub_radius = replace(Duty.hub_radius, default=lambda block: block.hub_diameter / 2, source=UNSOURCED)
+    length_limit = Requirement(
+        "mm", lower=2, upper=5000, optional=True, symbol="L_max", text="Largest length", source=DRIVE
+    )
+
+
+def declare_duty(d: Declaration, *, scope: Scope) -> Duty:
     """Declare the requirements that all centrifugal clutches have, and the refusals that concern them alone.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
+    scope : Scope
+        Whether shaft and hub of the whole clutch are asked for.
 
     Returns
     -------
     Duty
-        Symbols of the block.
+        Symbols of the block; a WholeDuty where the scope asks for one.
     """
-    duty = d.block(Duty)
+    duty = d.block(WholeDuty if scope.whole else Duty)
     _refuse_contradictions(d, duty=duty)
     return duty
 

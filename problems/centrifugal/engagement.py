@@ -6,12 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems.mechanics import centrifugal
+from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S4, S4, UNIFORM_WEAR
 
 if TYPE_CHECKING:
+    from problems.centrifugal.body import Rules
     from problems.centrifugal.duty import Duty
     from problems.centrifugal.lining import Lining
     from synth.declaration import Declaration
+
+# Remarks only.
+STOP_RATIO = 3.0  # force on the stop over clamp force that is worth a word where stops are sized for what they bear
 
 
 @dataclass(frozen=True)
@@ -194,8 +199,8 @@ def declare_stop_force(d: Declaration, *, force: Any, text: str, source: str) ->
     return d.derive("stop_force", "N", force, symbol="F_stop", text=text, source=source)
 
 
-def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any) -> None:
-    """Remark where the stop bears more than the lining at top speed.
+def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any, rules: Rules | None) -> None:
+    """Remark where the stop bears more than the lining at top speed; by the rules of practice three times as much.
 
     Parameters
     ----------
@@ -205,7 +210,17 @@ def advise_stop_load(d: Declaration, *, stop_force: Any, clamp_force: Any) -> No
         Force on the stop at top speed [N].
     clamp_force : symbol
         Largest clamp force [N].
+    rules : Rules or None
+        Rules of practice, where they count.
     """
+    if rules is not None:
+        d.advise(
+            "stop_force_high",
+            stop_force > STOP_RATIO * clamp_force,
+            "at top_speed stop_force is more than three times clamp_force: stop, flyweights and pins carry it",
+            source=UNSOURCED,
+        )
+        return
     d.advise(
         "stop_bears_more_than_lining",
         stop_force > clamp_force,

@@ -17,12 +17,14 @@ if TYPE_CHECKING:
 class Flyweights:
     """Flyweights as the envelope sees them.
 
-    ``half_height`` is from their centre to their outside.
+    ``half_height`` is from their centre to their outside, ``width`` their size along the axis.
     """
 
     mass: Any
     end_radius: Any
     half_height: Any
+    width: Any
+    count: Any
 
 
 def declare_rest_radius(d: Declaration) -> Any:
@@ -46,6 +48,7 @@ class Weights:
     mass: Any
     count: Any
     arm: Any
+    width: Any
     thickness: Any
     angle_limit: Any
 
@@ -122,7 +125,7 @@ def declare_weights(d: Declaration, *, duty: Duty) -> Weights:
         text="Radial size of a weight of square section",
         source=f"geometry; {NOT_IN_S4}",
     )
-    return Weights(mass, count, arm, thickness, angle)
+    return Weights(mass, count, arm, width, thickness, angle)
 
 
 def limit_weight_room(d: Declaration, *, duty: Duty, weights: Weights, rest_radius: Any, pivot_arm: Any = 0.0) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
+from problems import practice
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import ROD
@@ -79,13 +80,15 @@ class CentrifugalLever(LeverClutch):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = blocks.declare_duty(d)
+        scope = practice.declare_scope(d)
+        duty = blocks.declare_duty(d, scope=scope)
+        rules = blocks.declare_rules(d, blocks.LeverRules, scope=scope)
         lever = lever_blocks.declare_lever(d, duty=duty, stop_text="beyond contact, so that the clamp force is capped")
         rods = d.block(Rods)
         springs = blocks.declare_springs(
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between lever and pressure plate"
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=rods.rod_arm, longest=ROD_ARM[1], name="rod_arm")
         shortest = lever.worn_travel / (rods.rod_ratio_max * lever.weights.angle_limit)
         lever_blocks.refuse_room(d, duty=duty, least_leg=shortest, name="spring_arm")
@@ -113,13 +116,22 @@ class CentrifugalLever(LeverClutch):
         blocks.limit_weight_room(
             d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=rods.spring_arm
         )
-        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs])
+        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs], scope=scope, rules=rules)
+        if rules is not None:
+            blocks.limit_set(d, rules=rules, springs=springs, deflection=lever.deflection)
         at_stop = formulas.clamp_flyweight_force(full, rods.spring_arm, lever.weights.arm)
         at_start = formulas.travel_flyweight_force(
             springs.force(lever.deflection), rods.spring_arm, rods.rod_arm, lever.weights.arm
         )
         lever_blocks.advise_lever(
-            d, duty=duty, lining=lining, lever=lever, start_pull=at_start, stop_pull=at_stop, clamp=full
+            d,
+            duty=duty,
+            lining=lining,
+            lever=lever,
+            start_pull=at_start,
+            stop_pull=at_stop,
+            clamp=full,
+            rules=rules,
         )
         blocks.advise_springs(
             d,
@@ -130,7 +142,7 @@ class CentrifugalLever(LeverClutch):
             travel=travel,
             what="the clamp springs",
         )
-        blocks.declare_objectives(d)
+        blocks.declare_objectives(d, scope=scope)
 
     def _declare_guards(self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, squeeze: Any) -> None:
         d.at_least(

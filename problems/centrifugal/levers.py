@@ -15,6 +15,7 @@ from problems.sources import NOT_IN_S4, S4, TYPICAL
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from problems.practice import Scope
     from synth.declaration import Declaration
 
 RECONSTRUCTED = f"{S4}, in words; arrangement reconstructed, relations derived"
@@ -218,9 +219,17 @@ def refuse_room(d: Declaration, *, duty: blocks.Duty, least_leg: Any, name: str)
 
 
 def declare_size(
-    d: Declaration, *, duty: blocks.Duty, lining: blocks.Lining, lever: Lever, springs: Sequence[blocks.SpringSet]
+    d: Declaration,
+    *,
+    duty: blocks.Duty,
+    lining: blocks.Lining,
+    lever: Lever,
+    springs: Sequence[blocks.SpringSet],
+    scope: Scope,
+    rules: blocks.LeverRules | None,
+    discs: int = 0,
 ) -> None:
-    """Declare outside diameter, mass and inertia with the weights of the lever.
+    """Declare outside diameter, mass and inertia with the weights of the lever, and the rules that go by the gap.
 
     Parameters
     ----------
@@ -234,12 +243,28 @@ def declare_size(
         Lever.
     springs : sequence of SpringSet
         All springs.
+    scope : Scope
+        What is counted.
+    rules : LeverRules or None
+        Rules of practice, where they count.
+    discs : int
+        Plates beside flywheel and pressure plate.
     """
     weights = lever.weights
-    flyweights = blocks.Flyweights(weights.mass, lever.end_radius, weights.thickness / 2)
     blocks.declare_size(
-        d, duty=duty, lining=lining, rest_radius=lever.rest_radius, flyweights=flyweights, springs=springs
+        d,
+        duty=duty,
+        lining=lining,
+        rest_radius=lever.rest_radius,
+        flyweights=blocks.Flyweights(
+            weights.mass, lever.end_radius, weights.thickness / 2, weights.width, weights.count
+        ),
+        springs=springs,
+        around=blocks.Surroundings(scope, lever.wear, lever.contact_travel, discs=discs),
     )
+    if rules is not None:
+        blocks.limit_discs(d, rules=rules, lining=lining, travel=lever.contact_travel)
+        blocks.limit_spring_circle(d, rules=rules, rest_radius=lever.rest_radius, springs=springs)
 
 
 def advise_lever(
@@ -251,6 +276,7 @@ def advise_lever(
     start_pull: Any,
     stop_pull: Any,
     clamp: Any,
+    rules: blocks.Rules | None,
 ) -> None:
     """Declare the force on the stop, and remark what rests on assumptions and what must be watched for.
 
@@ -268,6 +294,8 @@ def advise_lever(
         Centrifugal force of all flyweights where the lever leaves its rest, and where it meets its stop [N].
     clamp : symbol
         Largest clamp force [N].
+    rules : Rules or None
+        Rules of practice, where they count.
     """
     pull = centrifugal.centrifugal_force(lever.weights.mass, lever.end_radius, duty.top_speed)
     stop_force = blocks.declare_stop_force(
@@ -287,4 +315,4 @@ def advise_lever(
     )
     blocks.advise_release_gap(d, gap=lever.contact_travel, lining=lining)
     blocks.advise_gravity(d, rest_radius=lever.rest_radius, start_speed=lever.speed(start_pull, 0.0))
-    blocks.advise_stop_load(d, stop_force=stop_force, clamp_force=clamp)
+    blocks.advise_stop_load(d, stop_force=stop_force, clamp_force=clamp, rules=rules)

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems.mechanics import centrifugal, heat, ring
+from problems.practice import lining_conditions
 
 if TYPE_CHECKING:
+    from problems.centrifugal.body import Rules
     from problems.centrifugal.duty import Duty
     from synth.declaration import Declaration, Part
 
@@ -21,8 +23,14 @@ class Lining:
 
     inner_radius: Any
     outer_radius: Any
+    ratio: Any
     surfaces: Any
     pair: Part
+
+    @property
+    def area(self) -> Any:
+        """Area of all linings [m2]."""
+        return centrifugal.lining_area(self.surfaces, self.inner_radius, self.outer_radius)
 
     @property
     def friction_radius(self) -> Any:
@@ -38,7 +46,7 @@ class Lining:
         return centrifugal.force_for_torque(torque, self.pair.mu_dynamic, self.surfaces, self.friction_radius)
 
 
-def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
+def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | None) -> Lining:
     """Declare lining and slot friction_pair, with the limits of its shape and of the heat of an engagement.
 
     Parameters
@@ -49,6 +57,8 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
         Name that the column family_hint must contain.
     duty : Duty
         Requirements.
+    rules : Rules or None
+        Rules of practice, where they count: what is built no more is then left out.
 
     Returns
     -------
@@ -84,17 +94,21 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
         text="Friction surfaces, two per friction disc",
         source="geometry",
     )
+    conditions = [f"'{family}' in family_hint"]
+    if rules is not None:
+        conditions += lining_conditions(d, rules.allow_obsolete, rules=True)
     pair = d.part(
         "friction_pair",
         "friction_materials",
-        where=f"'{family}' in family_hint",
+        where=tuple(conditions),
         symbol="pair",
         text="Lining and the plate it rubs on",
         source="table friction_materials",
     )
+    ratio = inner / outer
     d.at_least(
         "ring_ratio_min",
-        inner / outer,
+        ratio,
         duty.ring_ratio_min,
         "-",
         text="The lining is not too wide: it wears evenly",
@@ -102,17 +116,17 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
     )
     d.at_most(
         "ring_ratio_max",
-        inner / outer,
+        ratio,
         duty.ring_ratio_max,
         "-",
         text="The lining is not too narrow",
         source="practice",
     )
-    energy = centrifugal.engagement_energy(duty.driven_inertia, duty.full_torque_speed)
+    lining = Lining(inner, outer, ratio, surfaces, pair)
     allowed = duty.engagement_heat_limit
     d.at_most(
         "engagement_heat",
-        heat.single_heat(energy, centrifugal.lining_area(surfaces, inner, outer)),
+        heat.single_heat(duty.engagement_energy, lining.area),
         pair.optional("q_single_allow") if allowed is None else allowed,
         "J/mm2",
         text="The lining stands the heat of bringing driven_inertia up to full_torque_speed, without a load torque",
@@ -124,7 +138,7 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty) -> Lining:
         "lining_inner_radius is not below lining_outer_radius: this is no lining, and its other figures mean nothing",
         source="geometry",
     )
-    return Lining(inner, outer, surfaces, pair)
+    return lining
 
 
 def declare_wear(d: Declaration) -> Any:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from problems import centrifugal as blocks
+from problems import practice
 from problems.centrifugal import levers as lever_blocks
 from problems.centrifugal.lever_clutch import LeverClutch
 from problems.centrifugal.lever_curves import REVERSED
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 # Range of the short leg [mm]; refusals reason with it.
 PLATE_ARM = (3.0, 150.0)
+DISC_1 = 1  # plates beside flywheel and pressure plate
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,9 @@ class CentrifugalReversed(LeverClutch):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
-        duty = blocks.declare_duty(d)
+        scope = practice.declare_scope(d)
+        duty = blocks.declare_duty(d, scope=scope)
+        rules = blocks.declare_rules(d, blocks.LeverRules, scope=scope)
         lever = lever_blocks.declare_lever(
             d, duty=duty, stop_text="the window of disc 1, so that the clamp force is capped"
         )
@@ -56,7 +60,7 @@ class CentrifugalReversed(LeverClutch):
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between disc 1 and the housing"
         )
         leg = self._declare_leg(d)
-        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
         lever_blocks.refuse_room(
             d, duty=duty, least_leg=lever.worn_travel / lever.weights.angle_limit, name="plate_arm"
@@ -77,12 +81,31 @@ class CentrifugalReversed(LeverClutch):
         )
         self._declare_springs(d, lever=lever, leg=leg, springs=springs, lift=lift)
         blocks.limit_weight_room(d, duty=duty, weights=lever.weights, rest_radius=lever.rest_radius, pivot_arm=leg.arm)
-        lever_blocks.declare_size(d, duty=duty, lining=lining, lever=lever, springs=[springs, leg.springs])
+        lever_blocks.declare_size(
+            d,
+            duty=duty,
+            lining=lining,
+            lever=lever,
+            springs=[springs, leg.springs],
+            scope=scope,
+            rules=rules,
+            discs=DISC_1,
+        )
+        if rules is not None:
+            blocks.limit_set(d, rules=rules, springs=springs, deflection=lever.deflection)
+            blocks.limit_set(d, rules=rules, springs=leg.springs, deflection=leg.deflection, prefix="return_")
         at_stop, at_start = (
             formulas.clamp_flyweight_force(force, leg.arm, lever.weights.arm) for force in (push, leg.force(0.0))
         )
         lever_blocks.advise_lever(
-            d, duty=duty, lining=lining, lever=lever, start_pull=at_start, stop_pull=at_stop, clamp=clamp
+            d,
+            duty=duty,
+            lining=lining,
+            lever=lever,
+            start_pull=at_start,
+            stop_pull=at_stop,
+            clamp=clamp,
+            rules=rules,
         )
         blocks.advise_springs(
             d,
@@ -102,7 +125,7 @@ class CentrifugalReversed(LeverClutch):
             travel=lever.contact_travel,
             what="the return springs",
         )
-        blocks.declare_objectives(d)
+        blocks.declare_objectives(d, scope=scope)
 
     def _declare_leg(self, d: Declaration) -> Leg:
         return Leg(

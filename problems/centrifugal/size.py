@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from problems.centrifugal.body import Surroundings, declare_body
+from problems.centrifugal.duty import WholeDuty
 from problems.mechanics import centrifugal
 from problems.sources import DRIVE
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from problems.centrifugal.flyweights import Flyweights
     from problems.centrifugal.lining import Lining
     from problems.centrifugal.springs import SpringSet
+    from problems.practice import Scope
     from synth.declaration import Declaration
 
 # Remarks only.
@@ -28,8 +31,9 @@ def declare_size(
     rest_radius: Any,
     flyweights: Flyweights,
     springs: Sequence[SpringSet],
+    around: Surroundings,
 ) -> None:
-    """Declare outside diameter, mass and inertia, the limit of the room there is, and the default objectives.
+    """Declare outside diameter, mass and inertia, the limit of the room there is, and what a whole clutch has beside.
 
     Parameters
     ----------
@@ -45,6 +49,8 @@ def declare_size(
         Flyweights at the end of their way.
     springs : sequence of SpringSet
         All springs.
+    around : Surroundings
+        What the whole clutch adds to plates, flyweights and springs.
     """
     diameter = d.derive(
         "outer_diameter",
@@ -59,14 +65,21 @@ def declare_size(
     )
     spring_mass: Any = sum(spring_set.mass for spring_set in springs)
     plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.equivalent_plate_thickness)
-    d.derive(
-        "mass",
-        "kg",
-        plates + flyweights.mass + spring_mass,
-        symbol="m",
-        text="Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs",
-        source="geometry",
-    )
+    mass = plates + flyweights.mass + spring_mass
+    counted = "Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs"
+    if isinstance(duty, WholeDuty):
+        declare_body(
+            d,
+            duty=duty,
+            lining=lining,
+            flyweights=flyweights,
+            springs=springs,
+            around=around,
+            part_mass=mass,
+            counted=counted,
+        )
+    else:
+        d.derive("mass", "kg", mass, symbol="m", text=counted, source="geometry")
     d.derive(
         "inertia",
         "kg*m2",
@@ -94,9 +107,12 @@ def declare_size(
     )
 
 
-def declare_objectives(d: Declaration) -> None:
-    """Declare the objectives of all centrifugal clutches."""
+def declare_objectives(d: Declaration, *, scope: Scope) -> None:
+    """Declare the objectives of all centrifugal clutches, and those of what is around them where the scope asks."""
     d.objective("outer_diameter")
     d.objective("mass")
+    if scope.whole:
+        d.objective("length", default=False)
+        d.objective("wear_life", "max", default=False)
     d.objective("engagement_band", default=False)
     d.objective("idle_margin", "max", default=False)

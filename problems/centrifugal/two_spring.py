@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from problems import centrifugal as blocks
+from problems import practice
 from problems.centrifugal import balls as ball_blocks
 from problems.centrifugal import curves
 from problems.centrifugal import state as states
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 ANALYSIS = f"{S4}, analysis 2, corrected"
 MECHANISMS = ("ball_ramp", "lever")
+TENSION_DISC = 1  # plates beside flywheel and pressure plate
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,9 @@ class Drive:
     """
 
     mass: Any
+    count: Any
     half_height: Any
+    width: Any
     ratio: Any
     push: Any
     release_ratio: Any
@@ -80,6 +84,7 @@ class CentrifugalTwoSpring(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
         mechanism = d.option(
             "mechanism",
             MECHANISMS,
@@ -89,7 +94,8 @@ class CentrifugalTwoSpring(DesignProblem):
             source=f"{S4}, analysis 2; practice 2",
             group="model",
         )
-        duty = blocks.declare_duty(d)
+        duty = blocks.declare_duty(d, scope=scope)
+        rules = blocks.declare_rules(d, blocks.Rules, scope=scope)
         wants = ball_blocks.declare_force_limits(d, duty=duty)
         wear = blocks.declare_wear(d)
         rest = blocks.declare_rest_radius(d)
@@ -99,7 +105,7 @@ class CentrifugalTwoSpring(DesignProblem):
             if mechanism == "ball_ramp"
             else self._declare_levers(d, duty=duty, rest=rest, way=way)
         )
-        lining = blocks.declare_lining(d, family=self.name, duty=duty)
+        lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
 
         def radius(travel: Any) -> Any:
             return centrifugal.orbit_radius(rest, drive.ratio, travel)
@@ -152,12 +158,20 @@ class CentrifugalTwoSpring(DesignProblem):
             duty=duty,
             lining=lining,
             rest_radius=rest,
-            flyweights=blocks.Flyweights(drive.mass, end, drive.half_height),
+            flyweights=blocks.Flyweights(drive.mass, end, drive.half_height, drive.width, drive.count),
             springs=springs,
+            # The tension disc goes the whole way to its stop, the plate a part of it.
+            around=blocks.Surroundings(
+                scope, wear, way.stop_travel, None if drive.balls is None else drive.balls.part, TENSION_DISC
+            ),
         )
+        if rules is not None:
+            blocks.limit_discs(d, rules=rules, lining=lining, travel=way.plate_travel)
+            blocks.limit_set(d, rules=rules, springs=way.clamping, deflection=way.clamp_deflection)
+            blocks.limit_set(d, rules=rules, springs=way.returning, deflection=way.return_deflection, prefix="return_")
         self._declare_remarks(d, duty=duty, drive=drive, way=way, lining=lining, rest=rest)
-        blocks.advise_stop_load(d, stop_force=load, clamp_force=clamp)
-        blocks.declare_objectives(d)
+        blocks.advise_stop_load(d, stop_force=load, clamp_force=clamp, rules=rules)
+        blocks.declare_objectives(d, scope=scope)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return what the torque asks for; of a design forces and travel over speed, both branches.
@@ -274,7 +288,9 @@ class CentrifugalTwoSpring(DesignProblem):
         balls = ball_blocks.declare_balls(d, duty=duty, rest_radius=rest)
         return Drive(
             mass=balls.mass,
+            count=balls.count,
             half_height=balls.radius,
+            width=balls.part.diameter,
             ratio=balls.ratio,
             push=balls.push,
             release_ratio=balls.release_ratio,
@@ -331,7 +347,9 @@ class CentrifugalTwoSpring(DesignProblem):
         )
         return Drive(
             mass=weights.mass,
+            count=weights.count,
             half_height=weights.thickness / 2,
+            width=weights.width,
             ratio=ratio,
             push=ratio * efficiency,
             release_ratio=efficiency,  # sqrt(eta_out/eta_in) with eta_in = 1/eta_out

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from problems.friction.duty import Duty
 from problems.mechanics import heat, plates, startup
+from problems.practice import lining_conditions
 from problems.sources import PRACTICE, S0, S1
 
 if TYPE_CHECKING:
@@ -51,10 +52,7 @@ def declare_friction_pair(
     """
     conditions = [f"'{family}' in family_hint"]
     conditions.append(f"lubrication == '{lubrication}'" if lubrication else "lubrication in ('dry', 'oil')")
-    if duty.allow_obsolete != "yes":
-        conditions.append("new_design_allowed == 1")
-    if rules and duty.allow_obsolete == "no" and d.has_column("friction_materials", "status"):
-        conditions.append("status == 'current'")
+    conditions += lining_conditions(d, duty.allow_obsolete, rules=rules)
     part = d.part(
         "friction_pair",
         "friction_materials",

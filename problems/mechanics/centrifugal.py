@@ -15,6 +15,10 @@ from problems.mechanics import Quantity
 from synth.special import special
 
 STANDARD_GRAVITY = 9.80665  # m/s2
+# What a clutch has beyond the two surfaces that the thickness of all plates is for: engineering practice.
+FURTHER_PLATE = 6e-3  # plate between two friction discs [m]
+FURTHER_CORE = 2e-3  # core of a friction disc [m]
+COVER = 5e-3  # cover over the flyweights [m]
 
 
 # -- flyweights -------------------------------------------------------------------------------------
@@ -875,6 +879,96 @@ def plates_mass(density: Quantity, diameter: Quantity, hub_radius: Quantity, thi
     5.919
     """
     return density * np.pi * (diameter**2 / 4 - hub_radius**2) * thickness
+
+
+def further_discs_mass(
+    density: Quantity,
+    surfaces: Quantity,
+    ring_ratio: Quantity,
+    outer_radius: Quantity,
+    hub_radius: Quantity,
+    lining_density: Quantity,
+    lining_thickness: Quantity,
+) -> Quantity:
+    """Mass of all friction discs beyond the first and of the plates between them.
+
+    Each adds a plate of 6 mm as wide as the lining, a core of 2 mm down to the hub and two linings:
+    m = (z_f/2 - 1) pi [rho 6 mm (r_o**2 - r_i**2) + rho 2 mm (r_o**2 - r_hub**2) + 2 rho_l t_l (r_o**2 - r_i**2)].
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        Density of steel rho [kg/m3].
+    surfaces : scalar, array or symbol
+        Friction surfaces z_f, two for each disc [-].
+    ring_ratio : scalar, array or symbol
+        r_i/r_o of the lining [-]; the ratio, because limits bound it whatever the outer radius is.
+    outer_radius, hub_radius : scalar, array or symbol
+        r_o, r_hub [m].
+    lining_density, lining_thickness : scalar, array or symbol
+        rho_l [kg/m3] and t_l [m] of one lining.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; both thicknesses are engineering practice.
+
+    Examples
+    --------
+    By hand, three further discs of 100/126 mm with sintered linings of 2 mm: 0.652089 + 0.528099 + 0.254765 kg:
+
+    >>> further_discs_mass(7850, 8, 50 / 63, 0.063, 0.020, 4600, 0.002)
+    1.43495
+    """
+    ring = (density * FURTHER_PLATE + 2 * lining_density * lining_thickness) * outer_radius**2 * (1 - ring_ratio**2)
+    core = density * FURTHER_CORE * (outer_radius**2 - hub_radius**2)
+    return np.pi * (surfaces / 2 - 1) * (ring + core)
+
+
+def overall_length(
+    plates_thickness: Quantity,
+    surfaces: Quantity,
+    lining_thickness: Quantity,
+    travel: Quantity,
+    flyweight_width: Quantity,
+) -> Quantity:
+    """Length of the clutch, t_plates + (z_f/2 - 1)(8 mm + 2 t_l) + travel + flyweights + 5 mm.
+
+    Parameters
+    ----------
+    plates_thickness : scalar, array or symbol
+        Of all plates with one friction disc t_plates [m].
+    surfaces : scalar, array or symbol
+        Friction surfaces z_f, two for each disc [-].
+    lining_thickness : scalar, array or symbol
+        Of one lining t_l [m].
+    travel : scalar, array or symbol
+        Way along the axis for which there must be room [m].
+    flyweight_width : scalar, array or symbol
+        Flyweights along the axis [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Length [m].
+
+    References
+    ----------
+    Geometry; plates, cores and cover are engineering practice.
+
+    Examples
+    --------
+    By hand, in mm 25 + 3 (8 + 4) + 1.6 + 23 + 5:
+
+    >>> 1e3 * overall_length(0.025, 8, 0.002, 0.0016, 0.023)
+    90.6
+    """
+    further = (surfaces / 2 - 1) * (FURTHER_PLATE + FURTHER_CORE + 2 * lining_thickness)
+    return plates_thickness + further + travel + flyweight_width + COVER
 
 
 def clutch_inertia(

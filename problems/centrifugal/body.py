@@ -1,0 +1,405 @@
+"""The complete centrifugal clutch around its plates and flyweights, and what an engineer demands of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from problems import cost
+from problems.friction.duty import Duty as FrictionDuty
+from problems.mechanics import centrifugal
+from problems.mechanics.wear import wear_life
+from problems.practice import UNSOURCED, Scope
+from problems.sources import DRIVE
+from synth.declaration import Block, Requirement
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from problems.centrifugal.duty import WholeDuty
+    from problems.centrifugal.flyweights import Flyweights
+    from problems.centrifugal.lining import Lining
+    from problems.centrifugal.springs import SpringSet
+    from synth.declaration import Declaration, Part
+
+LEAST_WORK = 1e-3  # friction work with which a driven side without inertia counts [J]
+TOLERANCES = 10  # least preload over the tolerance to which it is set
+THIN = 0.95  # of the hub that the shaft needs: one of a round size may lie a little below it
+NARROW_RING = 0.75  # remarks only: inner over outer radius of a lining that spreads little heat
+DISC_PLATES = 2  # flywheel and pressure plate
+
+
+class Rules(Block):
+    """Rules for all centrifugal clutches, all in SI."""
+
+    group = "practice"
+
+    allow_obsolete = replace(
+        FrictionDuty.allow_obsolete,
+        text="historical: also friction pairs that are built no more (cork, leather, wood, felt); yes: also those not "
+        "allowed in new designs (asbestos), to re-compute old machines",
+    )
+    springs_per_set_min = Requirement(
+        "-",
+        3,
+        lower=2,
+        upper=12,
+        symbol="N_min",
+        text=f"Least springs in each set: two tilt the plate that they push ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    setting_tolerance = Requirement(
+        "mm",
+        0.2,
+        lower=0,
+        upper=2,
+        symbol="tol",
+        text="Tolerance of the deflection of springs at rest, a tenth of the least such deflection: the contact speed "
+        f"shifts with it ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    friction_surfaces_max = Requirement(
+        "-",
+        4,
+        lower=2,
+        upper=8,
+        symbol="z_max",
+        text=f"Most friction surfaces ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    gap_per_surface_min = Requirement(
+        "mm",
+        0.3,
+        lower=0,
+        upper=5,
+        symbol="g_min",
+        text="Least travel of the plate to contact over friction surfaces, so that the released clutch does not drag",
+        source="practice, 0.3 to 0.5 mm and the run-out",
+    )
+    wire_diameter_min = Requirement(
+        "mm",
+        0.8,
+        lower=0,
+        upper=20,
+        symbol="d_sp_min",
+        text=f"Least wire of springs that turn with the clutch and bow outwards ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    wear_life_min = Requirement(
+        "-",
+        lower=1,
+        upper=1e12,
+        optional=True,
+        symbol="N_w_min",
+        text="Least engagements until the linings are worn",
+        source=DRIVE,
+        group="duty",
+    )
+
+
+class LeverRules(Rules):
+    """Rules for centrifugal clutches with levers, whose springs stand on the circle of the weights; all in SI."""
+
+    group = "practice"
+
+    spring_gap = Requirement(
+        "mm",
+        2,
+        lower=0,
+        upper=50,
+        symbol="c_sp",
+        text=f"Gap between springs around their circle ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+    spring_circles = Requirement(
+        "-",
+        1,
+        lower=0.1,
+        upper=10,
+        symbol="k_circle",
+        text="Circles of the radius of the weights at rest over which the springs are spread; springs inside others "
+        f"count as a circle more ({UNSOURCED})",
+        source=UNSOURCED,
+    )
+
+
+AnyRules = TypeVar("AnyRules", bound=Rules)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a clutch has around the parts that its formulas know.
+
+    Attributes
+    ----------
+    scope : Scope
+        What is counted.
+    wear : symbol
+        Wear of all linings together [m]; None where nothing around the parts is counted.
+    travel : symbol
+        Way along the axis for which there must be room [m].
+    ball : Part or None
+        The balls, where they are the flyweights.
+    discs : int
+        Plates beside flywheel and pressure plate.
+    """
+
+    scope: Scope
+    wear: Any
+    travel: Any
+    ball: Part | None = None
+    discs: int = 0
+
+
+def declare_rules(d: Declaration, kind: type[AnyRules], *, scope: Scope) -> AnyRules | None:
+    """Declare the requirements that the rules of practice go by, where they count."""
+    return d.block(kind) if scope.rules else None
+
+
+def declare_body(
+    d: Declaration,
+    *,
+    duty: WholeDuty,
+    lining: Lining,
+    flyweights: Flyweights,
+    springs: Sequence[SpringSet],
+    around: Surroundings,
+    part_mass: Any,
+    counted: str,
+) -> None:
+    """Declare mass, length, wear and cost of the whole clutch: further discs and a boss on either shaft.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    duty : WholeDuty
+        Requirements.
+    lining : Lining
+        Lining.
+    flyweights : Flyweights
+        Flyweights.
+    springs : sequence of SpringSet
+        All springs.
+    around : Surroundings
+        What is around them.
+    part_mass : symbol
+        Mass that the formulas know [kg].
+    counted : str
+        What it is of.
+    """
+    pair, rho = lining.pair, duty.steel_density
+    discs = centrifugal.further_discs_mass(
+        rho,
+        lining.surfaces,
+        lining.ratio,
+        lining.outer_radius,
+        duty.hub_radius,
+        pair.density,
+        pair.lining_thickness,
+    )
+    whole = part_mass + discs + 2 * duty.boss_mass(rho)
+    d.derive("part_mass", "kg", part_mass, symbol="m_part", text=counted, source="geometry")
+    d.derive(
+        "mass",
+        "kg",
+        whole if around.scope.complete else part_mass,
+        symbol="m",
+        text="The whole clutch: its parts, the friction discs beyond the first with a plate for each, and a boss on "
+        "either shaft; the cover is among the plates of equivalent_plate_thickness"
+        if around.scope.complete
+        else counted,
+        source="geometry",
+    )
+    length = d.derive(
+        "length",
+        "mm",
+        centrifugal.overall_length(
+            duty.equivalent_plate_thickness, lining.surfaces, pair.lining_thickness, around.travel, flyweights.width
+        ),
+        symbol="L",
+        text="Plates, friction discs, their travel, flyweights and cover",
+        source="geometry",
+    )
+    if duty.length_limit is not None:
+        d.at_most(
+            "length", length, duty.length_limit, "mm", text="The clutch fits the room along the shaft", source=DRIVE
+        )
+    d.advise(
+        "thin_hub",
+        2 * duty.hub_radius < THIN * duty.hub_diameter,
+        "hub_radius is below the hub that shaft_diameter needs: check the hub and its key",
+        source=UNSOURCED,
+    )
+    d.derive(
+        "wear_life",
+        "-",
+        wear_life(
+            lining.area,
+            np.minimum(pair.wearable_depth, around.wear / lining.surfaces),
+            pair.wear_rate,
+            np.maximum(duty.engagement_energy, LEAST_WORK),
+        ),
+        symbol="N_w",
+        text="Engagements, each of the heat of engagement_heat, until the linings are worn by lining_wear together or "
+        "by wearable_depth each",
+        source="wear volume in proportion to friction work (Archard)",
+    )
+    _declare_cost(d, lining=lining, flyweights=flyweights, springs=springs, around=around, mass=whole)
+
+
+def _declare_cost(
+    d: Declaration,
+    *,
+    lining: Lining,
+    flyweights: Flyweights,
+    springs: Sequence[SpringSet],
+    around: Surroundings,
+    mass: Any,
+) -> None:
+    special = [
+        cost.Special(
+            one.part,
+            amount=one.count,
+            mass=one.mass,
+            pieces=one.count,
+            factor=cost.SPRING_WIRE,
+        )
+        for one in springs
+    ]
+    if around.ball is not None:
+        special.append(
+            cost.Special(around.ball, amount=flyweights.count, mass=flyweights.mass, pieces=flyweights.count)
+        )
+    pieces: Any = sum(one.count for one in springs)
+    cost.declare_cost(
+        d,
+        mass=mass,
+        parts=lining.surfaces + DISC_PLATES + around.discs + flyweights.count + pieces,
+        lining=(lining.pair, lining.area),
+        special=special,
+    )
+
+
+def limit_discs(d: Declaration, *, rules: Rules, lining: Lining, travel: Any) -> None:
+    """Declare the limits that an engineer adds to friction discs, and the remark on narrow ones.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : Rules
+        What the limits go by.
+    lining : Lining
+        Lining.
+    travel : symbol
+        Travel of the plate to contact [m].
+    """
+    d.at_most(
+        "surfaces_practice",
+        lining.surfaces,
+        rules.friction_surfaces_max,
+        "-",
+        text="So many friction surfaces are built",
+        source=UNSOURCED,
+    )
+    d.at_least(
+        "gap_per_surface",
+        travel / lining.surfaces,
+        rules.gap_per_surface_min,
+        "mm",
+        text="Each friction surface has air when released",
+        source="practice, 0.3 to 0.5 mm and the run-out",
+    )
+    if rules.wear_life_min is not None:
+        d.at_least(
+            "wear_life",
+            d.derived["wear_life"].sx,
+            rules.wear_life_min,
+            "-",
+            text="The linings last long enough",
+            source=DRIVE,
+        )
+    d.advise(
+        "narrow_ring",
+        lining.inner_radius > NARROW_RING * lining.outer_radius,
+        "lining_inner_radius is above 0.75 lining_outer_radius: a wider ring has more area for heat and wear",
+        source=UNSOURCED,
+    )
+    if rules.allow_obsolete == "yes":
+        d.advise(
+            "obsolete_material",
+            lining.pair.optional("new_design_allowed") < 0.5,
+            "this friction pair is not allowed in new designs; use it only to re-compute an old machine",
+            source="table friction_materials",
+        )
+
+
+def limit_set(d: Declaration, *, rules: Rules, springs: SpringSet, deflection: Any, prefix: str = "") -> None:
+    """Declare the limits that an engineer adds to a set of springs.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : Rules
+        What the limits go by.
+    springs : SpringSet
+        The set.
+    deflection : symbol
+        Deflection at rest [m].
+    prefix : str
+        What the names of the limits begin with where there is another set.
+    """
+    which = f"{springs.part.slot}s"
+    d.at_least(
+        f"{prefix}springs_per_set",
+        springs.count,
+        rules.springs_per_set_min,
+        "-",
+        text=f"So many {which} do not tilt what they push",
+        source=UNSOURCED,
+    )
+    d.at_least(
+        f"{prefix}preload_min",
+        deflection,
+        TOLERANCES * rules.setting_tolerance,
+        "mm",
+        text=f"The deflection of {which} at rest is more than what it can be set to",
+        source=UNSOURCED,
+    )
+    d.at_least(
+        f"{prefix}wire_min",
+        springs.part.wire_diameter_d,
+        rules.wire_diameter_min,
+        "mm",
+        text=f"The {which} stand turning with the clutch",
+        source=UNSOURCED,
+    )
+
+
+def limit_spring_circle(d: Declaration, *, rules: LeverRules, rest_radius: Any, springs: Sequence[SpringSet]) -> None:
+    """Declare the limit that all springs stand beside each other on the circle of the weights.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    rules : LeverRules
+        What the limit goes by.
+    rest_radius : symbol
+        Radius of the circle [m].
+    springs : sequence of SpringSet
+        All springs.
+    """
+    taken: Any = sum(one.share_of_circle(rules.spring_gap) for one in springs)
+    d.at_most(
+        "spring_circle",
+        taken,
+        rules.spring_circles * 2 * np.pi * rest_radius,
+        "mm",
+        text="The springs have room on the circle of the weights",
+        source=UNSOURCED,
+    )
