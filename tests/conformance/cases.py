@@ -252,9 +252,18 @@ FITTING_SPRINGS = {
 }
 FITTING_COUNTS = {"return_springs": 3, "clamp_springs": 3, "friction_surfaces": 8}
 
+BUILT = {
+    "problems.mechanics.centrifugal:FURTHER_PLATE": (0, 1, 0, 0, 0),
+    "problems.mechanics.centrifugal:FURTHER_CORE": (0, 1, 0, 0, 0),
+    "problems.mechanics.centrifugal:COVER": (0, 1, 0, 0, 0),
+    "problems.centrifugal.body:LEAST_WORK": (1, 2, -2, 0, 0),
+}
+
 CASES: dict[str, Family] = {
     "centrifugal_ball_ramp": Family(
-        option_sets={"default": {}},
+        option_sets={"default": {}, "practice": {"practice": "on"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        constants=BUILT,
         requirements=RAMPS,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
@@ -366,7 +375,14 @@ CASES: dict[str, Family] = {
         sound=sound_discs,
     ),
     "centrifugal_two_spring": Family(
-        option_sets={"default": {}, "lever": {"mechanism": "lever"}},
+        option_sets={
+            "default": {},
+            "lever": {"mechanism": "lever"},
+            "practice": {"practice": "on"},
+            "practice_lever": {"practice": "on", "mechanism": "lever"},
+        },
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        constants=BUILT,
         requirements=RAMPS,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
@@ -490,7 +506,9 @@ CASES: dict[str, Family] = {
         sound=sound_cones,
     ),
     "centrifugal_lever": Family(
-        option_sets={"default": {}},
+        option_sets={"default": {}, "practice": {"practice": "on"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        constants=BUILT,
         requirements=ENGINE,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
@@ -517,7 +535,9 @@ CASES: dict[str, Family] = {
         sound=sound_levers,
     ),
     "centrifugal_reversed": Family(
-        option_sets={"default": {}},
+        option_sets={"default": {}, "practice": {"practice": "on"}},
+        needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
+        constants=BUILT,
         requirements=ENGINE,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
