@@ -29,6 +29,30 @@ def _start(torque: str, speed: str, inertia: str, **more: str) -> dict[str, Any]
     return {"load_torque": torque, "driver_speed": speed, "driven_inertia": inertia, **more}
 
 
+def _speeds(torque: str, speeds: tuple[int, int, int, int, int], inertia: str, *, ramp: bool) -> dict[str, Any]:
+    """Return a duty of a centrifugal clutch; speeds [1/min] from idle to the top, the earliest contact for ramps."""
+    idle, early, late, full, top = (f"{n} 1/min" for n in speeds)
+    wants = {
+        "required_torque": torque,
+        "idle_speed": idle,
+        "contact_speed_max": late,
+        "full_torque_speed": full,
+        "top_speed": top,
+        "driven_inertia": inertia,
+    }
+    return wants | ({"contact_speed_min": early} if ramp else {})
+
+
+CENTRIFUGAL = [
+    Duty(f"centrifugal_{kind}", torque.replace("*", " "), _speeds(torque, speeds, inertia, ramp=ramp))
+    for kind, ramp in (("ball_ramp", True), ("two_spring", True), ("lever", False), ("reversed", False))
+    for torque, speeds, inertia in (
+        ("5 N*m", (1800, 2100, 2800, 4200, 6000), "0.005 kg*m2"),
+        ("40 N*m", (1000, 1150, 1600, 2400, 3600), "0.05 kg*m2"),
+        ("400 N*m", (600, 700, 1000, 1500, 2200), "1 kg*m2"),
+    )
+]
+
 DUTIES = [
     Duty("multi_plate_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.01 kg*m2")),
     Duty("multi_plate_clutch", "5 N m, dry", _start("5 N*m", "1500 1/min", "0.01 kg*m2"), {"lubrication": "dry"}),
@@ -61,6 +85,7 @@ DUTIES = [
     Duty("roller_coupling", "20 N m", {"required_torque": "20 N*m", "driver_speed": "960 1/min", "offset": "2 mm"}),
     Duty("roller_coupling", "300 N m", {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}),
     Duty("roller_coupling", "5 kN m", {"required_torque": "5 kN*m", "driver_speed": "300 1/min", "offset": "10 mm"}),
+    *CENTRIFUGAL,
 ]
 
 
