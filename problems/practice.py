@@ -78,8 +78,8 @@ def lining_conditions(d: Declaration, allow_obsolete: str, *, rules: bool) -> li
     return conditions
 
 
-class ShaftRequirements(Block):
-    """The shaft of a clutch and the hub on it, all in SI."""
+class ShaftSize(Block):
+    """The shaft of a clutch, all in SI."""
 
     group = "practice"
 
@@ -102,6 +102,13 @@ class ShaftRequirements(Block):
         source="torsion of a solid shaft",
         group="envelope",
     )
+
+
+class ShaftRequirements(ShaftSize):
+    """The shaft of a clutch and the hub on it, all in SI."""
+
+    group = "practice"
+
     hub_factor = Requirement(
         "-",
         1.5,

@@ -21,6 +21,10 @@ from problems.mechanics.magnetics import gap_field
 from synth.special import special
 
 IRON_DENSITY = 7870.0  # of solid iron [kg/m3]
+# What closes a powder clutch and carries it: proportions of practice, of no source that could be opened.
+SHIELD_DENSITY = 2700.0  # light metal [kg/m3]
+SHIELD_THICKNESS = 8e-3  # of one shield [m]
+SHAFT_ENDS = 60e-3  # what the shaft is longer than the body [m]
 
 
 def packed_permeability(bulk_density: Quantity) -> Quantity:
@@ -417,6 +421,64 @@ def ring_inertia(mass: Quantity, outer_radius: Quantity, inner_radius: Quantity)
     return mass * (outer_radius**2 + inner_radius**2) / 2
 
 
+def shields_mass(outer_radius: Quantity) -> Quantity:
+    """Mass of both bearing shields, 2 x 2700 kg/m3 pi R**2 x 8 mm.
+
+    Parameters
+    ----------
+    outer_radius : scalar, array or symbol
+        R of the body [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; light metal and thickness are engineering practice.
+
+    Examples
+    --------
+    By hand, 43.2 kg/m2 x pi 0.1**2:
+
+    >>> round(float(shields_mass(0.1)), 4)
+    1.3572
+    """
+    return 2 * SHIELD_DENSITY * np.pi * SHIELD_THICKNESS * outer_radius**2
+
+
+def shaft_mass(density: Quantity, radius: Quantity, length: Quantity) -> Quantity:
+    """Mass of the shaft, rho pi r**2 (L + 60 mm).
+
+    Parameters
+    ----------
+    density : scalar, array or symbol
+        rho [kg/m3].
+    radius : scalar, array or symbol
+        r of the shaft [m].
+    length : scalar, array or symbol
+        L of the body [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Mass [kg].
+
+    References
+    ----------
+    Geometry; the ends are engineering practice.
+
+    Examples
+    --------
+    By hand, 7850 pi 0.012**2 x 0.2:
+
+    >>> round(float(shaft_mass(7850, 0.012, 0.14)), 4)
+    0.7103
+    """
+    return density * np.pi * radius**2 * (length + SHAFT_ENDS)
+
+
 @dataclass(frozen=True)
 class Layout:
     """Dimensions of a powder clutch; with a rotating coil ``drum`` and ``air_gap`` are 0 [m]."""
@@ -549,3 +611,13 @@ class Circuit:
         """Ampere-turns that a flux density needs, with that of the densest iron [A]."""
         field = magnetics.iron_field(densest, self.iron_reluctance, self.iron_saturation)
         return ampere_turns(flux_density, self.permeability, self.layout, field)
+
+    def linkage(self, flux_density: Quantity) -> Quantity:
+        """Flux of the coil over its ampere-turns, leak A_p B/NI [Wb/A].
+
+        The flux density stands in it once, as far as the iron saturates, so that bounds are tight.
+        """
+        densest = self.iron(flux_density).densest
+        ratio = magnetics.iron_reluctivity(densest, self.iron_reluctance, self.iron_saturation)
+        turned = ampere_turns(1.0, self.permeability, self.layout, ratio * self.iron(1.0).densest)
+        return self.leakage_factor * pole_area(self.layout.gap_radius, self.layout.pole_length) / turned

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from problems import cost, practice
 from problems.magnet import coil as coil_blocks
 from problems.magnetic_powder import curves as powder_curves
 from problems.magnetic_powder import formulas as powder
 from problems.mechanics import magnetics
+from problems.practice import UNSOURCED
 from problems.sources import S4, TYPICAL
 from synth import DesignProblem
 from synth.declaration import Block, Choice, Declaration, Part, Requirement
@@ -18,6 +21,7 @@ from synth.declaration import Block, Choice, Declaration, Part, Requirement
 if TYPE_CHECKING:
     import pandas as pd
 
+PARTS = 7  # rotor, drum or slip rings, body, coil, two shields and shaft
 GRAVITY = 9.80665  # [m/s2]
 SURFACE_WARNING = 348.15  # one maker's limit of the surface, 75 degC [K]
 
@@ -151,16 +155,6 @@ class Wants(Block):
         source=f"{S4} [P4]",
         group="model",
     )
-    shaft_radius = Requirement(
-        "mm",
-        12,
-        lower=1,
-        upper=200,
-        symbol="r_shaft",
-        text=f"Shaft with hub inside the rotor ({TYPICAL})",
-        source=f"{S4}, section 6.1",
-        group="envelope",
-    )
     powder_mass_limit = Requirement(
         "kg",
         0.40,
@@ -193,6 +187,74 @@ class Wants(Block):
     )
 
 
+class Bore(Block):
+    """What the rotor is bored for, in SI."""
+
+    group = "envelope"
+
+    shaft_radius = Requirement(
+        "mm",
+        12,
+        lower=1,
+        upper=200,
+        symbol="r_shaft",
+        text=f"Shaft with hub inside the rotor ({TYPICAL})",
+        source=f"{S4}, section 6.1",
+    )
+
+
+class PowderRules(coil_blocks.CoilRules):
+    """Rules for powder clutches, all in SI."""
+
+    group = "practice"
+
+    rise_time_limit = Requirement(
+        "s",
+        0.2,
+        lower=0.001,
+        upper=60,
+        symbol="t_rise_max",
+        text="Longest rise of the current (ten units; a maker's torque rises in 0.17 to 0.26 s)",
+        source=f"{UNSOURCED}; {S4}, check X11",
+    )
+    spread_acceleration = Requirement(
+        "-",
+        5,
+        lower=0,
+        upper=1000,
+        symbol="k_spread",
+        text=f"Least centrifugal acceleration in the gap over gravity: the powder must be thrown out ({UNSOURCED})",
+        source=f"{UNSOURCED}; {S4}, check X11",
+    )
+    powder_per_torque_max = Requirement(
+        "g/(N*m)",
+        5,
+        lower=0.01,
+        upper=1000,
+        symbol="k_pow",
+        text="Largest mass of powder over required_torque (makers take 1.2 to 2.5)",
+        source=UNSOURCED,
+    )
+    powder_load_limit = Requirement(
+        "W/kg",
+        1500,
+        lower=1,
+        upper=1e6,
+        symbol="k_load",
+        text="Slip heat over mass of powder above which a remark comes; with forced air five units stand 10 000",
+        source=f"{UNSOURCED}; {S4} [P9]",
+    )
+
+
+@dataclass(frozen=True)
+class Sized:
+    """Mass of a powder clutch as its formulas size it, and of copper and powder in it [kg]."""
+
+    mass: Any
+    copper: Any
+    powder: Any
+
+
 class MagneticPowderClutch(DesignProblem):
     """Magnetic-powder clutch with a stationary coil, or with a coil that rotates and has slip rings.
 
@@ -218,7 +280,15 @@ class MagneticPowderClutch(DesignProblem):
 
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
+        scope = practice.declare_scope(d)
         wants = d.block(Wants)
+        if scope.rules:
+            shaft = d.block(
+                practice.ShaftSize, shaft_diameter=practice.shaft_for(wants.torque_reserve * wants.required_torque)
+            )
+            bore = d.block(Bore, shaft_radius=shaft.shaft_diameter / 2)
+        else:
+            bore = d.block(Bore)
         iron = coil_blocks.declare_coil_requirements(d)
         radius = d.variable(
             "gap_radius",
@@ -271,8 +341,16 @@ class MagneticPowderClutch(DesignProblem):
         )
         rim = powder.rim_section_width(radius, unknowns.yoke_thickness)
         _declare_torque(d, wants=wants, part=part, flux_density=unknowns.flux_density, layout=layout)
+        circuit = powder.Circuit(
+            layout=layout,
+            rim=rim,
+            permeability=part.relative_permeability,
+            leakage_factor=iron.leakage_factor,
+            iron_reluctance=iron.iron_reluctance,
+            iron_saturation=iron.iron_saturation,
+        )
         ampere_turns = _declare_circuit(
-            d, wants=wants, iron=iron, part=part, flux_density=unknowns.flux_density, layout=layout, rim=rim
+            d, bore=bore, iron=iron, circuit=circuit, flux_density=unknowns.flux_density, layout=layout
         )
         slip_heat = d.derive(
             "slip_heat",
@@ -296,14 +374,47 @@ class MagneticPowderClutch(DesignProblem):
         winding = coil_blocks.declare_winding(
             d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=layout.bore, around=around
         )
-        _declare_size(
-            d, wants=wants, part=part, coil=coil, layout=layout, rim=rim, copper_section=winding.copper_section
+        sized = _declare_size(
+            d,
+            scope=scope,
+            wants=wants,
+            bore=bore,
+            part=part,
+            coil=coil,
+            layout=layout,
+            rim=rim,
+            copper_section=winding.copper_section,
         )
         _declare_remarks(d, wants=wants, coil=coil, part=part, layout=layout)
-        d.objective("coil_power")
+        if scope.rules:
+            _declare_rules(
+                d,
+                wants=wants,
+                iron=iron,
+                unknowns=unknowns,
+                layout=layout,
+                sized=sized,
+                winding=winding,
+                linkage=circuit.linkage(unknowns.flux_density),
+                slip_heat=slip_heat,
+            )
+        # Least power asks for ever larger bodies; with the rules of practice the supply limits it, and mass counts.
+        d.objective("coil_power", default=not scope.rules)
         d.objective("input_inertia")
-        for name in ("mass", "outer_diameter"):
-            d.objective(name, default=False)
+        d.objective("mass", default=scope.rules)
+        d.objective("outer_diameter", default=False)
+        if scope.rules or scope.complete:
+            d.objective("length", default=False)
+            wire = unknowns.winding_wire
+            cost.declare_cost(
+                d,
+                mass=sized.mass + _around(wants, bore, layout),
+                parts=PARTS,
+                special=[
+                    cost.Special(wire, amount=sized.copper, mass=sized.copper, pieces=1, factor=cost.COPPER),
+                    cost.Special(part, amount=sized.powder, mass=sized.powder, factor=cost.POWDER),
+                ],
+            )
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, pd.DataFrame]:
         """Return the shear stress that a torque needs; of a design torque over current and temperature, heat balance.
@@ -361,22 +472,13 @@ def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: A
 def _declare_circuit(
     d: Declaration,
     *,
-    wants: Wants,
+    bore: Bore,
     iron: coil_blocks.CoilRequirements,
-    part: Part,
+    circuit: powder.Circuit,
     flux_density: Any,
     layout: powder.Layout,
-    rim: Any,
 ) -> Any:
     """Declare the flux densities of the iron and return the ampere-turns that the circuit needs."""
-    circuit = powder.Circuit(
-        layout=layout,
-        rim=rim,
-        permeability=part.relative_permeability,
-        leakage_factor=iron.leakage_factor,
-        iron_reluctance=iron.iron_reluctance,
-        iron_saturation=iron.iron_saturation,
-    )
     found = circuit.iron(flux_density)
     coil_blocks.declare_saturation(d, wants=iron, iron_flux_density=found.densest)
     d.at_most(
@@ -398,7 +500,7 @@ def _declare_circuit(
     d.at_least(
         "rotor_bore",
         layout.gap_radius,
-        layout.thickness + wants.shaft_radius,
+        layout.thickness + bore.shaft_radius,
         "mm",
         text="The shaft fits inside the rim of the rotor",
         source="geometry",
@@ -406,9 +508,24 @@ def _declare_circuit(
     return circuit.ampere_turns(flux_density, found.densest)
 
 
+def _around(wants: Wants, bore: Bore, layout: powder.Layout) -> Any:
+    """Return the mass of shields and shaft [kg]."""
+    shields = powder.shields_mass(layout.outer_radius)
+    return shields + powder.shaft_mass(wants.steel_density, bore.shaft_radius, layout.length)
+
+
 def _declare_size(
-    d: Declaration, *, wants: Wants, part: Part, coil: Choice, layout: powder.Layout, rim: Any, copper_section: Any
-) -> None:
+    d: Declaration,
+    *,
+    scope: practice.Scope,
+    wants: Wants,
+    bore: Bore,
+    part: Part,
+    coil: Choice,
+    layout: powder.Layout,
+    rim: Any,
+    copper_section: Any,
+) -> Sized:
     filling = d.derive(
         "powder_mass",
         "kg",
@@ -455,15 +572,40 @@ def _declare_size(
         text="Outside of the yoke",
         source="geometry",
     )
+    parts = rotor + drum + body + copper + filling
+    if scope.rules or scope.complete:
+        d.derive(
+            "part_mass",
+            "kg",
+            parts,
+            symbol="m_part",
+            text="Rotor without shaft, drum of a stationary coil, body, copper and powder",
+            source=f"{S4} [P10]",
+        )
+        d.derive(
+            "pack_length",
+            "mm",
+            layout.length,
+            symbol="L_pk",
+            text="Length of the body, 2 l_p + l_m + 2 t_y",
+            source="geometry",
+        )
     length = d.derive(
-        "length", "mm", layout.length, symbol="L", text="Length of the body, 2 l_p + l_m + 2 t_y", source="geometry"
+        "length",
+        "mm",
+        layout.length + (2 * powder.SHIELD_THICKNESS if scope.complete else 0.0),
+        symbol="L",
+        text="Length of the body with its shields" if scope.complete else "Length of the body, 2 l_p + l_m + 2 t_y",
+        source="geometry",
     )
     d.derive(
         "mass",
         "kg",
-        rotor + drum + body + copper + filling,
+        parts + _around(wants, bore, layout) if scope.complete else parts,
         symbol="m",
-        text="Rotor without shaft, drum of a stationary coil, body, copper and powder",
+        text="The whole clutch, with shields and shaft"
+        if scope.complete
+        else "Rotor without shaft, drum of a stationary coil, body, copper and powder",
         source=f"{S4} [P10]",
     )
     asked = "requirement of the drive"
@@ -478,6 +620,71 @@ def _declare_size(
         )
     if wants.length_limit is not None:
         d.at_most("length", length, wants.length_limit, "mm", text="The clutch fits the room along", source=asked)
+    return Sized(mass=parts, copper=copper, powder=filling)
+
+
+def _declare_rules(
+    d: Declaration,
+    *,
+    wants: Wants,
+    iron: coil_blocks.CoilRequirements,
+    unknowns: coil_blocks.CoilUnknowns,
+    layout: powder.Layout,
+    sized: Sized,
+    winding: coil_blocks.Winding,
+    linkage: Any,
+    slip_heat: Any,
+) -> None:
+    """Declare the limits that an engineer adds to a powder clutch."""
+    rules = d.block(PowderRules)
+    coil_blocks.refuse_bad_window(d, rules)
+    coil_blocks.limit_coil(d, rules=rules, wants=iron, unknowns=unknowns)
+    d.at_most(
+        "rise_time",
+        coil_blocks.declare_rise_time(d, rules=rules, winding=winding, linkage=linkage),
+        rules.rise_time_limit,
+        "s",
+        text="The torque follows what is asked of it",
+        source=f"{UNSOURCED}; {S4}, check X11",
+    )
+    d.at_least(
+        "powder_spread",
+        wants.driver_speed**2 * layout.gap_radius,
+        rules.spread_acceleration * GRAVITY,
+        "m/s2",
+        text="The powder is thrown out all around the gap",
+        source=f"{UNSOURCED}; {S4}, check X11",
+    )
+    per_torque = d.derive(
+        "powder_per_torque",
+        "g/(N*m)",
+        sized.powder / wants.required_torque,
+        symbol="q_pow",
+        text="Powder over required_torque",
+        source="definition",
+    )
+    d.at_most(
+        "powder_per_torque",
+        per_torque,
+        rules.powder_per_torque_max,
+        "g/(N*m)",
+        text="As much powder as the torque needs",
+        source=UNSOURCED,
+    )
+    load = d.derive(
+        "powder_load",
+        "W/kg",
+        slip_heat / sized.powder,
+        symbol="p_pow",
+        text="Heat of continuous slip over mass of powder",
+        source="definition",
+    )
+    d.advise(
+        "powder_load",
+        load > rules.powder_load_limit,
+        "the slip heats the powder more than powder_load_limit: its life is short, unless forced air cools the clutch",
+        source=f"{UNSOURCED}; {S4} [P9]",
+    )
 
 
 def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, layout: powder.Layout) -> None:
