@@ -23,6 +23,14 @@ CONSTANTS = {
     MAGNETICS + "UNIT_SPEED": (0, 1, -1, 0, 0),
 }
 
+POWDER = "problems.magnetic_powder.formulas:"
+POWDER_CONSTANTS = {
+    POWDER + "SHIELD_DENSITY": (1, -3, 0, 0, 0),
+    POWDER + "SHIELD_THICKNESS": (0, 1, 0, 0, 0),
+    POWDER + "SHAFT_ENDS": (0, 1, 0, 0, 0),
+    "problems.magnetic_powder.model:GRAVITY": (0, 1, -2, 0, 0),
+}
+
 
 def sound_powder_clutches(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
     """Return variables with iron below saturation and windows that carry the current."""
@@ -65,7 +73,11 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
     """Return the entries of these families, made with the classes of the suite."""
     return {
         "magnetic_powder_clutch": family(
-            option_sets={"default": {}},
+            option_sets={
+                "default": {},
+                "practice": {"practice": "on"},
+                "practice_parts": {"practice": "on", "mass_scope": "parts"},
+            },
             requirements=WINDER,
             optional={"outer_diameter_limit": "280 mm", "length_limit": "160 mm"},
             feasible={
@@ -101,7 +113,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             ),
             culprits=frozenset({"torque_capacity", "outer_diameter", "rotor_bore", "powder_flux_density"}),
             sound=sound_powder_clutches,
-            constants=CONSTANTS,
+            constants=CONSTANTS | POWDER_CONSTANTS,
         ),
         "electromagnetic_clutch": family(
             option_sets={

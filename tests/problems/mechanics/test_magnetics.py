@@ -114,6 +114,8 @@ CASES = [
         },
         "kg",
     ),
+    (powder.shields_mass, {"outer_radius": "m"}, "kg"),
+    (powder.shaft_mass, {"density": "kg/m3", "radius": "m", "length": "m"}, "kg"),
     (powder.ring_inertia, {"mass": "kg", "outer_radius": "m", "inner_radius": "m"}, "kg m2"),
     (
         layout_turns,
@@ -142,6 +144,9 @@ CONSTANTS = [
     (magnetics, "UNIT_HEAT_TRANSFER", "W/(m2 K)"),
     (magnetics, "UNIT_SPEED", "m/s"),
     (powder, "IRON_DENSITY", "kg/m3"),
+    (powder, "SHIELD_DENSITY", "kg/m3"),
+    (powder, "SHIELD_THICKNESS", "m"),
+    (powder, "SHAFT_ENDS", "m"),
 ]
 NAMES = [getattr(f, "__name__", "") for f, _, _ in CASES]
 IDS = [f"{k}-{name}" for k, name in enumerate(NAMES)]
