@@ -53,6 +53,11 @@ CENTRIFUGAL = [
     )
 ]
 
+
+def _powder(torque: str, speed: str) -> dict[str, Any]:
+    return {"required_torque": torque, "driver_speed": speed}
+
+
 DUTIES = [
     Duty("multi_plate_clutch", "5 N m", _start("5 N*m", "1500 1/min", "0.01 kg*m2")),
     Duty("multi_plate_clutch", "5 N m, dry", _start("5 N*m", "1500 1/min", "0.01 kg*m2"), {"lubrication": "dry"}),
@@ -82,6 +87,9 @@ DUTIES = [
         _start("200 N*m", "750 1/min", "0.5 kg*m2"),
         fix={"ramp_time": "0.2 s", "coil_height": "15 mm"},
     ),
+    Duty("magnetic_powder_clutch", "5 N m", _powder("5 N*m", "1500 1/min"), fix={"powder_gap": "1.25 mm"}),
+    Duty("magnetic_powder_clutch", "36 N m", _powder("36 N*m", "1000 1/min"), fix={"powder_gap": "1.25 mm"}),
+    Duty("magnetic_powder_clutch", "100 N m", _powder("100 N*m", "1000 1/min"), fix={"powder_gap": "1.25 mm"}),
     Duty("roller_coupling", "20 N m", {"required_torque": "20 N*m", "driver_speed": "960 1/min", "offset": "2 mm"}),
     Duty("roller_coupling", "300 N m", {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}),
     Duty("roller_coupling", "5 kN m", {"required_torque": "5 kN*m", "driver_speed": "300 1/min", "offset": "10 mm"}),
