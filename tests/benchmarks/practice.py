@@ -73,7 +73,7 @@ DUTIES = [
         "electromagnetic_clutch",
         "5 N m",
         _start("5 N*m", "1500 1/min", "0.01 kg*m2"),
-        fix={"ramp_time": "0.1 s", "coil_height": "14 mm"},
+        fix={"ramp_time": "0.1 s", "coil_height": "14 mm", "yoke_thickness": "8 mm"},
     ),
     Duty(
         "electromagnetic_clutch",
@@ -85,7 +85,7 @@ DUTIES = [
         "electromagnetic_clutch",
         "200 N m",
         _start("200 N*m", "750 1/min", "0.5 kg*m2"),
-        fix={"ramp_time": "0.2 s", "coil_height": "15 mm"},
+        fix={"ramp_time": "0.2 s", "coil_height": "15 mm", "yoke_thickness": "18 mm"},
     ),
     Duty("magnetic_powder_clutch", "5 N m", _powder("5 N*m", "1500 1/min"), fix={"powder_gap": "1.25 mm"}),
     Duty("magnetic_powder_clutch", "36 N m", _powder("36 N*m", "1000 1/min"), fix={"powder_gap": "1.25 mm"}),
