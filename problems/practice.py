@@ -41,7 +41,7 @@ def declare_scope(d: Declaration) -> Scope:
     rules = d.option(
         "practice",
         ("on", "off"),
-        "off",
+        "on",
         symbol="prac",
         text="on: what an experienced engineer demands beside the formulas is a limit, each with a requirement that "
         "widens it; off: the sources alone",

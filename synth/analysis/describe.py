@@ -215,9 +215,12 @@ def _values(values: np.ndarray) -> str:
 
 def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
     table = tables.table(part.table)
-    rows = []
+    read: dict[tuple[str, ...], bool] = {}  # columns of the table -> whether a row may lack them in every use
     for entry in part.columns.values():
-        names = [named_column(c) for c in entry.columns]
+        names = tuple(named_column(c) for c in entry.columns)
+        read[names] = read.get(names, True) and (not entry.required or ELSE in entry.columns[0])
+    rows = []
+    for names, optional in read.items():
         column = next((table.column(name) for name in names if table.has(name)), None)
         rows.append(
             _row(
@@ -228,7 +231,7 @@ def _columns(part: Part, tables: Catalogs) -> list[dict[str, Any]]:
                 unit=column.unit if column is not None and column.unit else "-",
                 text=(column.description if column is not None else "not in this table"),
                 source=f"table {part.table}",
-                optional=not entry.required or ELSE in entry.columns[0],
+                optional=optional,
             )
         )
     return rows

@@ -152,8 +152,10 @@ def difference(front: ParetoFront, question: Question) -> str:
         return "the robust block, with which no search goes on"
     if instance.problem.name != frame.family:
         return f"the family: {frame.family} there, {instance.problem.name} here"
-    if dict(instance.problem.options) != dict(frame.options):
-        return f"the options: {dict(frame.options)} there, {dict(instance.problem.options)} here"
+    for name, option in instance.model.declaration.options.items():
+        there = frame.options.get(name, option.default)
+        if there != option.chosen:  # words as they are declared: yes and no may be stated for on and off
+            return f"option {name}: {there} there, {option.chosen} here"
     for key, value in frame.requirement_values.items():
         own = instance.values.requirements.get(key, math.nan)
         if not (own == value or math.isclose(own, value, rel_tol=MARGINS.stated)):

@@ -49,15 +49,11 @@ def case(rows: int, points: int, size: str, folder: Path) -> BatchJob:
         For its results.
     """
     question = cases.question(cases.SIZES[size])
-    spec = {}
-    for name, count in ((cases.LININGS, cases.SIZES[size].linings), (cases.PLATES, cases.SIZES[size].plates)):
-        more = cases.more_rows(name, count)
-        if len(more):
-            spec[name] = ["+", more]
+    asked_rows = [{**row, "practice": "off"} for row in cases.requirement_rows(rows)]
     asked = ["mass"] if points == 1 else ["mass", "actuation_force"]
     common = {"parts": question["parts"], "limits": None, "fix": None, "objectives": asked, "grid": True}
     settings = SearchSettings(points=points)
-    return BatchJob(FAMILY, cases.requirement_rows(rows), folder, None, spec or None, None, settings, common)
+    return BatchJob(FAMILY, asked_rows, folder, None, cases.tables(cases.SIZES[size]), None, settings, common)
 
 
 def measure(rows: int, points: int, size: str, workers: int | None) -> dict[str, Any]:

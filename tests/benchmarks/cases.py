@@ -42,6 +42,8 @@ TINY: dict[str, Any] = {
 ROW_NOISE = 0.03
 SEED = 20240
 LININGS, PLATES = "friction_materials", "core_plates"
+# Of the shipped plates only these, so that questions stay those of earlier measurements.
+CORES = tuple(f"core {t}" for t in ("0.8", "1", "1.2", "1.5", "1.6", "1.8", "2", "2.5", "3", "3.5", "4"))
 
 
 @dataclass(frozen=True)
@@ -87,15 +89,16 @@ class CountedTraces(MultiPlateClutch):
 
 @cache
 def problem() -> CountedTraces:
-    """Return the problem; one instance, so that it is traced once."""
-    return CountedTraces()
+    """Return the problem without the rules of practice, as other optimisers get it; one instance, traced once."""
+    return CountedTraces(practice="off")
 
 
 @cache
 def offered() -> dict[str, tuple[str, ...]]:
     """Return, per table to enlarge, the designations of the shipped rows that the family may use."""
     slots = instance_of(problem(), HOIST, Catalogs()).selection.slots
-    return {s.table.name: tuple(s.table.designations[row] for row in s.rows) for s in slots}
+    rows = {s.table.name: tuple(s.table.designations[row] for row in s.rows) for s in slots}
+    return {**rows, PLATES: CORES}
 
 
 def more_rows(name: str, count: int) -> pd.DataFrame:
@@ -135,20 +138,21 @@ def more_rows(name: str, count: int) -> pd.DataFrame:
     return frame
 
 
-def catalogs(size: Size) -> Catalogs | None:
-    """Return the catalogues of a size; None where the shipped ones suffice."""
-    spec = {}
-    for name, count in ((LININGS, size.linings), (PLATES, size.plates)):
-        frame = more_rows(name, count)
-        if len(frame):
-            spec[name] = ["+", frame]
-    return Catalogs(spec) if spec else None
+def tables(size: Size) -> dict[str, Any]:
+    """Return the tables of a size, as ``catalogs=`` takes them."""
+    shipped = Catalogs().table(PLATES)
+    cores = shipped.select([shipped.row_index(designation) for designation in CORES]).to_frame()
+    spec: dict[str, Any] = {PLATES: pd.concat([cores, more_rows(PLATES, size.plates)], ignore_index=True)}
+    linings = more_rows(LININGS, size.linings)
+    if len(linings):
+        spec[LININGS] = ["+", linings]
+    return spec
 
 
 def question(size: Size) -> dict[str, Any]:
     """Return what all calls about a size hand to ``synth.synthesize``, requirements apart."""
     parts = None if size.parts is None else {slot: list(rows) for slot, rows in size.parts.items()}
-    return {"catalogs": catalogs(size), "parts": parts}
+    return {"catalogs": Catalogs(tables(size)), "parts": parts}
 
 
 def requirement_rows(count: int) -> list[dict[str, Any]]:

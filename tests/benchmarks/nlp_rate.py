@@ -40,7 +40,7 @@ class Workload:
     """
 
     def __init__(self, count: int, seed: int = 0) -> None:
-        instance = instance_of(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
+        instance = instance_of(synth.load("multi_plate_clutch", practice="off"), REQUIREMENTS, as_catalogs(None))
         self.model = model = instance.model
         self.n = len(model.variables)
         self.rows = Rows(

@@ -493,7 +493,7 @@ class Family:
     """A question to the multi-plate family, and random feasible designs of all combinations."""
 
     def __init__(self, options, objectives, wanted=600):
-        problem = synth.load("multi_plate_clutch", **options)
+        problem = synth.load("multi_plate_clutch", practice="off", **options)
         self.instance = instance = instance_of(problem, REQUIREMENTS, as_catalogs(None), grid=False)
         self.model = instance.model
         self.form = Formulation(instance, dict.fromkeys(objectives, "min"), len(objectives))

@@ -19,7 +19,7 @@ from synth.units import from_si, parse_unit
 
 FOLDER = Path(__file__).parents[2] / "catalogs"
 CATALOGUES = {
-    "friction_materials": 48, "core_plates": 11, "lined_plates": 9, "strip_thicknesses": 34, "plate_rings": 80,
+    "friction_materials": 48, "core_plates": 14, "lined_plates": 9, "strip_thicknesses": 34, "plate_rings": 80,
     "plate_sets": 77,
     "parallel_keys": 19, "splines": 93, "shaft_ends": 42, "preferred_numbers": 229, "hub_diameters": 51,
     "guide_rolling_bearings": 95, "spring_wire_round": 170, "spring_wire_flat": 46, "compression_springs": 168,

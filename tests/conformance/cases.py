@@ -14,7 +14,7 @@ from synth.model.problem import DesignProblem
 from synth.question.catalogs import as_catalogs
 from synth.question.instance import Instance
 from tests.asking import instance_of
-from tests.conformance.cases_magnetic import magnetic
+from tests.conformance.cases_magnetic import SOURCES, magnetic
 from tests.repetitions import repetitions
 
 
@@ -259,15 +259,104 @@ BUILT = {
     "problems.centrifugal.body:LEAST_WORK": (1, 2, -2, 0, 0),
 }
 
+BUILT_RAMPS = Design(
+    {
+        "rest_radius": "51 mm",
+        "plate_gap": "3.52 mm",
+        "spring_preload_deflection": "5.5 mm",
+        "ramp_ratio": "0.41275",
+        "lining_inner_radius": "72 mm",
+        "lining_outer_radius": "90 mm",
+    },
+    {"balls": 4, "return_springs": 7, "friction_surfaces": 4},
+    {"ball": "ball 38", "return_spring": "CS-1.6x12.5x12.5", "friction_pair": "metal_ceramic_bronze_dry"},
+)
+
+BUILT_LEVERS = Design(
+    {
+        "flyweight_mass": "0.33897 kg",
+        "flyweight_arm": "25.5 mm",
+        "rest_radius": "45 mm",
+        "spring_preload_deflection": "6.1 mm",
+        "lever_stop_angle": "0.3429 rad",
+        "spring_arm": "14 mm",
+        "rod_arm": "10.5 mm",
+        "lining_inner_radius": "50.5 mm",
+        "lining_outer_radius": "63.5 mm",
+    },
+    {"weights": 6, "clamp_springs": 7, "friction_surfaces": 4},
+    {"clamp_spring": "CS-2.5x12.5x8.5", "friction_pair": "metal_ceramic_bronze_dry"},
+)
+
+BUILT_REVERSED = Design(
+    {
+        "flyweight_mass": "0.36403 kg",
+        "flyweight_arm": "24.5 mm",
+        "rest_radius": "42 mm",
+        "spring_preload_deflection": "18 mm",
+        "lever_stop_angle": "0.3452 rad",
+        "plate_arm": "10.5 mm",
+        "return_preload_deflection": "17.1 mm",
+        "lining_inner_radius": "47.5 mm",
+        "lining_outer_radius": "60 mm",
+    },
+    {"weights": 6, "clamp_springs": 3, "return_springs": 3, "friction_surfaces": 4},
+    {"clamp_spring": "CS-3.2x16x8.5", "return_spring": "CS-2.5x20x8.5", "friction_pair": "metal_ceramic_bronze_dry"},
+)
+
+BUILT_SPRINGS = {"return_springs": 3, "friction_surfaces": 4}
+
+BUILT_TWO_SPRINGS = Design(
+    {
+        "rest_radius": "36 mm",
+        "plate_travel": "1.2 mm",
+        "stop_travel": "9.2 mm",
+        "return_preload_deflection": "11.5 mm",
+        "clamp_preload_deflection": "2 mm",
+        "ramp_ratio": "1.413",
+        "lining_inner_radius": "52.5 mm",
+        "lining_outer_radius": "66 mm",
+    },
+    {**BUILT_SPRINGS, "clamp_springs": 3, "balls": 4},
+    {
+        "ball": "ball 30",
+        "return_spring": "CS-1x5x12.5",
+        "clamp_spring": "CS-2.5x12.5x5.5",
+        "friction_pair": "metal_ceramic_bronze_dry",
+    },
+)
+
+BUILT_TWO_SPRINGS_LEVER = Design(
+    {
+        "rest_radius": "32 mm",
+        "plate_travel": "1.2 mm",
+        "stop_travel": "5.4 mm",
+        "return_preload_deflection": "15.2 mm",
+        "clamp_preload_deflection": "2 mm",
+        "flyweight_mass": "0.756 kg",
+        "flyweight_arm": "73.5 mm",
+        "axial_arm": "46.5 mm",
+        "lining_inner_radius": "39.5 mm",
+        "lining_outer_radius": "54 mm",
+    },
+    {**BUILT_SPRINGS, "clamp_springs": 8, "weights": 6},
+    {
+        "return_spring": "CS-2x10x12.5",
+        "clamp_spring": "CS-2.5x12.5x5.5",
+        "friction_pair": "metal_ceramic_bronze_dry",
+    },
+)
+
 CASES: dict[str, Family] = {
     "centrifugal_ball_ramp": Family(
-        option_sets={"default": {}, "practice": {"practice": "on"}},
+        option_sets={"default": SOURCES, "practice": {"practice": "on"}},
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=RAMPS,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
             "engine": Case(
+                options=SOURCES,
                 requirements={
                     **RAMPS,
                     "clamp_force_limit": "20 kN",
@@ -293,6 +382,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**RAMPS, "outer_diameter_limit": "90 mm"},
             settings={
                 "parts": {
@@ -305,6 +395,7 @@ CASES: dict[str, Family] = {
         culprits=frozenset({"outer_diameter", "torque_at_full_speed", "pitch_circle_room", "clamp_cap"}),
         sound=sound_flyweights,
         designs={
+            "practice": BUILT_RAMPS,
             "default": Design(
                 {
                     "rest_radius": "54 mm",
@@ -325,9 +416,9 @@ CASES: dict[str, Family] = {
     ),
     "disc_clutch": Family(
         option_sets={
-            "default": {},
-            "active": {"load_kind": "active", "cooling": "fan"},
-            "worst_case": {"friction_basis": "worst_case", "allow_obsolete": "yes"},
+            "default": SOURCES,
+            "active": {**SOURCES, "load_kind": "active", "cooling": "fan"},
+            "worst_case": {**SOURCES, "friction_basis": "worst_case", "allow_obsolete": "yes"},
             "practice": {"practice": "on"},
             "practice_worst_case": {"practice": "on", "friction_basis": "worst_case", "mass_scope": "parts"},
         },
@@ -346,6 +437,7 @@ CASES: dict[str, Family] = {
         },
         feasible={
             "car": Case(
+                options=SOURCES,
                 requirements={
                     **CAR,
                     "safety_factor": 2.5,
@@ -363,6 +455,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={
                 **CAR,
                 "safety_factor": 2.5,
@@ -376,8 +469,8 @@ CASES: dict[str, Family] = {
     ),
     "centrifugal_two_spring": Family(
         option_sets={
-            "default": {},
-            "lever": {"mechanism": "lever"},
+            "default": SOURCES,
+            "lever": {**SOURCES, "mechanism": "lever"},
             "practice": {"practice": "on"},
             "practice_lever": {"practice": "on", "mechanism": "lever"},
         },
@@ -387,6 +480,7 @@ CASES: dict[str, Family] = {
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "200 mm"},
         feasible={
             "balls": Case(
+                options=SOURCES,
                 requirements={
                     **CAPPED,
                     "outer_diameter_limit": "150 mm",
@@ -401,6 +495,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**CAPPED, "outer_diameter_limit": "90 mm"},
             settings={
                 "parts": {"ball": ["ball 25", "ball 30"], **STIFF},
@@ -411,6 +506,8 @@ CASES: dict[str, Family] = {
         culprits=frozenset({"outer_diameter", "torque_worn", "pitch_circle_room", "full_clamp_speed"}),
         sound=sound_flyweights,
         designs={
+            "practice": BUILT_TWO_SPRINGS,
+            "practice_lever": BUILT_TWO_SPRINGS_LEVER,
             "default": Design(
                 {**FITTING, "rest_radius": "48 mm", "ramp_ratio": "1.2"},
                 {**FITTING_COUNTS, "balls": 4},
@@ -431,9 +528,14 @@ CASES: dict[str, Family] = {
     ),
     "cone_clutch": Family(
         option_sets={
-            "default": {},
-            "active": {"load_kind": "active"},
-            "worst_case": {"friction_basis": "worst_case", "cooling": "through_oil", "allow_obsolete": "yes"},
+            "default": SOURCES,
+            "active": {**SOURCES, "load_kind": "active"},
+            "worst_case": {
+                **SOURCES,
+                "friction_basis": "worst_case",
+                "cooling": "through_oil",
+                "allow_obsolete": "yes",
+            },
             "practice": {"practice": "on"},
             "practice_self": {
                 "practice": "on",
@@ -489,7 +591,7 @@ CASES: dict[str, Family] = {
                     "bearing_force_limit": "1 kN",
                     "length_limit": "92 mm",
                 },
-                options={"friction_basis": "worst_case"},
+                options={**SOURCES, "friction_basis": "worst_case"},
                 settings={
                     "parts": {"friction_pair": ["millboard_dry", "woven_dry"]},
                     "limits": {"outer_diameter": "<= 420 mm"},
@@ -499,6 +601,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**CONE, "outer_diameter_limit": "200 mm", "actuation_force_limit": "4 kN"},
             settings={"parts": {"friction_pair": ["millboard_dry", "moulded_dry"]}},
         ),
@@ -506,13 +609,14 @@ CASES: dict[str, Family] = {
         sound=sound_cones,
     ),
     "centrifugal_lever": Family(
-        option_sets={"default": {}, "practice": {"practice": "on"}},
+        option_sets={"default": SOURCES, "practice": {"practice": "on"}},
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=ENGINE,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
             "engine": Case(
+                options=SOURCES,
                 requirements=ENGINE,
                 settings={
                     "parts": {"clamp_spring": ["CS-3.2x16x12.5", "CS-4x20x12.5"], "friction_pair": ["moulded_dry"]},
@@ -525,6 +629,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**ENGINE, "outer_diameter_limit": "140 mm"},
             settings={
                 "parts": {"clamp_spring": ["CS-4x20x12.5"], "friction_pair": ["moulded_dry"]},
@@ -533,15 +638,17 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"outer_diameter"}),
         sound=sound_levers,
+        designs={"practice": BUILT_LEVERS},
     ),
     "centrifugal_reversed": Family(
-        option_sets={"default": {}, "practice": {"practice": "on"}},
+        option_sets={"default": SOURCES, "practice": {"practice": "on"}},
         needed={"practice=on": {"wear_life_min": "1000", "length_limit": "200 mm"}},
         constants=BUILT,
         requirements=ENGINE,
         optional={"engagement_heat_limit": "0.6 J/mm2", "outer_diameter_limit": "260 mm"},
         feasible={
             "engine": Case(
+                options=SOURCES,
                 requirements=ENGINE,
                 settings={
                     "parts": {
@@ -566,6 +673,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**ENGINE, "outer_diameter_limit": "140 mm"},
             settings={
                 "parts": {
@@ -578,21 +686,27 @@ CASES: dict[str, Family] = {
         ),
         culprits=frozenset({"outer_diameter"}),
         sound=sound_levers,
+        designs={"practice": BUILT_REVERSED},
     ),
     "multi_plate_clutch": Family(
         option_sets={
-            "default": {},
-            "exponential_form": {"guide_series": "exponential_form"},
-            "lipka": {"guide_series": "lipka"},
-            "exponential_K": {"guide_series": "exponential_K"},
-            "exact": {"guide_series": "exact"},
-            "cz": {"guide_model": "cz"},
-            "active": {"load_kind": "active"},
-            "worst_case": {"friction_basis": "worst_case"},
-            "catalogue": {"spline_choice": "catalogue"},
-            "dry": {"lubrication": "dry", "cooling": "fan"},
-            "forced_oil": {"cooling": "through_oil", "release_aid": "wavy_rings", "shaft_position": "vertical"},
-            "obsolete": {"allow_obsolete": "yes", "release_aid": "sine_plates"},
+            "default": SOURCES,
+            "exponential_form": {**SOURCES, "guide_series": "exponential_form"},
+            "lipka": {**SOURCES, "guide_series": "lipka"},
+            "exponential_K": {**SOURCES, "guide_series": "exponential_K"},
+            "exact": {**SOURCES, "guide_series": "exact"},
+            "cz": {**SOURCES, "guide_model": "cz"},
+            "active": {**SOURCES, "load_kind": "active"},
+            "worst_case": {**SOURCES, "friction_basis": "worst_case"},
+            "catalogue": {**SOURCES, "spline_choice": "catalogue"},
+            "dry": {**SOURCES, "lubrication": "dry", "cooling": "fan"},
+            "forced_oil": {
+                **SOURCES,
+                "cooling": "through_oil",
+                "release_aid": "wavy_rings",
+                "shaft_position": "vertical",
+            },
+            "obsolete": {**SOURCES, "allow_obsolete": "yes", "release_aid": "sine_plates"},
             "practice": {"practice": "on"},
             "practice_dry": {"practice": "on", "lubrication": "dry", "mass_scope": "parts"},
             "practice_catalogue": {
@@ -601,7 +715,7 @@ CASES: dict[str, Family] = {
                 "actuator": "external",
                 "friction_basis": "worst_case",
             },
-            "standard": {"plates": "standard"},
+            "standard": {**SOURCES, "plates": "standard"},
             "practice_standard": {"plates": "standard", "practice": "on"},
         },
         requirements=HOIST,
@@ -666,6 +780,7 @@ CASES: dict[str, Family] = {
         },
         feasible={
             "hoist": Case(
+                options=SOURCES,
                 requirements={**HOIST, "outer_diameter_limit": "330 mm", "jerk_limit": "18 rad/s3"},
                 settings={
                     "parts": {
@@ -691,7 +806,7 @@ CASES: dict[str, Family] = {
                     "actuation_force_limit": "6 kN",
                     "hub_bore_diameter": "50 mm",
                 },
-                options={"lubrication": "dry", "friction_basis": "worst_case"},
+                options={**SOURCES, "lubrication": "dry", "friction_basis": "worst_case"},
                 settings={
                     "parts": {
                         "friction_pair": ["sinter_bronze_dry", "sinter_iron_dry"],
@@ -709,6 +824,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**HOIST, "outer_diameter_limit": "150 mm", "actuation_force_limit": "9 kN"},
             settings={
                 "parts": {"friction_pair": ["paper_wet"], "inner_plate": ["core 2"], "outer_plate": ["core 2"]},
@@ -720,9 +836,9 @@ CASES: dict[str, Family] = {
     ),
     "roller_coupling": Family(
         option_sets={
-            "default": {},
-            "sideways": {"sideways_removable": "yes"},
-            "crowned": {"roller_contact": "crowned"},
+            "default": SOURCES,
+            "sideways": {**SOURCES, "sideways_removable": "yes"},
+            "crowned": {**SOURCES, "roller_contact": "crowned"},
             "practice": {"practice": "on"},
             "practice_ball_bearings": {
                 "practice": "on",
@@ -747,6 +863,7 @@ CASES: dict[str, Family] = {
         optional={"outer_diameter_limit": "400 mm", "mass_limit": "40 kg", "vibration_limit": "2 kN"},
         feasible={
             "mill": Case(
+                options=SOURCES,
                 requirements={**MILL, "outer_diameter_limit": "260 mm"},
                 settings={
                     "parts": {
@@ -770,7 +887,7 @@ CASES: dict[str, Family] = {
                     "guide_angle": "75 deg",
                     "vibration_limit": "60 N",
                 },
-                options={"roller_contact": "crowned"},
+                options={**SOURCES, "roller_contact": "crowned"},
                 settings={
                     "parts": {
                         "roller": ["NATV 12", "NATR 12", "NATV 15"],
@@ -785,6 +902,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={**MILL, "outer_diameter_limit": "115 mm"},
             settings={"parts": {"roller": ["6203", "6204"], "float_material": ["100Cr6", "PA6-G (cast)"]}},
         ),
@@ -793,10 +911,10 @@ CASES: dict[str, Family] = {
     ),
     "wrap_spring": Family(
         option_sets={
-            "default": {},
-            "seed": {"model": "seed"},
-            "torque_limited": {"overload": "torque_limited", "hub_ladder": "R40"},
-            "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+            "default": SOURCES,
+            "seed": {**SOURCES, "model": "seed"},
+            "torque_limited": {**SOURCES, "overload": "torque_limited", "hub_ladder": "R40"},
+            "custom": {**SOURCES, "wire_choice": "custom", "hub_ladder": "R20"},
             "practice": {"practice": "on"},
             "practice_custom": {"practice": "on", "wire_choice": "custom", "mass_scope": "parts"},
         },
@@ -823,6 +941,7 @@ CASES: dict[str, Family] = {
         },
         feasible={
             "indexer": Case(
+                options=SOURCES,
                 requirements={"required_torque": "50 N*m", "bore_diameter": "20 mm", "belt_exponent_limit": "6"},
                 settings={
                     "parts": {"wire": ["rect 4x3", "rect 5x3", "square 4x4"], "friction_pair": HARDENED},
@@ -836,6 +955,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={"required_torque": "200 N*m", "bore_diameter": "20 mm", "outer_diameter_limit": "32 mm"},
             settings={"parts": {"wire": ["rect 4x3", "square 4x4"], "friction_pair": ["hardened_steel_greased"]}},
         ),
@@ -844,9 +964,9 @@ CASES: dict[str, Family] = {
     ),
     "wrap_spring_actuated": Family(
         option_sets={
-            "default": {},
-            "seed": {"model": "seed", "hub_ladder": "R40"},
-            "custom": {"wire_choice": "custom", "hub_ladder": "R20"},
+            "default": SOURCES,
+            "seed": {**SOURCES, "model": "seed", "hub_ladder": "R40"},
+            "custom": {**SOURCES, "wire_choice": "custom", "hub_ladder": "R20"},
             "practice": {"practice": "on"},
             "practice_custom": {"practice": "on", "wire_choice": "custom", "mass_scope": "parts"},
         },
@@ -880,6 +1000,7 @@ CASES: dict[str, Family] = {
         },
         feasible={
             "indexer": Case(
+                options=SOURCES,
                 requirements={
                     "required_torque": "50 N*m",
                     "bore_diameter": "20 mm",
@@ -900,6 +1021,7 @@ CASES: dict[str, Family] = {
             ),
         },
         infeasible=Case(
+            options=SOURCES,
             requirements={
                 "required_torque": "200 N*m",
                 "bore_diameter": "20 mm",
@@ -912,7 +1034,7 @@ CASES: dict[str, Family] = {
         sound=sound_springs,
     ),
 }
-CASES |= magnetic(Family, Case)
+CASES |= magnetic(Family, Case, Design)
 
 
 # Family, option set, and whether optional requirements are given; of most sets the models with all of them say it all.

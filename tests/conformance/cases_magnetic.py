@@ -69,12 +69,15 @@ def sound_electromagnetic_clutches(rng: np.random.Generator, instance: Instance,
     return x
 
 
-def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, Any]:
+SOURCES = {"practice": "off"}  # the formulas of the sources alone
+
+
+def magnetic(family: Callable[..., Any], case: Callable[..., Any], design: Callable[..., Any]) -> dict[str, Any]:
     """Return the entries of these families, made with the classes of the suite."""
     return {
         "magnetic_powder_clutch": family(
             option_sets={
-                "default": {},
+                "default": SOURCES,
                 "practice": {"practice": "on"},
                 "practice_parts": {"practice": "on", "mass_scope": "parts"},
             },
@@ -82,6 +85,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             optional={"outer_diameter_limit": "280 mm", "length_limit": "160 mm"},
             feasible={
                 "winder": case(
+                    options=SOURCES,
                     requirements={**WINDER, "outer_diameter_limit": "280 mm"},
                     settings={
                         "parts": {
@@ -105,6 +109,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                 ),
             },
             infeasible=case(
+                options=SOURCES,
                 requirements={"required_torque": "120 N*m", "outer_diameter_limit": "160 mm"},
                 settings={
                     "parts": {"powder": ["carbonyl_graphite"], "winding_wire": ["Cu 0.8 class 155"]},
@@ -114,14 +119,44 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             culprits=frozenset({"torque_capacity", "outer_diameter", "rotor_bore", "powder_flux_density"}),
             sound=sound_powder_clutches,
             constants=CONSTANTS | POWDER_CONSTANTS,
+            designs={
+                "practice": design(
+                    {
+                        "gap_radius": "95 mm",
+                        "pole_length": "8 mm",
+                        "powder_gap": "1.05 mm",
+                        "coil_length": "22 mm",
+                        "coil_height": "8 mm",
+                        "yoke_thickness": "5.5 mm",
+                        "flux_density": "0.9999999981967138 T",
+                        "coil": "rotating",
+                    },
+                    {},
+                    {"winding_wire": "Cu 0.63 class 155", "powder": "carbonyl_graphite"},
+                ),
+                "practice_parts": design(
+                    {
+                        "gap_radius": "104 mm",
+                        "pole_length": "8 mm",
+                        "powder_gap": "1 mm",
+                        "coil_length": "18 mm",
+                        "coil_height": "7 mm",
+                        "yoke_thickness": "4.5 mm",
+                        "flux_density": "0.786488973092101 T",
+                        "coil": "rotating",
+                    },
+                    {},
+                    {"winding_wire": "Cu 0.56 class 155", "powder": "carbonyl_graphite"},
+                ),
+            },
         ),
         "electromagnetic_clutch": family(
             option_sets={
-                "default": {},
-                "worst_case": {"load_kind": "active", "friction_basis": "worst_case"},
-                "catalogue": {"spline_choice": "catalogue"},
-                "disc": {"pack": "disc"},
-                "disc_obsolete": {"pack": "disc", "friction_basis": "worst_case", "allow_obsolete": "yes"},
+                "default": SOURCES,
+                "worst_case": {**SOURCES, "load_kind": "active", "friction_basis": "worst_case"},
+                "catalogue": {**SOURCES, "spline_choice": "catalogue"},
+                "disc": {**SOURCES, "pack": "disc"},
+                "disc_obsolete": {**SOURCES, "pack": "disc", "friction_basis": "worst_case", "allow_obsolete": "yes"},
                 "practice": {"practice": "on"},
                 "practice_dry": {
                     "practice": "on",
@@ -149,7 +184,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             feasible={
                 "spindle": case(
                     requirements=SPINDLE,
-                    options={"pack": "disc"},
+                    options={**SOURCES, "pack": "disc"},
                     settings={
                         "parts": {
                             "friction_pair": ["sinter_bronze_dry"],
@@ -173,6 +208,7 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
                 ),
             },
             infeasible=case(
+                options=SOURCES,
                 requirements={**SPINDLE, "outer_diameter_limit": "92 mm"},
                 settings={
                     "parts": {
@@ -187,6 +223,61 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any]) -> dict[str, 
             ),
             culprits=frozenset({"torque_capacity", "outer_diameter", "pull_in", "pole_flux_density"}),
             sound=sound_electromagnetic_clutches,
-            constants=CONSTANTS,
+            constants=CONSTANTS | {"problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
+            designs={
+                "practice": design(
+                    {
+                        "ring_outer_diameter": "107 mm",
+                        "ring_inner_diameter": "79 mm",
+                        "inner_pole_width": "13 mm",
+                        "coil_length": "28 mm",
+                        "coil_height": "15 mm",
+                        "yoke_thickness": "10.5 mm",
+                        "flux_density": "1.2843021573852704 T",
+                        "ramp_time": "0.08963995371559914 s",
+                    },
+                    {"friction_surfaces": 4},
+                    {
+                        "winding_wire": "Cu 0.56 class 155",
+                        "friction_pair": "graphitic_wet",
+                        "inner_plate": "core 1.2",
+                        "outer_plate": "core 1.2",
+                    },
+                ),
+                "practice_dry": design(
+                    {
+                        "ring_outer_diameter": "140 mm",
+                        "ring_inner_diameter": "103 mm",
+                        "inner_pole_width": "8.5 mm",
+                        "coil_length": "20 mm",
+                        "coil_height": "20 mm",
+                        "yoke_thickness": "7 mm",
+                        "flux_density": "1.26016687177699 T",
+                        "ramp_time": "0.047046524339456726 s",
+                    },
+                    {"friction_surfaces": 2},
+                    {
+                        "winding_wire": "Cu 0.56 class 180",
+                        "friction_pair": "metal_ceramic_bronze_dry",
+                        "inner_plate": "core 1.5",
+                        "outer_plate": "core 1.5",
+                    },
+                ),
+                "practice_disc": design(
+                    {
+                        "ring_outer_diameter": "85 mm",
+                        "ring_inner_diameter": "60 mm",
+                        "pressure_plate_thickness": "4.5 mm",
+                        "inner_pole_width": "14.5 mm",
+                        "coil_length": "24 mm",
+                        "coil_height": "14 mm",
+                        "yoke_thickness": "11.5 mm",
+                        "flux_density": "1.3043478231061534 T",
+                        "ramp_time": "0.18106073665506733 s",
+                    },
+                    {"discs": 1},
+                    {"winding_wire": "Cu 0.63 class 180", "friction_pair": "sinter_bronze_dry"},
+                ),
+            },
         ),
     }

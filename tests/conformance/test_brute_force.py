@@ -42,7 +42,7 @@ INSTANCES = {
         {"friction_surfaces": "6 .. 14", "ring_outer_diameter": "120 mm .. 190 mm", "ramp_time": "0.1 s .. 0.6 s"},
     ),
 }
-FAMILY = synth.load("multi_plate_clutch")
+FAMILY = synth.load("multi_plate_clutch", practice="off")
 
 
 class Enumeration:

@@ -107,7 +107,7 @@ QUANTITIES = ("outer_diameter", "mass", "engagement_band")
 def enumerate_all(case):
     """Return the objectives of all feasible designs on the ladder."""
     family, options, requirements, parts, limits, pins, ladders, _ = CASES[case]
-    problem = synth.load(family, **options)
+    problem = synth.load(family, practice="off", **options)
     instance = instance_of(problem, requirements, as_catalogs(None), parts=parts, limits=limits, fix=pins)
     names = [v.name for v in instance.model.variables]
     axes = []
@@ -135,7 +135,7 @@ def test_no_makeable_design_beats_the_front(case):
     assert looked > 3e5
     assert len(every["mass"]) > 300
     front = synth.synthesize(
-        synth.load(family, **options),
+        synth.load(family, practice="off", **options),
         requirements,
         objectives=list(objectives),
         parts=parts,

@@ -91,7 +91,9 @@ def dimensions(instance):
 @pytest.fixture(scope="module", params=INSTANCES)
 def enumerated(request):
     family, requirements, parts, limits = INSTANCES[request.param]
-    instance = instance_of(synth.load(family), requirements, as_catalogs(None), parts=parts, limits=limits)
+    instance = instance_of(
+        synth.load(family, practice="off"), requirements, as_catalogs(None), parts=parts, limits=limits
+    )
     names, points = dimensions(instance)
     force = names.index("actuation_force")
     found = []
@@ -114,7 +116,9 @@ def enumerated(request):
 
 def search(name, **more):
     family, requirements, parts, limits = INSTANCES[name]
-    front = synth.synthesize(family, requirements, parts=parts, limits=limits, gap=GAP, time_limit=60, **more)
+    front = synth.synthesize(
+        synth.load(family, practice="off"), requirements, parts=parts, limits=limits, gap=GAP, time_limit=60, **more
+    )
     assert front.interrupted == ""
     assert front.certificate.kind == "global"
     return front
@@ -146,7 +150,7 @@ def test_no_enumerated_design_beats_a_single_objective(enumerated):
     best = search(name, objectives=[objective]).designs[0]
     assert best.values[objective] <= values[objective].min() * (1 + GAP)
     family, requirements, _, limits = INSTANCES[name]
-    again = synth.evaluate(family, requirements, best, limits=limits)
+    again = synth.evaluate(synth.load(family, practice="off"), requirements, best, limits=limits)
     assert again.status.value == "feasible"
     assert again.values == best.values
     assert again.off_grid == {}

@@ -16,7 +16,7 @@ from tests.asking import instance_of
 pytestmark = pytest.mark.slow
 
 GAP = 1e-3
-FAMILY = "magnetic_powder_clutch"
+FAMILY = synth.load("magnetic_powder_clutch", practice="off")
 ASKED = {"required_torque": "30 N*m", "outer_diameter_limit": "236 mm"}
 PARTS = {"powder": ["carbonyl_graphite", "carbonyl_glass"], "winding_wire": ["Cu 0.8 class 155"]}
 LIMITS = {
@@ -32,7 +32,7 @@ OBJECTIVES = ("coil_power", "input_inertia", "mass", "outer_diameter")
 
 @pytest.fixture(scope="module")
 def enumerated():
-    instance = instance_of(synth.load(FAMILY), ASKED, as_catalogs(None), parts=PARTS, limits=LIMITS, fix=FIX)
+    instance = instance_of(FAMILY, ASKED, as_catalogs(None), parts=PARTS, limits=LIMITS, fix=FIX)
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
@@ -120,7 +120,9 @@ def least_flux_density(instance, points, position, combination, steps=60):
 def test_no_makeable_magnet_beats_the_front():
     """Power and saturation grow with the flux density, mass does not see it: the least one is the best."""
     family = "electromagnetic_clutch"
-    instance = instance_of(synth.load(family), SPINDLE, as_catalogs(None), parts=PRESSED, limits=MAGNETS, fix=PINNED)
+    instance = instance_of(
+        synth.load(family, practice="off"), SPINDLE, as_catalogs(None), parts=PRESSED, limits=MAGNETS, fix=PINNED
+    )
     names = [v.name for v in instance.model.variables]
     axes = [
         grid[(grid >= low - 1e-12) & (grid <= high + 1e-12)] if len(grid) else np.array([low])
@@ -134,7 +136,14 @@ def test_no_makeable_magnet_beats_the_front():
     values = np.concatenate(found)
     assert len(values) > 100
     front = synth.synthesize(
-        family, SPINDLE, parts=PRESSED, limits=MAGNETS, fix=PINNED, gap=GAP, points=4, time_limit=60
+        synth.load(family, practice="off"),
+        SPINDLE,
+        parts=PRESSED,
+        limits=MAGNETS,
+        fix=PINNED,
+        gap=GAP,
+        points=4,
+        time_limit=60,
     )
     assert front.interrupted == ""
     assert front.certificate.kind == "global"

@@ -54,7 +54,11 @@ def enumerate_all(case):
     """Return the objectives of all feasible makeable designs."""
     options, requirements, parts, limits = CASES[case]
     instance = instance_of(
-        synth.load("roller_coupling", **options), requirements, as_catalogs(None), parts=parts, limits=limits
+        synth.load("roller_coupling", practice="off", **options),
+        requirements,
+        as_catalogs(None),
+        parts=parts,
+        limits=limits,
     )
     arms, halves, lengths, rims, _ = instance.ranges.grids()
     asked = instance.values.requirements
@@ -95,7 +99,7 @@ def test_no_makeable_design_beats_the_front(enumerated, objectives):
     case, every = enumerated
     options, requirements, parts, limits = CASES[case]
     front = synth.synthesize(
-        synth.load("roller_coupling", **options),
+        synth.load("roller_coupling", practice="off", **options),
         requirements,
         objectives=list(objectives),
         parts=parts,

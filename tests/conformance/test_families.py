@@ -213,8 +213,9 @@ def test_formulas_scale_like_their_units(traced, monkeypatch):
 
 def test_limits_of_optional_requirements_are_not_asked_without_them():
     for family, data in CASES.items():
-        without = question(family, {}, optional=False)
-        with_all = question(family, {}, optional=True)
+        options = next(iter(data.option_sets.values()))
+        without = question(family, options, optional=False)
+        with_all = question(family, options, optional=True)
         assert set(without.values.not_asked) == set(data.optional)
         assert with_all.values.not_asked == ()
         fewer, more = ({x.name for x in asked.model.limits} for asked in (without, with_all))

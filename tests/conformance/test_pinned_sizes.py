@@ -11,7 +11,7 @@ from tests.asking import instance_of
 from tests.tuned import tuned
 
 DUTY = {"load_torque": "600 N*m", "driver_speed": "254 rpm", "driven_inertia": "30 kg*m2"}
-CLUTCH = synth.load("multi_plate_clutch")
+CLUTCH = synth.load("multi_plate_clutch", practice="off")
 PARTS = {"friction_pair": ["cork_wet"], "inner_plate": ["core 1.5"], "outer_plate": ["core 2"]}
 
 

@@ -173,7 +173,7 @@ def test_no_interference_fit_of_the_whole_catalogue_beats_the_front(name):
         "model": "seed" if ask.seed else "refined",
         "overload": "slip_limited" if ask.slip_limited else "torque_limited",
     }
-    problem = synth.load("wrap_spring", **options)
+    problem = synth.load("wrap_spring", practice="off", **options)
     front = synth.synthesize(problem, ask.requirements(**more), points=6, gap=GAP, time_limit=60)
     compare(front, interference_fit(ask), ("mass", "drag_torque"))
 
@@ -181,7 +181,9 @@ def test_no_interference_fit_of_the_whole_catalogue_beats_the_front(name):
 def test_no_clearance_fit_of_the_whole_catalogue_beats_the_front():
     ask = Ask(50, 0.020, 125, speed=100.0, belt_limit=8)
     asked = ask.requirements(relative_speed="500 1/min")
-    front = synth.synthesize("wrap_spring_actuated", asked, points=6, gap=GAP, time_limit=60)
+    front = synth.synthesize(
+        synth.load("wrap_spring_actuated", practice="off"), asked, points=6, gap=GAP, time_limit=60
+    )
     compare(front, clearance_fit(ask), ("mass", "actuator_torque"))
 
 
@@ -189,7 +191,9 @@ def test_a_small_catalogue_gives_its_whole_front():
     ask = Ask(50, 0.020, 125, belt_limit=6)
     wires, pairs = ["rect 4x3", "rect 5x3"], ["hardened_steel_greased"]
     parts = {"wire": wires, "friction_pair": pairs}
-    front = synth.synthesize("wrap_spring", ask.requirements(), points=200, gap=1e-4, parts=parts)
+    front = synth.synthesize(
+        synth.load("wrap_spring", practice="off"), ask.requirements(), points=200, gap=1e-4, parts=parts
+    )
     wanted = nondominated(interference_fit(ask, wires, pairs))
     assert front.complete
     assert len(front.designs) == len(wanted) >= 5
@@ -231,7 +235,7 @@ def test_free_dimensions_of_the_source_model_are_a_geometric_program():
         "wire_tensile_strength": f"{strength / 1e6} N/mm2",
         "wire_endurance_amplitude": f"{endurance / 1e6} N/mm2",
     }
-    problem = synth.load("wrap_spring", model="seed", overload="torque_limited", wire_choice="custom")
+    problem = synth.load("wrap_spring", practice="off", model="seed", overload="torque_limited", wire_choice="custom")
     objectives = {
         "mass": density * a * b * 2 * PI * r * (2 * coils + 0.5),  # hubs without mass: else it is no posynomial
         "drag_torque": moment * -np.expm1(-high),
@@ -260,7 +264,7 @@ def fronts(peak):
     found = []
     for overload in ("slip_limited", "torque_limited"):
         requirements = {"required_torque": "50 N*m", "bore_diameter": "20 mm", "peak_torque": peak}
-        front = synth.synthesize(synth.load("wrap_spring", overload=overload), requirements, points=4)
+        front = synth.synthesize(synth.load("wrap_spring", practice="off", overload=overload), requirements, points=4)
         assert front.certificate.kind == "global"
         found.append(front)
     return found

@@ -64,6 +64,7 @@ def test_a_refusal_ends_with_amounts_and_exit_code_3(tmp_path):
     spec = tmp_path / "small.yaml"
     spec.write_text(
         "family: roller_coupling\n"
+        "options: {practice: off}\n"
         "requirements: {required_torque: 300 N*m, driver_speed: 960 1/min, offset: 5 mm, outer_diameter_limit: 60 mm}\n"
         "parts: {roller: ['6203'], float_material: [100Cr6]}\n",
         encoding="utf-8",
@@ -77,7 +78,7 @@ def test_a_refusal_ends_with_amounts_and_exit_code_3(tmp_path):
     asked = {"required_torque": "300 N*m", "driver_speed": "960 1/min", "offset": "5 mm"}
     parts = {"roller": ["6203"], "float_material": ["100Cr6"]}
     first = told["ways"][0]["patch"]["requirements"]
-    assert feasible(synth.load("roller_coupling"), {**asked, **first}, {"parts": parts})
+    assert feasible(synth.load("roller_coupling", practice="off"), {**asked, **first}, {"parts": parts})
 
 
 def test_the_conflict_is_one_and_every_limit_of_it_counts(explained):
@@ -105,7 +106,7 @@ def test_a_value_of_a_part_that_would_do(explained):
 def test_a_feasible_question_needs_no_explanation():
     case = CASES["wrap_spring"].infeasible
     asked = {**case.requirements, "required_torque": "10 N*m"}
-    explanation = synth.explain("wrap_spring", asked, parts=case.settings["parts"])
+    explanation = synth.explain(synth.load("wrap_spring", practice="off"), asked, parts=case.settings["parts"])
     assert explanation.feasible
     assert explanation.ways == []
     assert "nothing to explain" in explanation.message
@@ -115,7 +116,11 @@ def test_own_limits_are_explained_as_well(tmp_path):
     asked = {"required_torque": "10 N*m", "bore_diameter": "20 mm"}
     parts = {**CASES["wrap_spring"].infeasible.settings["parts"], "wire": ["square 4x4"]}
     explanation = synth.explain(
-        "wrap_spring", asked, parts=parts, limits={"outer_diameter": "<= 25 mm"}, time_limit=120
+        synth.load("wrap_spring", practice="off"),
+        asked,
+        parts=parts,
+        limits={"outer_diameter": "<= 25 mm"},
+        time_limit=120,
     )
     assert explanation.conflict == ("outer_diameter <= 25 mm",)
     (way,) = explanation.single
@@ -128,13 +133,19 @@ def test_own_limits_are_explained_as_well(tmp_path):
 
 def test_time_that_is_over_is_said():
     case = CASES["wrap_spring"].infeasible
-    explanation = synth.explain("wrap_spring", case.requirements, time_limit=0.01)
+    explanation = synth.explain(synth.load("wrap_spring", practice="off"), case.requirements, time_limit=0.01)
     assert explanation.interrupted == "time limit"
     assert "Stopped early" in explanation.message
 
 
 def test_bad_input_is_one_sentence():
     with pytest.raises(synth.InputError, match="required_torque"):
-        synth.explain("wrap_spring", {"required_torque": "-3 N*m", "bore_diameter": "20 mm"})
+        synth.explain(
+            synth.load("wrap_spring", practice="off"), {"required_torque": "-3 N*m", "bore_diameter": "20 mm"}
+        )
     with pytest.raises(synth.InputError, match="time_limit"):
-        synth.explain("wrap_spring", {"required_torque": "3 N*m", "bore_diameter": "20 mm"}, time_limit=-1)
+        synth.explain(
+            synth.load("wrap_spring", practice="off"),
+            {"required_torque": "3 N*m", "bore_diameter": "20 mm"},
+            time_limit=-1,
+        )

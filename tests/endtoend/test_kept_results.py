@@ -29,8 +29,8 @@ pytestmark = [
 LONG = ["--points", "500", "--gap", "1e-6", "--no-grid"]
 TIGHT = SMALL.replace("limits: {", "limits: {outer_diameter: <= 270 mm, ")
 HEADER = (
-    "family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits,"
-    "ring_outer_diameter [mm],ring_inner_diameter [mm]"
+    "family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,practice,ramp_time [s],parts,"
+    "limits,ring_outer_diameter [mm],ring_inner_diameter [mm]"
 )
 PARTS = "friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2"
 BATCH = ["batch", "rows.csv", "-o", "out", "--points", "1", "--objective", "mass", "--workers", "1"]
@@ -38,7 +38,8 @@ BATCH = ["batch", "rows.csv", "-o", "out", "--points", "1", "--objective", "mass
 
 def rows(path: Path, *torques: float, ring: str = "300,230") -> Path:
     """Write a table of one row per load torque, which asks for the force on a ring, or for the ring as well."""
-    lines = [f"multi_plate_clutch,{torque},254,30,cz,2,{PARTS},friction_surfaces == 10,{ring}" for torque in torques]
+    asked = f"254,30,cz,off,2,{PARTS},friction_surfaces == 10,{ring}"
+    lines = [f"multi_plate_clutch,{torque},{asked}" for torque in torques]
     path.write_text("\n".join([HEADER, *lines]) + "\n")
     return path
 

@@ -19,9 +19,9 @@ from tests.repetitions import repetitions
 from tests.terminal.entry import COMMAND, in_process
 
 ROOT = Path(__file__).parents[2]
-ROWS = """id,family,load_torque [N*m],driver_speed [1/min],driven_inertia [kg*m2],guide_model,ramp_time [s],parts,limits
+ROWS = """id,family,load_torque,driver_speed [1/min],driven_inertia [kg*m2],guide_model,practice,ramp_time,parts,limits
 {}"""
-ROW = "{},multi_plate_clutch,{},254,30,cz,2,friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2,friction_surfaces == 10"  # noqa: E501
+ROW = "{},multi_plate_clutch,{},254,30,cz,off,2,friction_pair = seed_multiplate_ref; inner_plate = core 4; outer_plate = core 2,friction_surfaces == 10"  # noqa: E501
 
 
 def small_table(folder: Path, count: int) -> Path:

@@ -145,7 +145,7 @@ def test_a_heading_that_cannot_be_meant_stops_the_table(header: str, words: str)
 
 
 @pytest.mark.parametrize(
-    "header", ["id", "note", "code", "cost", "power [kW]", "forse [mm]", "a [b] c", "driver_inertia"]
+    "header", ["id", "note", "code", "price", "power [kW]", "forse [mm]", "a [b] c", "driver_inertia"]
 )
 def test_headings_of_ones_own_are_carried_along(header: str) -> None:
     found = questioner([{**GOOD, header: "?"}])

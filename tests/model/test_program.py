@@ -52,7 +52,9 @@ class Traced:
     """A model of the multi-plate family with random points of its unknowns."""
 
     def __init__(self, options, requirements=REQUIREMENTS, points=POINTS):
-        self.instance = instance_of(synth.load("multi_plate_clutch", **options), requirements, as_catalogs(None))
+        self.instance = instance_of(
+            synth.load("multi_plate_clutch", practice="off", **options), requirements, as_catalogs(None)
+        )
         self.model = self.instance.model
         rng = np.random.default_rng(7)
         low, high = self.instance.ranges.lower, self.instance.ranges.upper

@@ -238,7 +238,14 @@ def test_a_batch_takes_comparisons_row_by_row_and_variants_keep_to_them(tmp_path
         f'{duty},"friction_pair = seed_multiplate_ref; inner_plate: thickness == outer_plate.thickness"\n'
         f'{duty},"friction_pair = seed_multiplate_ref; inner_plate: thickness > outer_plate.thickness"\n'
     )
-    done = synth.batch("multi_plate_clutch", rows, tmp_path / "out", points=1, objectives=["mass"], limits={"z": [8]})
+    done = synth.batch(
+        synth.load("multi_plate_clutch", practice="off"),
+        rows,
+        tmp_path / "out",
+        points=1,
+        objectives=["mass"],
+        limits={"z": [8]},
+    )
     assert done.counts == {"optimal": 2}
     designs = pd.read_csv(tmp_path / "out" / "designs.csv").set_index("row")
     asked = pd.read_csv(tmp_path / "out" / "rows.csv").sort_values("line")["row"].tolist()

@@ -441,7 +441,7 @@ class Clutch:
     """Random combinations of the catalogue, each with a box of the variables and a task."""
 
     def __init__(self, count: int, seed: int, kind: str) -> None:
-        self.instance = instance_of(synth.load("multi_plate_clutch"), REQUIREMENTS, as_catalogs(None))
+        self.instance = instance_of(synth.load("multi_plate_clutch", practice="off"), REQUIREMENTS, as_catalogs(None))
         self.model = model = self.instance.model
         self.n = len(model.variables)
         self.rows = Rows(

@@ -311,14 +311,14 @@ def _two_springs(gap: float) -> dict[str, Any]:
     parts = {"ball": ["ball 30"], "return_spring": ["CS-1.25x6.3x5.5"], "clamp_spring": ["CS-2.5x12.5x5.5"]}
     fix = {"balls": 4, "return_springs": 3, "clamp_springs": 3}
     return {
-        "p": synth.load(spec["family"]),
+        "p": synth.load(spec["family"], practice="off"),
         "requirements": spec["requirements"],
         "objectives": ["mass"],
         "grid": False,
         "gap": gap,
         "points": 4,
         "parts": {**spec["parts"], **parts},
-        "fix": {**spec["fix"], **fix},
+        "fix": {**spec["fix"], **fix, "friction_surfaces": 8},
     }
 
 

@@ -51,7 +51,13 @@ def struts(points: int, *loads: float, objectives: Sequence[str] = BOTH, **more:
 
 def clutches(points: int, objectives: Sequence[str], *torques: float) -> list[Question]:
     return [
-        pose("multi_plate_clutch", {**CLUTCH, "load_torque": f"{t} N*m"}, list(objectives), points, parts=SOME)
+        pose(
+            synth.load("multi_plate_clutch", practice="off"),
+            {**CLUTCH, "load_torque": f"{t} N*m"},
+            list(objectives),
+            points,
+            parts=SOME,
+        )
         for t in torques
     ]
 
@@ -250,7 +256,7 @@ def test_time_that_is_over_stops_the_search() -> None:
 @pytest.mark.slow
 def test_a_study_asks_for_three_designs_of_each_step_together() -> None:
     study = synth.whatif(
-        "multi_plate_clutch",
+        synth.load("multi_plate_clutch", practice="off"),
         {**CLUTCH, "load_torque": "600 N*m"},
         {"load_torque": "450, 500, 560 N*m"},
         parts=SOME,

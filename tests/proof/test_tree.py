@@ -160,7 +160,9 @@ def test_no_feasible_design_of_a_random_problem_is_lost(seed, guided):
 @pytest.mark.parametrize("family", CASES)
 def test_no_feasible_design_of_a_family_is_lost(family, guided):
     case = CASES[family]
-    instance = instance_of(synth.load(family), {**case.requirements}, as_catalogs(None), grid=False)
+    instance = instance_of(
+        synth.load(family, **case.option_sets["default"]), {**case.requirements}, as_catalogs(None), grid=False
+    )
     rng = np.random.default_rng(1)
     known = known_design(family, "default", optional=False)
     if known is None:

@@ -157,7 +157,7 @@ def test_a_batch_takes_sets_for_all_rows_in_cells_and_in_columns(restriction, tm
     rows.write_text("\n".join([header, *lines]) + "\n")
     parts = {"friction_pair": ["seed_multiplate_ref"], "inner_plate": ["core 4"], "outer_plate": ["core 2"]}
     done = synth.batch(
-        "multi_plate_clutch",
+        synth.load("multi_plate_clutch", practice="off"),
         rows,
         tmp_path / "out",
         parts=parts,

@@ -233,7 +233,7 @@ def test_a_row_without_a_value_that_is_used_is_left_out_and_named():
     assert question.selection.left_out == [
         {"slot": "material", "designation": "hard", "reason": "no value in column density"}
     ]
-    assert question.selection.offered == {"plate": 11, "material": 3}
+    assert question.selection.offered == {"plate": 14, "material": 3}
     front = synth.synthesize(Strut(), NEEDED, objectives=["mass"], catalogs={"rods": rods})
     assert front.statistics["rows_left_out"] == question.selection.left_out
     assert front.statistics["rows_used"] == {"plate": 10, "material": 2}

@@ -36,7 +36,7 @@ class Strut(synth.DesignProblem):
         length = d.variable("length", "mm", 100, 300, symbol="L")
         plates = d.count("plates", 1, 4, symbol="n")
         end = d.choice("end", ("hook", "eye"), symbol="e")
-        plate = d.part("plate", "core_plates", where="thickness >= 1", symbol="pl")
+        plate = d.part("plate", "core_plates", where="thickness >= 1 and thickness <= 4", symbol="pl")
         rod = d.part("material", "rods", symbol="mat")
         area = d.derive("area", "mm2", plates * width * plate.thickness, symbol="A")
         weight = 1.01 if finish == "coated" else 1.0

@@ -156,7 +156,7 @@ def test_the_tension_spring_is_proven():
 @pytest.mark.slow
 def test_a_narrow_engagement_band_is_proven_after_millions_of_boxes():
     front = synth.synthesize(
-        "centrifugal_two_spring",
+        synth.load("centrifugal_two_spring", practice="off"),
         requirements={
             "required_torque": "90 N*m",
             "lining_wear": "0.4 mm",

@@ -24,7 +24,7 @@ FEW: dict[str, Any] = {"fix": {"ramp_time": "2 s"}, "parts": {"friction_pair": [
 
 def nearest(torque: str) -> tuple[dict[str, float], dict[str, Any]]:
     """Return the limits that the nearest design misses with the share, and the whole explanation."""
-    front = synth.synthesize("multi_plate_clutch", {**DUTY, "load_torque": torque}, **FEW)
+    front = synth.synthesize(synth.load("multi_plate_clutch", practice="off"), {**DUTY, "load_torque": torque}, **FEW)
     assert not front.designs
     explanation = dict(front.explanation or {})
     return {c["limit"]: c["missed_by"] for c in explanation["conflicts"]}, explanation
@@ -52,7 +52,11 @@ def test_a_combination_alone_is_tried_from_several_starts() -> None:
     }
     robust = {"friction": "catalogue range", "load_torque": "+-5 %", "ambient_temperature": "0 .. 60 degC"}
     front = synth.synthesize(
-        "disc_clutch", spec, fix={"discs": 1}, parts={"friction_pair": ["moulded_dry"]}, robust=robust
+        synth.load("disc_clutch", practice="off"),
+        spec,
+        fix={"discs": 1},
+        parts={"friction_pair": ["moulded_dry"]},
+        robust=robust,
     )
     assert not front.designs
     conflicts = (front.explanation or {})["conflicts"]
@@ -62,7 +66,7 @@ def test_a_combination_alone_is_tried_from_several_starts() -> None:
 
 def test_no_design_that_chance_finds_is_nearer() -> None:
     missed, _ = nearest("900 kN*m")
-    question = pose(load("multi_plate_clutch"), {**DUTY, "load_torque": "900 kN*m"}, **FEW)
+    question = pose(load("multi_plate_clutch", practice="off"), {**DUTY, "load_torque": "900 kN*m"}, **FEW)
     form, rng = Formulation(question.instance, dict(question.chosen), 2), np.random.default_rng(5)
     combinations = rng.integers(question.instance.combinations.count, size=200)
     points = form.lower + rng.random((200, form.n)) * (form.upper - form.lower)

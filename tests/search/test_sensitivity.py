@@ -126,7 +126,7 @@ SETTINGS = {
     "grid": False,
     "gap": 1e-4,
 }
-FAMILY = synth.load("multi_plate_clutch")
+FAMILY = synth.load("multi_plate_clutch", practice="off")
 
 
 def lightest(duty, **more):

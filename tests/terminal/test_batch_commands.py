@@ -24,6 +24,7 @@ GOOD = {
     "driver_speed [1/min]": "254",
     "driven_inertia [kg*m2]": "30",
     "guide_model": "cz",
+    "practice": "off",
     "ramp_time [s]": "2",
     "parts": RULES,
     "limits": "friction_surfaces == 10",

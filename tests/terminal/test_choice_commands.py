@@ -13,7 +13,7 @@ from tests.terminal.entry import at_once
 
 SPEC = """
 family: multi_plate_clutch
-options: {guide_model: cz}
+options: {guide_model: cz, practice: off}
 requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
 fix: {ramp_time: 2 s, d_out: 262 mm, d_in: 158 mm, pair: seed_multiplate_ref}
 parts: {inner_plate: [core 4, core 3], outer_plate: [core 2, core 2.5]}
@@ -143,13 +143,16 @@ def test_prices_of_what_is_no_front_are_refused(saved: Path) -> None:
 SEVERAL = """
 family:
   - family: disc_clutch
+    options: {practice: off}
     parts: {friction_pair: [moulded_dry]}
     limits: {ring_outer_diameter: 200 mm .. 260 mm, pressure_plate_thickness: 3 mm .. 4 mm}
   - family: cone_clutch
+    options: {practice: off}
     parts: {friction_pair: [millboard_dry], cone_layout: [outer_spring]}
     limits: {mean_diameter: 215 mm .. 250 mm, shell_thickness: 3 mm .. 4 mm, cone_half_angle: 22 deg .. 25 deg}
   - roller_coupling
   - family: multi_plate_clutch
+    options: {practice: off}
     parts: {friction_pair: [paper_wet], inner_plate: [core 2], outer_plate: [core 2]}
     limits: {friction_surfaces: "2 .. 4", outer_diameter: "<= 60 mm"}
 requirements:

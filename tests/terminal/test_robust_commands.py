@@ -13,7 +13,7 @@ from tests.terminal.entry import at_once
 
 SPEC = """
 family: multi_plate_clutch
-options: {guide_model: cz}
+options: {guide_model: cz, practice: off}
 requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
 fix: {ramp_time: 2 s, pair: seed_multiplate_ref, inner_plate: core 3, outer_plate: core 2, d_in: 158 mm}
 limits: {friction_surfaces: 10 .. 20}
@@ -210,9 +210,11 @@ def test_a_study_that_rates_shows_the_yield(saved: Path) -> None:
 FAMILIES = """
 family:
   - family: disc_clutch
+    options: {practice: off}
     parts: {friction_pair: [sinter_bronze_dry]}
     robust: {friction: none}
   - family: multi_plate_clutch
+    options: {practice: off}
     parts: {friction_pair: [paper_wet], inner_plate: [core 1], outer_plate: [core 1]}
 requirements: {load_torque: 200 N*m, driver_speed: 700 1/min, driven_inertia: 2 kg*m2, outer_diameter_limit: 300 mm}
 fix: {ramp_time: 0.3 s}

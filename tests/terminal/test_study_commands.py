@@ -11,7 +11,7 @@ from tests.terminal.entry import at_once
 
 SPEC = """
 family: multi_plate_clutch
-options: {guide_model: cz}
+options: {guide_model: cz, practice: off}
 requirements: {load_torque: 600 N*m, driver_speed: 26.6 rad/s, driven_inertia: 30 kg*m2, startup_torque: 1080 N*m}
 fix: {ramp_time: 2 s, inner_plate: core 3, outer_plate: core 2, d_in: 158 mm}
 parts: {pair: [seed_multiplate_ref, cork_wet]}

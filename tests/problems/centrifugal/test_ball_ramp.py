@@ -11,7 +11,7 @@ from synth.question.catalogs import as_catalogs
 from tests.asking import instance_of
 from tests.problems.of_a_family import remarks
 
-FAMILY = "centrifugal_ball_ramp"
+FAMILY = synth.load("centrifugal_ball_ramp", practice="off")
 BASE = {
     "required_torque": "90 N*m",
     "idle_speed": "80 rad/s",
@@ -196,9 +196,7 @@ def test_what_the_window_allows_is_the_closed_form():
     loss = 0.03 * (0.4 + math.hypot(1, 0.4))
     most = 135 / 80 * math.sqrt((1 - loss) / (1 + loss))
     assert most == pytest.approx(1.61431, abs=1e-5)
-    spec = {
-        name: instance_of(synth.load(FAMILY), BASE, as_catalogs(None)).values.requirements.get(name) for name in BASE
-    }
+    spec = {name: instance_of(FAMILY, BASE, as_catalogs(None)).values.requirements.get(name) for name in BASE}
     assert spec["contact_speed_max"] == pytest.approx(135)
     frame = synth.curves(FAMILY, BASE)["idle_margin_over_ramp"]
     assert frame["ball_friction [-]"].iloc[0] == pytest.approx(most, rel=1e-12)

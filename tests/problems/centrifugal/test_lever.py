@@ -55,7 +55,7 @@ ALWAYS = {
 
 def design(requirements=None, values=None, parts=None):
     return synth.evaluate(
-        "centrifugal_lever",
+        synth.load("centrifugal_lever", practice="off"),
         BASE | (requirements or {}),
         values=POINT | (values or {}),
         parts=PARTS | (parts or {}),
@@ -189,18 +189,18 @@ def test_rod_and_spring_that_change_places_leave_no_speeds():
 def test_a_snapping_lever_is_drawn_running_back():
     snapping = design(values={"flyweight_arm": "120 mm", "flyweight_mass": "0.2 kg"})
     assert "no_snap_travel" in snapping.violated
-    frames = synth.curves("centrifugal_lever", BASE, snapping)
+    frames = synth.curves(synth.load("centrifugal_lever", practice="off"), BASE, snapping)
     speed = frames["over_speed"]["speed [1/min]"].to_numpy()
     assert np.any(np.diff(speed) < -1)
     assert "jumps" in frames["over_speed"].attrs["title"]
-    gradual = synth.curves("centrifugal_lever", BASE, design())["over_speed"]
+    gradual = synth.curves(synth.load("centrifugal_lever", practice="off"), BASE, design())["over_speed"]
     assert np.all(np.diff(gradual["speed [1/min]"].to_numpy()) > -1e-9)
     assert "jumps" not in gradual.attrs["title"]
 
 
 def test_curves_meet_the_figures_of_the_design():
     found = design()
-    frames = synth.curves("centrifugal_lever", BASE, found)
+    frames = synth.curves(synth.load("centrifugal_lever", practice="off"), BASE, found)
     new, worn = frames["over_speed"], frames["over_speed_worn"]
     assert new["clamp force [N]"].max() == pytest.approx(found.values["clamp_force"])
     assert worn["torque [N*m]"].max() == pytest.approx(found.values["worn_torque"])
@@ -209,7 +209,7 @@ def test_curves_meet_the_figures_of_the_design():
     spans = {span["label"]: span for span in new.attrs["spans"]}
     assert list(spans) == ["rest", "travel", "rod unloads", "spring clamps", "stop"]
     assert spans["stop"]["from"] * math.pi / 30 == pytest.approx(found.values["full_clamp_speed"])
-    assert set(synth.curves("centrifugal_lever", BASE)) == {"clamp_force_over_lining"}
+    assert set(synth.curves(synth.load("centrifugal_lever", practice="off"), BASE)) == {"clamp_force_over_lining"}
 
 
 # -- refusals and remarks --------------------------------------------------------------------------
@@ -235,7 +235,7 @@ def test_curves_meet_the_figures_of_the_design():
 )
 def test_what_cannot_be_is_refused(code, requirements):
     with pytest.raises(synth.InputError) as caught:
-        synth.synthesize("centrifugal_lever", BASE | requirements)
+        synth.synthesize(synth.load("centrifugal_lever", practice="off"), BASE | requirements)
     assert str(caught.value).startswith(code), caught.value
 
 

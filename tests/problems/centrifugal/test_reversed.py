@@ -54,7 +54,7 @@ ALWAYS = {
 
 def design(requirements=None, values=None, parts=None):
     return synth.evaluate(
-        "centrifugal_reversed",
+        synth.load("centrifugal_reversed", practice="off"),
         BASE | (requirements or {}),
         values=POINT | (values or {}),
         parts=PARTS | (parts or {}),
@@ -131,7 +131,7 @@ def test_a_whole_design_against_an_independent_calculation():
     for name, sides in limits.items():
         assert found.limits[name] == pytest.approx(sides, rel=1e-12), name
     assert found.violated == ()
-    spans = synth.curves("centrifugal_reversed", BASE, found)["over_speed"].attrs["spans"]
+    spans = synth.curves(synth.load("centrifugal_reversed", practice="off"), BASE, found)["over_speed"].attrs["spans"]
     assert [span["to"] * math.pi / 30 for span in spans[:4]] == pytest.approx(speeds)
 
 
@@ -166,7 +166,7 @@ def test_without_a_clamp_force_there_are_no_speeds():
 
 def test_most_of_the_clamp_force_comes_at_one_angle():
     """The sharpest of all types: disc 1 lifts only for the rest of the force."""
-    frame = synth.curves("centrifugal_reversed", BASE, design())["over_speed"]
+    frame = synth.curves(synth.load("centrifugal_reversed", practice="off"), BASE, design())["over_speed"]
     still = frame[frame["lift of disc 1 [mm]"] <= 1e-9]["clamp force [N]"].max()
     assert still > 0.85 * frame["clamp force [N]"].max()
     assert np.all(np.diff(frame["speed [1/min]"].to_numpy()) > -1e-9)
@@ -174,7 +174,7 @@ def test_most_of_the_clamp_force_comes_at_one_angle():
 
 def test_curves_meet_the_figures_of_the_design():
     found = design()
-    frames = synth.curves("centrifugal_reversed", BASE, found)
+    frames = synth.curves(synth.load("centrifugal_reversed", practice="off"), BASE, found)
     new, worn = frames["over_speed"], frames["over_speed_worn"]
     assert new["clamp force [N]"].max() == pytest.approx(found.values["clamp_force"])
     assert worn["torque [N*m]"].max() == pytest.approx(found.values["worn_torque"])
@@ -185,11 +185,13 @@ def test_curves_meet_the_figures_of_the_design():
     stop = found.values["stop_force"]
     pull = stop + new["centrifugal force [N]"].iloc[-1] - top["stop force [N]"]
     assert pull == pytest.approx(1.12 * (0.05 + 0.04 * 0.34) * 500**2)
-    assert set(synth.curves("centrifugal_reversed", BASE)) == {"clamp_force_over_lining"}
+    assert set(synth.curves(synth.load("centrifugal_reversed", practice="off"), BASE)) == {"clamp_force_over_lining"}
 
 
 def test_a_snapping_lever_is_drawn_running_back():
-    frames = synth.curves("centrifugal_reversed", BASE, design(values={"flyweight_arm": "90 mm"}))
+    frames = synth.curves(
+        synth.load("centrifugal_reversed", practice="off"), BASE, design(values={"flyweight_arm": "90 mm"})
+    )
     assert "jumps" in frames["over_speed"].attrs["title"]
 
 
@@ -209,7 +211,7 @@ def test_a_snapping_lever_is_drawn_running_back():
 )
 def test_what_cannot_be_is_refused(code, requirements):
     with pytest.raises(synth.InputError) as caught:
-        synth.synthesize("centrifugal_reversed", BASE | requirements)
+        synth.synthesize(synth.load("centrifugal_reversed", practice="off"), BASE | requirements)
     assert str(caught.value).startswith(code), caught.value
 
 

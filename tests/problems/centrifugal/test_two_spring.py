@@ -69,7 +69,7 @@ MECHANISMS = ("ball_ramp", "lever")
 
 def design(mechanism="ball_ramp", requirements=None, values=None, parts=None):
     return synth.evaluate(
-        synth.load(FAMILY, mechanism=mechanism),
+        synth.load(FAMILY, practice="off", mechanism=mechanism),
         BASE | (requirements or {}),
         values=POINTS[mechanism] | (values or {}),
         parts=PARTS[mechanism] | (parts or {}),
@@ -196,7 +196,7 @@ def test_numbers_against_an_independent_calculation(mechanism, losses, loss, pai
 @pytest.mark.parametrize("mechanism", MECHANISMS)
 def test_the_clamp_force_is_capped(mechanism):
     found = design(mechanism)
-    problem = synth.load(FAMILY, mechanism=mechanism)
+    problem = synth.load(FAMILY, practice="off", mechanism=mechanism)
     frames = synth.curves(problem, BASE, values=POINTS[mechanism], parts=PARTS[mechanism])
     kept = {"clamp_force_over_lining", "engaging_over_speed", "releasing_over_speed"}
     assert set(frames) == kept | ({"idle_margin_over_ramp"} if mechanism == "ball_ramp" else set())
@@ -232,7 +232,7 @@ def test_limits_that_keep_the_order_of_the_regimes():
     snap = design(values={"rest_radius": "30 mm", "ramp_ratio": 2, "return_preload_deflection": "20 mm"})
     assert "no_snap_plate" in snap.violated
     frames = synth.curves(
-        FAMILY,
+        synth.load(FAMILY, practice="off"),
         BASE,
         parts=PARTS["ball_ramp"],
         values=POINTS["ball_ramp"] | {"rest_radius": "30 mm", "ramp_ratio": 2, "return_preload_deflection": "20 mm"},
@@ -262,7 +262,7 @@ def test_each_mechanism_has_requirements_of_its_own():
     with pytest.raises(synth.InputError, match="mechanism_efficiency"):
         design("ball_ramp", {"mechanism_efficiency": 0.9})
     with pytest.raises(synth.InputError, match="mechanism"):
-        synth.describe(synth.load(FAMILY, mechanism="rods"))
+        synth.describe(synth.load(FAMILY, practice="off", mechanism="rods"))
 
 
 def test_remarks():

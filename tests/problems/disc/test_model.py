@@ -60,7 +60,7 @@ ASKED = {
 
 
 def design(options=None, requirements=None, values=None, parts=None):
-    problem = synth.load("disc_clutch", **(options or {}))
+    problem = synth.load("disc_clutch", practice="off", **(options or {}))
     return synth.evaluate(
         problem, BASE | (requirements or {}), values=POINT | (values or {}), parts=PARTS | (parts or {})
     )
@@ -259,7 +259,7 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 
 
 def test_only_dry_pairs_of_the_family():
-    instance = instance_of(synth.load("disc_clutch"), BASE, as_catalogs(None))
+    instance = instance_of(synth.load("disc_clutch", practice="off"), BASE, as_catalogs(None))
     slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
     table = slot.table
     names = {table.designations[k] for k in slot.rows}
@@ -271,7 +271,7 @@ def test_only_dry_pairs_of_the_family():
 
 
 def spec_of(options=None, requirements=None):
-    problem = synth.load("disc_clutch", **(options or {}))
+    problem = synth.load("disc_clutch", practice="off", **(options or {}))
     return problem, requirements_in_si(problem, BASE | (requirements or {}))
 
 

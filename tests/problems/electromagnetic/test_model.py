@@ -121,14 +121,14 @@ PLATES = {
     "winding_wire": "Cu 0.5 class 155",
 }
 KINDS = {
-    "multi_plate": (RING | {"friction_surfaces": 4}, PLATES, "multi_plate_clutch"),
+    "multi_plate": (RING | {"friction_surfaces": 4}, PLATES, synth.load("multi_plate_clutch", practice="off")),
     "disc": (
         RING | {"ring_inner_diameter": "88 mm", "pressure_plate_thickness": "6 mm", "discs": 1},
         {"friction_pair": "sinter_bronze_dry", "winding_wire": "Cu 0.5 class 155"},
-        "disc_clutch",
+        synth.load("disc_clutch", practice="off"),
     ),
 }
-PROBLEMS = {kind: synth.load("electromagnetic_clutch", pack=kind) for kind in KINDS}
+PROBLEMS = {kind: synth.load("electromagnetic_clutch", practice="off", pack=kind) for kind in KINDS}
 
 
 def design(kind="multi_plate", requirements=None, values=None, parts=None, problem=None):
@@ -300,7 +300,7 @@ def test_impossible_input_is_refused_by_name(requirements, field):
 
 def test_cooling_of_a_disc_pack_is_dry():
     with pytest.raises(synth.InputError, match="lubrication_mismatch"):
-        design("disc", problem=synth.load("electromagnetic_clutch", pack="disc", cooling="oil_bath"))
+        design("disc", problem=synth.load("electromagnetic_clutch", practice="off", pack="disc", cooling="oil_bath"))
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 import synth
 from tests.problems.of_a_family import requirements_in_si
 
-FAMILY = synth.load("magnetic_powder_clutch")
+FAMILY = synth.load("magnetic_powder_clutch", practice="off")
 BASE = {"required_torque": "30 N*m"}
 POINT = {
     "gap_radius": "80 mm",

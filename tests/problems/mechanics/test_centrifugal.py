@@ -69,7 +69,43 @@ CASES = [
 ]
 RANGES = {"loss": (0.01, 0.7), "ball_friction": (0.0, 0.1), "inner_radius": (0.3, 0.6), "outer_radius": (0.8, 2.0)}
 IDS = [case[0].__name__ for case in CASES]
+# Of the whole clutch: these hold lengths of their own.
+BUILT = [
+    (
+        centrifugal.further_discs_mass,
+        {
+            "density": "kg/m3",
+            "surfaces": "-",
+            "ring_ratio": "-",
+            "outer_radius": "m",
+            "hub_radius": "m",
+            "lining_density": "kg/m3",
+            "lining_thickness": "m",
+        },
+        "kg",
+    ),
+    (
+        centrifugal.overall_length,
+        {
+            "plates_thickness": "m",
+            "surfaces": "-",
+            "lining_thickness": "m",
+            "travel": "m",
+            "flyweight_width": "m",
+        },
+        "m",
+    ),
+]
 SPECIAL = {"ramp_gain"}  # takes its arguments by position; tests/problems/mechanics/test_special_functions.py
+
+
+LENGTHS = tuple((centrifugal, name, "m") for name in ("FURTHER_PLATE", "FURTHER_CORE", "COVER"))
+
+
+@pytest.mark.parametrize(("function", "units", "result_unit"), BUILT, ids=[case[0].__name__ for case in BUILT])
+def test_what_the_whole_clutch_adds_scales_with_its_own_lengths(function, units, result_unit):
+    assert_homogeneous(function, units, result_unit, RANGES, constants=LENGTHS)
+    assert_same_on_symbols_and_arrays(function, units, RANGES)
 
 
 @pytest.mark.parametrize(("function", "units", "result_unit"), CASES, ids=IDS)
@@ -97,7 +133,7 @@ def test_no_formula_is_left_out():
         for name, member in inspect.getmembers(centrifugal, inspect.isfunction)
         if member.__module__ == centrifugal.__name__
     }
-    assert public == set(IDS) | {"gravity_ratio"} | SPECIAL
+    assert public == set(IDS) | {"gravity_ratio"} | SPECIAL | {case[0].__name__ for case in BUILT}
 
 
 def test_ramp_gain_is_transmission_times_efficiency():

@@ -63,7 +63,7 @@ ASKED = {
 
 
 def design(options=None, requirements=None, values=None, parts=None):
-    problem = synth.load("multi_plate_clutch", **(options or {}))
+    problem = synth.load("multi_plate_clutch", practice="off", **(options or {}))
     return synth.evaluate(
         problem, BASE | (requirements or {}), values=POINT | (values or {}), parts=PARTS | (parts or {})
     )
@@ -363,7 +363,7 @@ def test_remarks_that_do_not_concern_a_design_are_silent():
 
 def test_obsolete_pairs_need_an_option():
     def rows(**options):
-        instance = instance_of(synth.load("multi_plate_clutch", **options), BASE, as_catalogs(None))
+        instance = instance_of(synth.load("multi_plate_clutch", practice="off", **options), BASE, as_catalogs(None))
         slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
         return {slot.table.designations[k] for k in slot.rows}, slot.table
 
@@ -383,13 +383,14 @@ def test_obsolete_pairs_need_an_option():
 
 def test_defaults_follow_the_options():
     oil, dry = (
-        synth.load("multi_plate_clutch", lubrication=kind).model(frozenset(), Catalogs()) for kind in ("oil", "dry")
+        synth.load("multi_plate_clutch", practice="off", lubrication=kind).model(frozenset(), Catalogs())
+        for kind in ("oil", "dry")
     )
     assert oil.declaration.options["cooling"].chosen == "oil_bath"
     assert dry.declaration.options["cooling"].chosen == "still_air"
     assert oil.declaration.requirements["oil_viscosity"].default == 0.02
     assert dry.declaration.requirements["oil_viscosity"].default == 0.0
-    cz = synth.load("multi_plate_clutch", guide_model="cz").model(frozenset(), Catalogs()).declaration
+    cz = synth.load("multi_plate_clutch", practice="off", guide_model="cz").model(frozenset(), Catalogs()).declaration
     assert cz.requirements["surface_factor"].default == 0.75
     assert oil.declaration.requirements["surface_factor"].default == 1.0
     assert [o.name for o in cz.objectives.values() if o.default] == ["mass", "actuation_force"]
@@ -403,7 +404,7 @@ def test_defaults_follow_the_options():
 
 
 def test_everything_has_text_and_source():
-    problem = synth.load("multi_plate_clutch", spline_choice="catalogue", release_aid="sine_plates")
+    problem = synth.load("multi_plate_clutch", practice="off", spline_choice="catalogue", release_aid="sine_plates")
     d = problem.model(frozenset(OPTIONAL), Catalogs()).declaration
     for members in (d.requirements, d.options, d.variables, d.counts, d.slots, d.derived, d.limits):
         for member in members.values():
@@ -413,8 +414,8 @@ def test_everything_has_text_and_source():
 
 
 def test_the_plate_counts_that_a_curve_marks_are_where_plates_stop_to_pay():
-    design = synth.evaluate("multi_plate_clutch", BASE, values=POINT, parts=PARTS)
-    attrs = synth.curves("multi_plate_clutch", BASE, design)["torque_over_plates"].attrs
+    design = synth.evaluate(synth.load("multi_plate_clutch", practice="off"), BASE, values=POINT, parts=PARTS)
+    attrs = synth.curves(synth.load("multi_plate_clutch", practice="off"), BASE, design)["torque_over_plates"].attrs
     at = {mark["label"].split()[0]: mark["x"] for mark in attrs["marks"]}
     s, k = design.values["guide_number"], math.log1p(design.values["guide_number"])
     assert (1 - math.exp(-k * at["(16)"])) / (s * at["(16)"]) == pytest.approx(0.5, rel=1e-9)

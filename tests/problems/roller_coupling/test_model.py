@@ -43,7 +43,7 @@ ALWAYS = {
 
 
 def family(**options):
-    return synth.load("roller_coupling", **options)
+    return synth.load("roller_coupling", practice="off", **options)
 
 
 def design(options=None, requirements=None, values=None, parts=None, **more):

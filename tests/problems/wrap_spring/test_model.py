@@ -27,14 +27,14 @@ WIRE = {
 
 
 def clutch(options=None, requirements=None, values=None, parts=None):
-    problem = synth.load("wrap_spring", **(options or {}))
+    problem = synth.load("wrap_spring", practice="off", **(options or {}))
     return synth.evaluate(
         problem, BASE | (requirements or {}), values=POINT | (values or {}), parts=PARTS | (parts or {})
     )
 
 
 def actuated(options=None, requirements=None, values=None, parts=None):
-    problem = synth.load("wrap_spring_actuated", **(options or {}))
+    problem = synth.load("wrap_spring_actuated", practice="off", **(options or {}))
     return synth.evaluate(
         problem, ACTUATED | (requirements or {}), values=ACTUATED_POINT | (values or {}), parts=PARTS | (parts or {})
     )
@@ -104,7 +104,7 @@ def test_numbers_against_an_independent_calculation(model, policy, peak, speed, 
 
 def test_a_wire_of_ones_own_gives_what_the_same_wire_of_the_catalogue_gives():
     own = synth.evaluate(
-        synth.load("wrap_spring", wire_choice="custom"),
+        synth.load("wrap_spring", practice="off", wire_choice="custom"),
         BASE | WIRE,
         values=POINT | {"a": "3 mm", "b": "4 mm"},
         parts={"friction_pair": PARTS["friction_pair"]},
@@ -138,7 +138,7 @@ def test_beyond_liftoff_nothing_grips_and_no_torque_is_told():
 def test_curves_beyond_liftoff_show_no_torque_below_zero():
     lift = clutch().values["liftoff_speed"]
     speed = {"spring_speed": f"{1.5 * lift!r} rad/s"}
-    frames = synth.curves("wrap_spring", BASE | speed, values=POINT, parts=PARTS)
+    frames = synth.curves(synth.load("wrap_spring", practice="off"), BASE | speed, values=POINT, parts=PARTS)
     for name in ("torque_over_friction", "torque_over_interference"):
         torques = frames[name].filter(regex=r"torque \[N")
         assert torques.shape[1] >= 2
@@ -163,7 +163,7 @@ def test_worked_example_as_a_design():
         ("refined", 9.49549, 0.916574, 6.11046e6),
     ):
         found = synth.evaluate(
-            synth.load("wrap_spring", model=model, wire_choice="custom"),
+            synth.load("wrap_spring", practice="off", model=model, wire_choice="custom"),
             {"required_torque": 5, "bore_diameter": "20 mm", "peak_torque": 1000, "tol": "0.001 mm", **WIRE},
             values={"dr": "0.25 mm", "a": "3 mm", "b": "4 mm", "d_h": "40 mm", "n": 4},
             parts={"friction_pair": "example"},
@@ -220,7 +220,7 @@ def test_numbers_of_the_clearance_fit(model, speed):
 def test_the_energising_torque_of_the_closed_form_is_just_enough():
     """Section 4 of the reference: least clearance that survives, and the torque that closes and holds."""
     front = synth.synthesize(
-        "wrap_spring_actuated",
+        synth.load("wrap_spring_actuated", practice="off"),
         ACTUATED,
         objectives=["actuator_torque"],
         parts={k: [v] for k, v in PARTS.items()},
@@ -368,17 +368,17 @@ def test_impossible_input_is_refused_by_name(make, options, requirements, code):
 
 def test_a_clutch_with_a_speed_must_be_told_it():
     with pytest.raises(synth.InputError, match="relative_speed"):
-        synth.synthesize("wrap_spring_actuated", BASE)
+        synth.synthesize(synth.load("wrap_spring_actuated", practice="off"), BASE)
 
 
 @pytest.mark.parametrize("value", [0.5, 1.0])
 def test_less_than_two_coils_are_not_offered(value):
     with pytest.raises(synth.InputError, match="coils_per_hub"):
-        synth.synthesize("wrap_spring", BASE, fix={"coils_per_hub": value})
+        synth.synthesize(synth.load("wrap_spring", practice="off"), BASE, fix={"coils_per_hub": value})
 
 
 def left_out(requirements, catalogs=None):
-    instance = instance_of(synth.load("wrap_spring"), BASE | requirements, as_catalogs(catalogs))
+    instance = instance_of(synth.load("wrap_spring", practice="off"), BASE | requirements, as_catalogs(catalogs))
     return {row["designation"]: row["reason"] for row in instance.selection.left_out}
 
 
@@ -396,7 +396,7 @@ def test_pairs_that_cannot_reach_the_drag_limit_are_left_out():
     assert reason.startswith("drag_limit_unreachable")
     with pytest.raises(synth.InputError, match="drag_limit_unreachable"):
         synth.synthesize(
-            "wrap_spring",
+            synth.load("wrap_spring", practice="off"),
             BASE | {"drag_torque_limit": f"{border * 0.999} N*m"},
             parts={"friction_pair": ["hardened_steel_oil"]},
         )
@@ -431,7 +431,7 @@ def test_figures_that_no_part_can_have_are_refused_with_the_table(table, column,
     frame = as_catalogs(None).table(table).to_frame()
     frame.loc[0, column] = value
     with pytest.raises(synth.InputError) as refusal:
-        synth.synthesize("wrap_spring", BASE, catalogs={table: frame})
+        synth.synthesize(synth.load("wrap_spring", practice="off"), BASE, catalogs={table: frame})
     assert column.split(" ")[0] in refusal.value.field
 
 
@@ -460,7 +460,7 @@ def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
     def remarked(friction, a, b):
         frame = pd.DataFrame(PAIR | {"mu_min [-]": [0.7, 0.7], "mu_max [-]": [friction, friction]})
         found = synth.evaluate(
-            synth.load("wrap_spring", wire_choice="custom"),
+            synth.load("wrap_spring", practice="off", wire_choice="custom"),
             BASE | WIRE,
             values=POINT | {"coils_per_hub": 12, "a": a, "b": b},
             parts={"friction_pair": "good"},
@@ -482,7 +482,7 @@ def test_shapes_that_are_hard_to_coil_and_locked_clutches_are_remarked():
 @pytest.mark.parametrize("family", ["wrap_spring", "wrap_spring_actuated"])
 def test_pairs_are_those_offered_to_the_family(family):
     given = ACTUATED if family == "wrap_spring_actuated" else BASE
-    instance = instance_of(synth.load(family), given, as_catalogs(None))
+    instance = instance_of(synth.load(family, practice="off"), given, as_catalogs(None))
     slot = next(s for s in instance.selection.slots if s.slot == "friction_pair")
     hints = slot.table.text("family_hint")
     assert {k for k in range(len(slot.table)) if family in hints[k].split(";")} == set(slot.rows.tolist())
@@ -490,7 +490,7 @@ def test_pairs_are_those_offered_to_the_family(family):
 
 @pytest.mark.parametrize(("ladder", "some", "step"), [("R20", 0.0224, 20), ("R40", 0.0236, 40)])
 def test_hub_diameters_are_on_the_ladder_chosen(ladder, some, step):
-    instance = instance_of(synth.load("wrap_spring", hub_ladder=ladder), BASE, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring", practice="off", hub_ladder=ladder), BASE, as_catalogs(None))
     (grid,) = [g for g in instance.ranges.grids() if len(g)]
     assert np.isclose(grid, some).any()
     assert len(grid) == pytest.approx(step * math.log10(200 / 6), abs=1.5)
@@ -498,14 +498,16 @@ def test_hub_diameters_are_on_the_ladder_chosen(ladder, some, step):
 
 def test_a_hub_table_of_ones_own_is_the_ladder():
     frame = pd.DataFrame({"designation": ["mine", "other", "far"], "diameter [mm]": [41.5, 33.0, 900.0]})
-    front = synth.synthesize("wrap_spring", BASE, catalogs={"hub_diameters": frame}, points=5)
+    front = synth.synthesize(
+        synth.load("wrap_spring", practice="off"), BASE, catalogs={"hub_diameters": frame}, points=5
+    )
     assert {round(1e3 * d.values["hub_diameter"], 6) for d in front.designs} <= {41.5, 33.0}
     with pytest.raises(synth.InputError, match="hub_diameters"):
-        synth.synthesize("wrap_spring", BASE, catalogs={"hub_diameters": frame.iloc[2:]})
+        synth.synthesize(synth.load("wrap_spring", practice="off"), BASE, catalogs={"hub_diameters": frame.iloc[2:]})
 
 
 def test_peak_torque_follows_the_required_torque():
-    instance = instance_of(synth.load("wrap_spring"), BASE | {"required_torque": 8}, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring", practice="off"), BASE | {"required_torque": 8}, as_catalogs(None))
     assert instance.values.requirements["peak_torque"] == 20.0
 
 
@@ -515,7 +517,7 @@ def test_objectives_are_surely_positive_so_that_the_gap_is_relative(torque, more
     from synth.search.formulation import Formulation
 
     given = {"required_torque": torque, "bore_diameter": "4 mm", **more}
-    instance = instance_of(synth.load("wrap_spring"), given, as_catalogs(None))
+    instance = instance_of(synth.load("wrap_spring", practice="off"), given, as_catalogs(None))
     goals = ("mass", "drag_torque", "stress_utilisation", "pressure_utilisation", "outer_diameter")
     assert Formulation(instance, dict.fromkeys(goals, "min"), 2).objectives.log.all()
 
@@ -539,7 +541,7 @@ def check_frames(frames):
 @pytest.mark.parametrize("model", ["refined", "seed"])
 def test_curves_of_an_interference_fit_pass_through_its_values(model):
     requirements = BASE | {"overrun_speed": "200 1/min", "overrun_duty": 0.1, "spring_speed": "900 1/min"}
-    problem = synth.load("wrap_spring", model=model)
+    problem = synth.load("wrap_spring", practice="off", model=model)
     spec = requirements_in_si(problem, requirements)
     found = clutch({"model": model}, requirements)
     v, frames = found.values, problem.curves(spec, found)
@@ -577,7 +579,7 @@ def test_curves_of_an_interference_fit_pass_through_its_values(model):
 
 
 def test_curves_of_a_clearance_fit_pass_through_its_values():
-    problem = synth.load("wrap_spring_actuated")
+    problem = synth.load("wrap_spring_actuated", practice="off")
     requirements = ACTUATED | {"spring_speed": "900 1/min"}
     spec, found = requirements_in_si(problem, requirements), actuated(None, requirements)
     v, frames = found.values, problem.curves(spec, found)
@@ -605,7 +607,7 @@ def test_a_requirement_alone_has_curves(family, given):
 
 
 def test_the_curves_of_a_wire_of_ones_own_need_no_slot():
-    problem = synth.load("wrap_spring", wc="custom", mdl="seed")
+    problem = synth.load("wrap_spring", practice="off", wc="custom", mdl="seed")
     values = POINT | {"a": "3 mm", "b": "4 mm"}
     parts = {"friction_pair": PARTS["friction_pair"]}
     found = synth.evaluate(problem, BASE | WIRE, values=values, parts=parts)
