@@ -15,6 +15,7 @@ import casadi as ca
 
 from synth.declaration import Declaration, Part, Refusal
 from synth.errors import InputError, at
+from synth.row_cells import text_code
 from synth.tables.conditions import (
     Condition,
     Junction,
@@ -25,7 +26,6 @@ from synth.tables.conditions import (
     may_be_condition,
     parse_condition,
 )
-from synth.tables.table import text_code
 from synth.units import parse_quantity
 
 _COMPARE: dict[str, Callable[[Any, Any], Any]] = {

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +11,7 @@ from synth.model.model import DataInput, Model
 from synth.model.program import InputValue
 from synth.question.combinations import Combinations
 from synth.tables.catalogs import Catalogs
-from synth.tables.table import CODE_OF, ELSE, Table, text_code
+from synth.tables.table import Table
 
 
 def part_value(table: Table, rows: np.ndarray | Sequence[int] | slice, columns: Sequence[str]) -> np.ndarray:
@@ -33,24 +31,6 @@ def part_value(table: Table, rows: np.ndarray | Sequence[int] | slice, columns: 
     """
     none = np.full(len(table), np.nan)[rows]
     return first_value([table.number(c)[rows] if table.has(c) else none for c in columns])
-
-
-def cell_value(row: Mapping[str, Any], column: str) -> float:
-    """Return a cell of a row as results hold it, as models use it: not-a-number where it is empty.
-
-    Parameters
-    ----------
-    row : mapping
-        Column -> number in SI, or text.
-    column : str
-        Name of the column as a model uses it.
-    """
-    if column.startswith(CODE_OF):
-        return text_code(str(row.get(column.removeprefix(CODE_OF)) or ""))
-    name, _, other = column.partition(ELSE)
-    cell = row.get(name)
-    value = math.nan if cell is None else float(cell)
-    return float(other) if other and math.isnan(value) else value
 
 
 def first_value(numbers: Sequence[np.ndarray]) -> np.ndarray:

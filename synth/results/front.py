@@ -12,9 +12,9 @@ from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
-from synth.results.front_record import FRONT_FORMAT, design_record, digest_of, record_text
+from synth.results.front_record import FRONT_FORMAT, design_record, record_text
 from synth.results.least_infeasible import LeastInfeasible
-from synth.results.plain import finite, plain
+from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
 from synth.results.search_record import SettingsRecord

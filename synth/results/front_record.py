@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from synth.results.plain import finite, plain
+from synth.results.plain import digest_of, finite, plain
 
 if TYPE_CHECKING:
     from synth.results.design import Design
@@ -18,12 +17,6 @@ FRONT_FORMAT = 1  # of front.json
 def record_text(content: Mapping[str, Any]) -> str:
     """Return the text of a front.json."""
     return json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-
-
-def digest_of(content: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of the content of a front.json, without regard to the order of its keys."""
-    text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def changed(content: Mapping[str, Any]) -> str:

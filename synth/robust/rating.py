@@ -22,13 +22,14 @@ from synth.model.program import OP_SELECT, InputValue
 from synth.proof.enclosure import Enclosed, Encloser, Slopes
 from synth.proof.interval_arithmetic import ZERO, Pair
 from synth.proof.tape import Tape
-from synth.question.inputs import cell_value, first_value, inputs_of_design
+from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.question.uncertainty import Uncertainty
 from synth.results import Design
 from synth.results.ratings import DesignRating, LimitRating
 from synth.robust.uncertainty import Member, check_values, scattered
+from synth.row_cells import cell_value
 from synth.tuning import TUNING, RobustLimits
 
 PROVEN, BOUNDED, SAMPLED = "proven", "bounded", "sampled"

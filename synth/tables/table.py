@@ -14,7 +14,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from synth.errors import InputError
 from synth.plain_text import as_meant
+from synth.row_cells import CODE_OF, ELSE, text_code
 from synth.tables.schema import Column
 from synth.units import from_si
 
@@ -31,10 +32,6 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 SHIPPED = "shipped"
-
-
-CODE_OF = "code of "  # before the name of a column of text: the column of numbers that stand for its texts
-ELSE = " else "  # between the name of a column of numbers and what counts where there is none
 
 
 class Table:
@@ -347,22 +344,6 @@ class Table:
         labels = (*self.labels, *more.labels)
         user_rows = np.concatenate([self.user_rows, more.user_rows])
         return Table(self.name, columns, data, labels, f"{self.origin} + {more.origin}", user_rows)
-
-
-@lru_cache(maxsize=1 << 16)
-def named_column(column: str) -> str:
-    """Return the column of a table that a column as models use it is made of."""
-    return column.removeprefix(CODE_OF).partition(ELSE)[0]
-
-
-def text_code(text: str) -> float:
-    """Return a whole number that stands for a text, the same everywhere; different texts have different ones.
-
-    Notes
-    -----
-    The first 48 bits of the SHA-256: exact as a float, and two of a million texts share one once in 500 tries.
-    """
-    return float(int.from_bytes(hashlib.sha256(text.encode()).digest()[:6], "big"))
 
 
 def perhaps_meant(name: str, known: Iterable[str]) -> str:

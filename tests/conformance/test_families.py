@@ -16,10 +16,10 @@ from synth.nlp.ipopt import Task
 from synth.question.catalogs import as_catalogs
 from synth.results.front import front_record
 from synth.results.front_record import record_text
+from synth.row_cells import named_column
 from synth.search.formulation import Formulation
 from synth.search.refused_cells import not_refused
 from synth.special import expanded
-from synth.tables.table import named_column
 from synth.units import parse_unit
 from tests.asking import instance_of
 from tests.conformance.cases import CASES, answer, front_of, question, question_to

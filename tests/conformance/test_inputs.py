@@ -11,9 +11,10 @@ import pytest
 from synth.analysis.designs import make_design, make_frame, part_row
 from synth.analysis.evaluate import _chosen_rows, _data
 from synth.model.model import DataInput
-from synth.question.inputs import cell_value, first_value, inputs_of_design
+from synth.question.inputs import first_value, inputs_of_design
 from synth.question.instance import Instance
 from synth.results import Design
+from synth.row_cells import cell_value
 from synth.variants.coverage import SharedModel, Variant, _inputs, _VariantColumns
 from tests.conformance.cases import CASES, STRUCTURES, question
 
