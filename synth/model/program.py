@@ -122,9 +122,8 @@ class Program:
     def _number(self, op: int, args: tuple[int, ...], constant: float = 0.0) -> int:
         if op == ca.OP_ADD and (select := self._as_select(*args)):
             op, args = OP_SELECT, select
-        elif op in COMMUTATIVE:
-            args = tuple(sorted(args))
-        key = (op, args, constant)
+        # Operands stay as they are written, for people who read formulas; which comes first makes no other number.
+        key = (op, tuple(sorted(args)) if op in COMMUTATIVE else args, constant)
         if key not in self._numbers:
             self._numbers[key] = len(self.nodes)
             self.nodes.append(Node(op, args, constant))
