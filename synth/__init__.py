@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from synth.errors import InputError
 
 if TYPE_CHECKING:
+    from synth.analysis.calculation import calculation
     from synth.analysis.describe import describe
     from synth.analysis.evaluate import evaluate
     from synth.analysis.hooks import curves, second_opinion, simulate
@@ -53,6 +54,7 @@ __all__ = [
     "SizeRange",
     "Study",
     "batch",
+    "calculation",
     "compare",
     "curves",
     "describe",
@@ -91,6 +93,7 @@ _HOME = {
     "SizeRange": "synth.variants.size_range",
     "Study": "synth.studies.whatif.study",
     "batch": "synth.jobs.batch",
+    "calculation": "synth.analysis.calculation",
     "compare": "synth.studies.families.compare",
     "curves": "synth.analysis.hooks",
     "describe": "synth.analysis.describe",

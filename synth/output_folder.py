@@ -57,7 +57,16 @@ class ResultKind:
 FRONT = ResultKind(
     "run",
     ("front.json", "comparison.json"),
-    ("designs.csv", "front.json", "design_*.yaml", "robust.csv", "explanation.txt", "comparison.json", "families.csv"),
+    (
+        "designs.csv",
+        "front.json",
+        "calculation.json",
+        "design_*.yaml",
+        "robust.csv",
+        "explanation.txt",
+        "comparison.json",
+        "families.csv",
+    ),
     ("designs",),
 )
 NEAR_EQUALS = ResultKind(

@@ -138,6 +138,7 @@ class Part:
     is_slot: bool
     known: frozenset[str]
     columns: dict[str, PartColumn] = field(default_factory=dict)
+    texts: dict[str, set[str]] = field(default_factory=dict)  # that formulas ask for, by column
 
     def __getattr__(self, column: str) -> Any:
         if column.startswith("_"):
@@ -153,6 +154,7 @@ class Part:
 
     def says(self, column: str, text: str) -> Any:
         """Return whether a column of text says this in the row; an empty text: whether it says nothing."""
+        self.texts.setdefault(column, set()).add(text)
         return self.code(column) == text_code(text)
 
     def optional(self, column: str) -> Any:
@@ -224,6 +226,18 @@ class Step:
     text: str
     source: str
     sx: Any
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number of nature or of a source that formulas hold, in SI."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    value: float
 
 
 @dataclass(frozen=True)

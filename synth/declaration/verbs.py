@@ -13,6 +13,7 @@ from synth.declaration.grids import grid_values
 from synth.declaration.records import (
     Advice,
     Choice,
+    Constant,
     Count,
     DeclarationError,
     Derived,
@@ -271,6 +272,7 @@ class Declaration:
         self.rows: dict[str, Part] = {}
         self.derived: dict[str, Derived] = {}
         self.steps: dict[str, Step] = {}
+        self.constants: dict[str, Constant] = {}
         self.limits: dict[str, Limit] = {}
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
@@ -291,7 +293,9 @@ class Declaration:
 
     def names(self) -> dict[str, str]:
         """Return every accepted spelling (name or symbol) and the name it stands for."""
-        return {word: name for word, name in self._symbols.items() if name not in self.steps}
+        return {
+            word: name for word, name in self._symbols.items() if name not in self.steps and name not in self.constants
+        }
 
     # -- verbs ---------------------------------------------------------------------------------
 
@@ -535,6 +539,18 @@ class Declaration:
         record = Step(name, unit, symbol, text, source, ca.SX(expr))
         self.steps[name] = record
         return record.sx
+
+    def constant(
+        self, name: str, unit: str, value: float, symbol: str | None = None, text: str = "", source: str = ""
+    ) -> float:
+        """Name a number that formulas hold, so that people read its name in place of it; return it in SI.
+
+        It stays a plain number in the formulas: nothing that is computed changes.
+        """
+        symbol = self._claim(name, symbol)
+        si = float(to_si(value, parse_unit(unit)))
+        self.constants[name] = Constant(name, unit, symbol, text, source, si)
+        return si
 
     def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
         """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""

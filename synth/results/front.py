@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from synth.feasibility import Status
 from synth.files import csv_text
 from synth.output_folder import FRONT, save_result
+from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
-from synth.results.front_record import FRONT_FORMAT, design_record, record_text
+from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text
 from synth.results.least_infeasible import LeastInfeasible
 from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
@@ -56,16 +57,35 @@ class ParetoFront:
         return frame.set_index("rank", drop=False).rename_axis(None) if len(frame) else frame
 
     def save(self, folder: str | Path) -> Path:
-        """Write designs.csv, front.json and one design_NN.yaml per design, all or none; return the folder.
+        """Write designs.csv, front.json, calculation.json and one design_NN.yaml per design; return the folder.
+
+        All of them or none.
 
         A search that was stopped replaces no earlier result: it is written to a folder ``stopped`` beside that.
         """
         return save_result(folder, self.files(), FRONT, bool(self.interrupted))
 
     def files(self) -> dict[str, str]:
-        """Return what ``save`` writes: file name -> text."""
+        """Return what ``save`` writes: file name -> text.
+
+        Raises
+        ------
+        InputError
+            The calculation of a front that was loaded cannot be read.
+        """
+        if self.question is None and not (self.record or {}).get("calculation"):
+            return self.record_files()  # it was saved before there were calculations
+        import synth  # it knows how formulas are read; results do not
+
+        calculation = synth.calculation(self)
+        files = self.record_files(calculation.digest)
+        first = {name: files.pop(name) for name in ("designs.csv", FRONT_FILE)}
+        return {**first, CALCULATION: calculation.to_json(), **files}
+
+    def record_files(self, calculation: str = "") -> dict[str, str]:
+        """Return the files that follow from the record alone; ``calculation`` is the digest of what belongs to it."""
         width = max(2, len(str(len(self.designs))))
-        found = {"designs.csv": self._csv(), "front.json": record_text(front_record(self))}
+        found = {"designs.csv": self._csv(), FRONT_FILE: record_text(front_record(self, calculation))}
         if any(design.robust for design in self.designs):
             found["robust.csv"] = csv_text(*limits_table(self.designs))
         for design in self.designs:
@@ -155,8 +175,8 @@ class ParetoFront:
         return digest_of(content)
 
 
-def front_record(front: ParetoFront) -> dict[str, Any]:
-    """Return the content of the front.json of a front."""
+def front_record(front: ParetoFront, calculation: str = "") -> dict[str, Any]:
+    """Return the content of the front.json of a front; ``calculation`` is the digest of its calculation."""
     rows: dict[str, dict[str, Any]] = {}
     for design in front.designs:
         for row in design.parts.values():
@@ -185,6 +205,7 @@ def front_record(front: ParetoFront) -> dict[str, Any]:
         "statistics": plain(front.statistics),
         "explanation": plain(front.explanation),
         "parts": rows,
+        **({"calculation": calculation} if calculation else {}),
         "designs": [design_record(d) for d in front.designs],
     }
     content["digest"] = digest_of(content)

@@ -11,6 +11,7 @@ from synth.results.plain import digest_of, finite, plain
 if TYPE_CHECKING:
     from synth.results.design import Design
 
+FRONT_FILE = "front.json"
 FRONT_FORMAT = 1  # of front.json
 
 

@@ -1,6 +1,6 @@
 """Quantities: numbers with units, read and written."""
 
-from synth.units.grammar import Unit, parse_unit
+from synth.units.grammar import Unit, parse_unit, si_text
 from synth.units.quantity import (
     Quantity,
     check_number,
@@ -27,6 +27,7 @@ __all__ = [
     "outward",
     "parse_quantity",
     "parse_unit",
+    "si_text",
     "split_header",
     "to_si",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
@@ -332,13 +333,19 @@ def _combine(powers: dict[str, int]) -> _UnitText:
     return _UnitText(ratio, (kg, m, s, kelvin, ampere), angle, powers)
 
 
-def _si_text(dimension: _Dimension, angle: int) -> str:
-    """Write a dimension as an SI unit in the grammar of this module."""
+def si_text(dimension: Sequence[int], angle: int = 0) -> str:
+    """Write a dimension (exponents of kg, m, s, K, A) as a unit in SI in the grammar of this module.
+
+    Examples
+    --------
+    >>> si_text((1, 2, -2, 0, 0)), si_text((0, 0, 0, 0, 0))
+    ('kg*m2/s2', '1')
+    """
     above: list[str] = []
     below: list[str] = []
     for name, power in zip(("kg", "m", "s", "K", "A", "rad"), (*dimension, angle), strict=True):
         if power:
-            (above if power > 0 else below).append(name + (str(abs(power)) if abs(power) > 1 else ""))
+            (above if power > 0 else below).append(name + (str(abs(power)) if abs(power) != 1 else ""))
     text = "*".join(above) or "1"
     if below:
         text += "/" + (below[0] if len(below) == 1 else f"({' '.join(below)})")
@@ -375,7 +382,7 @@ def _kinds(reading: _UnitText) -> dict[str, tuple[Fraction, Fraction]]:
             return {of_force: plain}
         return {of_energy: plain} if moment else {of_force: plain}
     kind = _BY_DIMENSION.get((dimension, reading.angle))
-    return {kind or f"quantity in {_si_text(dimension, reading.angle)}": plain}
+    return {kind or f"quantity in {si_text(dimension, reading.angle)}": plain}
 
 
 def _in_words(kind: str) -> tuple[str, tuple[str, ...]]:

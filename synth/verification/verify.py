@@ -39,6 +39,7 @@ from synth.proof.tree import NO_SCALE, ProofTree, void_without
 from synth.proof_limits import PROOF, ProofLimits
 from synth.question.inputs import inputs_of_design
 from synth.question.instance import Instance
+from synth.results.calculation import CALCULATION, load_calculation
 from synth.results.front_record import changed
 from synth.results.verification import Verification, percent
 from synth.special import expanded
@@ -173,7 +174,13 @@ class VerificationRun:
         return self.readable
 
     def _files(self, folder: Path) -> None:
-        for name, text in self.front.files().items():
+        calculation = str((self.front.record or {}).get("calculation", ""))
+        if calculation:
+            try:
+                load_calculation(folder, calculation)
+            except InputError:
+                self.find(f"{CALCULATION} is missing, or is not what was saved with front.json")
+        for name, text in self.front.record_files(calculation).items():
             path = folder / name
             try:
                 same = name == "front.json" or read_bytes(path, name).decode("utf-8") == text

@@ -74,6 +74,7 @@ def test_a_part_reads_like_its_row(front):
 def test_every_design_has_its_file(front, folder):
     assert {p.name for p in folder.iterdir()} == {
         "designs.csv",
+        "calculation.json",
         "front.json",
         *(f"design_{k:02d}.yaml" for k in range(1, 6)),
     }

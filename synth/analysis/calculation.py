@@ -1,0 +1,538 @@
+"""The calculation of a question: formulas read back from the trace, with named quantities in place of what they are.
+
+What is read is what was solved: the same symbols, the same operations, special functions written out. A formula that
+is too long for a line is told in parts (``u_1``, ``u_2``, ...), those first that stand there more than once; a family
+that names its steps (``Declaration.step``) needs none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+
+from synth.analysis.restate import question_of
+from synth.declaration import Declaration, Origin
+from synth.model.constraint import Constraint
+from synth.model.model import Model
+from synth.model.problem import DesignProblem
+from synth.model.program import OP_SELECT, Node, Program
+from synth.question.inputs import fixed_row_values
+from synth.question.instance import Instance
+from synth.question.request import Request
+from synth.results import ParetoFront
+from synth.results.calculation import Calculation, LimitRule, NamedQuantity, RemarkRule, load_calculation
+from synth.results.dimensions import dimension_of
+from synth.results.expression import Expression, names_in, simplified_product, simplified_sum
+from synth.robust.counterpart import nominal
+from synth.row_cells import CODE_OF, named_column
+from synth.special import expanded
+from synth.tables.catalogs import Catalogs
+from synth.units import si_text
+
+LONGEST = 26  # quantities and numbers in one formula: what fits a line of a page
+SHORTEST = 5  # in a part of a formula that is told alone
+
+ONE: Expression = ["n", 1.0]
+FUNCTION_OF = {
+    ca.OP_EXP: "exp",
+    ca.OP_LOG: "ln",
+    ca.OP_SQRT: "sqrt",
+    ca.OP_SIN: "sin",
+    ca.OP_COS: "cos",
+    ca.OP_TAN: "tan",
+    ca.OP_ASIN: "asin",
+    ca.OP_ACOS: "acos",
+    ca.OP_ATAN: "atan",
+    ca.OP_ATAN2: "atan2",
+    ca.OP_HYPOT: "hypot",
+    ca.OP_SINH: "sinh",
+    ca.OP_COSH: "cosh",
+    ca.OP_TANH: "tanh",
+    ca.OP_ASINH: "asinh",
+    ca.OP_ACOSH: "acosh",
+    ca.OP_ATANH: "atanh",
+    ca.OP_LOG1P: "log1p",
+    ca.OP_EXPM1: "expm1",
+    ca.OP_ERF: "erf",
+    ca.OP_FLOOR: "floor",
+    ca.OP_CEIL: "ceil",
+    ca.OP_FABS: "abs",
+    ca.OP_SIGN: "sign",
+    ca.OP_FMOD: "fmod",
+    ca.OP_COPYSIGN: "copysign",
+    ca.OP_FMIN: "min",
+    ca.OP_FMAX: "max",
+}
+COMPARISON_OF = {
+    ca.OP_LT: "<",
+    ca.OP_LE: "<=",
+    ca.OP_EQ: "==",
+    ca.OP_NE: "!=",
+    ca.OP_AND: "and",
+    ca.OP_OR: "or",
+    ca.OP_NOT: "not",
+}
+
+
+def calculation(
+    asked: ParetoFront | DesignProblem | type[DesignProblem] | str,
+    requirements: Mapping[str, Any] | None = None,
+    catalogs: Any = None,
+    limits: Mapping[str, Any] | None = None,
+) -> Calculation:
+    """Return how every number of a design is computed.
+
+    Parameters
+    ----------
+    asked : ParetoFront, family name, DesignProblem subclass or instance
+        A front that was loaded is read from its ``calculation.json``; one that has none is traced again.
+    requirements : mapping, optional
+        Of a problem: as for ``synthesize``. A front has its own.
+    catalogs, limits : optional
+        Of a problem, as for ``synthesize``; of a front, own tables that were in memory.
+
+    Returns
+    -------
+    Calculation
+        ``calculation.of_design(design)`` has all quantities and limits of a design, computed anew and compared with its
+        record.
+
+    Raises
+    ------
+    InputError
+        When the question cannot be posed, or the file is not what was saved with the front.
+    """
+    if isinstance(asked, ParetoFront):
+        return _of_front(asked, catalogs)
+    # A given design may lie outside of what is searched, so limits bound nothing here.
+    return calculation_of(Instance(Request.of(asked, requirements or {}, catalogs, limits=limits), restrict=False))
+
+
+def _of_front(front: ParetoFront, catalogs: Any) -> Calculation:
+    saved = front.record.get("calculation") if front.record else None
+    if saved and front.folder is not None and catalogs is None:
+        return load_calculation(front.folder, saved)
+    return calculation_of(question_of(front, None, catalogs))
+
+
+def calculation_of(instance: Instance) -> Calculation:
+    """Return the calculation of a question; what scatters in it is told by its designs, not here."""
+    model, own = instance.model, nominal(instance.problem)
+    if own is not instance.problem:
+        model = own.model(frozenset(instance.values.given), instance.catalogs)
+    found: _Formulas = model.function("formulas", lambda: _Formulas.read(model))
+    rows = fixed_row_values(model.declaration, instance.catalogs)
+    inputs = _inputs(model, instance, rows)
+    quantities = {q.name: q for q in [*inputs, *found.constants]}
+    for q in found.computed:
+        quantities[q.name] = q if q.kind != "helper" else _with_unit(q, quantities)
+    of_user = [_of_user(x) for x in instance.limits.judging if x.origin in (Origin.USER, Origin.PIN)]
+    d = model.declaration
+    return Calculation(
+        family=own.name,
+        title=own.title or own.name,
+        sources=tuple(own.sources),
+        options={name: o.chosen for name, o in d.options.items()},
+        quantities=quantities,
+        limits=(*found.limits, *of_user),
+        remarks=found.remarks,
+    )
+
+
+def _of_user(x: Constraint) -> LimitRule:
+    return LimitRule(
+        name=x.name,
+        sense=x.sense,
+        unit=x.unit,
+        text="limit of the user",
+        value=["q", x.quantity],
+        limit=["n", float(x.bound)],
+        guard=x.guard,
+        scale=x.scale,
+        needs=x.behind,
+        stated_by="user",
+    )
+
+
+def _with_unit(q: NamedQuantity, known: Mapping[str, NamedQuantity]) -> NamedQuantity:
+    """Return a part of a formula with its unit in SI, as far as that follows from what it is made of."""
+    assert q.expression is not None
+    dimension = dimension_of(q.expression, known)
+    if dimension is None or any(x.denominator > 1 for x in dimension):
+        return replace(q, unit="")
+    return q if not any(dimension) else replace(q, unit=si_text([int(x) for x in dimension]))
+
+
+# ---- inputs ---------------------------------------------------------------------------------------------------------
+
+
+def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list[NamedQuantity]:
+    """Return the inputs of a model: what is asked, what is searched, and what rows of tables say."""
+    d, found = model.declaration, list[NamedQuantity]()
+    defaults = _defaults(model)
+    for r in d.requirements.values():
+        if r.sx is not None:
+            common = {"unit": r.unit, "text": r.text, "source": r.source, "bounds": (r.lower, r.upper)}
+            found.append(
+                NamedQuantity(
+                    name=r.name,
+                    kind="requirement",
+                    symbol=r.symbol,
+                    group=r.group,
+                    expression=defaults.get(r.name),
+                    **common,  # type: ignore[arg-type]
+                )
+            )
+    for v in d.variables.values():
+        found.append(_searched(v, "variable", (v.lower, v.upper)))
+    for c in d.counts.values():
+        found.append(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))))
+    for choice in d.choices.values():
+        found.append(replace(_searched(choice, "choice", None), labels=choice.labels))
+    found += _of_rows(model, instance.catalogs, rows)
+    return _told_apart(found, d)
+
+
+def _searched(record: Any, kind: str, bounds: tuple[float, float] | None) -> NamedQuantity:
+    return NamedQuantity(
+        name=record.name,
+        kind=kind,
+        symbol=record.symbol,
+        unit=getattr(record, "unit", "-"),
+        text=record.text,
+        source=record.source,
+        bounds=bounds,
+    )
+
+
+def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> list[NamedQuantity]:
+    found = []
+    for entry in model.data_inputs:
+        if entry.kind not in ("part", "row"):
+            continue
+        part = (model.declaration.slots if entry.kind == "part" else model.declaration.rows)[entry.name]
+        table = catalogs.table(part.table)
+        names = [named_column(c) for c in entry.columns]
+        column = next((table.column(name) for name in names if table.has(name)), None)
+        texts = tuple(sorted(part.texts.get(names[0], ()))) if entry.columns[0].startswith(CODE_OF) else ()
+        value = rows[str(entry.sx)] if entry.kind == "row" else None
+        found.append(
+            NamedQuantity(
+                name=entry.label,
+                kind=entry.kind,
+                symbol=(column.symbol if column is not None else "") or names[0],
+                unit=(column.unit if column is not None else "") or "-",
+                text=column.description if column is not None else "not in this table",
+                source=f"table {part.table}",
+                value=None if value is None or math.isnan(value) else value,
+                slot=entry.name,
+                columns=tuple(column.name if column is not None and names[0] == c else c for c in entry.columns),
+                labels=texts,
+            )
+        )
+    return found
+
+
+def _told_apart(inputs: Sequence[NamedQuantity], d: Declaration) -> list[NamedQuantity]:
+    """Return inputs in which no symbol of a column means something else as well: its slot is added then."""
+    declared = [*(x.symbol for x in d.derived.values()), *(x.symbol for x in d.steps.values())]
+    declared += [x.symbol for x in d.constants.values()]
+    taken = declared + [q.symbol for q in inputs]
+    result = []
+    for q in inputs:
+        if q.kind in ("part", "row") and taken.count(q.symbol) > 1:
+            slot = d.slots[q.slot].symbol if q.kind == "part" else q.slot.split(":", 1)[1]
+            result.append(replace(q, symbol=f"{q.symbol}_{slot or q.slot}"))
+        else:
+            result.append(q)
+    return result
+
+
+def _defaults(model: Model) -> dict[str, Expression]:
+    """Return the formulas of defaults that follow from other requirements, where none was stated."""
+    d = model.declaration
+    wanted = {
+        r.name: ca.SX(r.default)
+        for r in d.requirements.values()
+        if r.sx is not None and not r.given and r.default is not None and not isinstance(r.default, float)
+    }
+    if not wanted:
+        return {}
+    program = Program(model.inputs, [expanded(e, model.calls) for e in wanted.values()])
+    reader = _Reader(program, _input_names(model, program))
+    return {name: reader.tree(node) for name, node in zip(wanted, program.outputs, strict=True)}
+
+
+def _input_names(model: Model, program: Program) -> dict[int, str]:
+    labels = [v.name for v in model.variables] + [i.label for i in model.data_inputs]
+    return dict(zip(program.input_nodes, labels, strict=True))
+
+
+# ---- formulas -------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Formulas:
+    """What the formulas of a model say, whatever the numbers are."""
+
+    constants: tuple[NamedQuantity, ...]
+    computed: tuple[NamedQuantity, ...]
+    limits: tuple[LimitRule, ...]
+    remarks: tuple[RemarkRule, ...]
+
+    @staticmethod
+    def read(model: Model) -> _Formulas:
+        """Read the formulas of a model from its trace."""
+        d = model.declaration
+        limits = list(d.limits.values())
+        wanted = [*(q.sx for q in d.derived.values()), *(q.sx for q in d.steps.values())]
+        wanted += [side for x in limits for side in (x.value, x.limit)] + [a.when for a in d.advices]
+        everything = ca.vertsplit(expanded(ca.vertcat(*wanted), model.calls)) if wanted else []
+        program = Program(model.inputs, everything)
+        nodes = iter(program.outputs)
+        named = {name: next(nodes) for name in (*d.derived, *d.steps)}
+        sides = {x.name: (next(nodes), next(nodes)) for x in limits}
+        conditions = [next(nodes) for _ in d.advices]
+        leaves = _input_names(model, program)
+        for name, node in named.items():
+            if program.nodes[node].op != ca.OP_CONST:
+                leaves.setdefault(node, name)
+        roots = [*named.values(), *(node for pair in sides.values() for node in pair), *conditions]
+        helpers = _Parts(program, leaves).of(roots)
+        leaves |= helpers
+        reader = _Reader(program, leaves)
+        needs = _needs(model, program, {**named, **{name: node for node, name in helpers.items()}})
+        records: dict[str, NamedQuantity] = {}
+        for name, node in named.items():
+            record = d.derived.get(name) or d.steps[name]
+            own = leaves.get(node) == name
+            records[name] = NamedQuantity(
+                name=name,
+                kind="derived" if name in d.derived else "step",
+                symbol=record.symbol,
+                unit=record.unit,
+                text=record.text,
+                source=record.source,
+                expression=reader.own(node) if own else reader.tree(node),
+                needs=needs[name],
+            )
+        for node, name in helpers.items():
+            records[name] = NamedQuantity(
+                name=name, kind="helper", symbol=name, unit="-", expression=reader.own(node), needs=needs[name]
+            )
+        known = {x.name: x for x in model.constraints}
+        rules = [
+            LimitRule(
+                name=x.name,
+                sense=x.sense,
+                unit=x.unit,
+                text=x.text,
+                source=x.source,
+                value=reader.tree(sides[x.name][0]),
+                limit=reader.tree(sides[x.name][1]),
+                guard=x.guard,
+                scale=x.scale,
+                needs=known[x.name].behind,
+                optional=tuple(model.data_inputs[k].label for k in known[x.name].void_without),
+                stated_by="user" if x.origin in (Origin.USER, Origin.PIN) else "family",
+            )
+            for x in limits
+        ]
+        remarks = [
+            RemarkRule(code=a.code, condition=reader.tree(node), message=a.message, source=a.source)
+            for a, node in zip(d.advices, conditions, strict=True)
+        ]
+        constants = [
+            NamedQuantity(
+                name=c.name,
+                kind="constant",
+                symbol=c.symbol,
+                unit=c.unit,
+                text=c.text,
+                source=c.source,
+                value=c.value,
+            )
+            for c in d.constants.values()
+        ]
+        return _Formulas(tuple(constants), tuple(_in_order(records)), tuple(rules), tuple(remarks))
+
+
+def _needs(model: Model, program: Program, named: Mapping[str, int]) -> dict[str, tuple[str, ...]]:
+    """Return, per quantity, the guards without which it does not exist: those of what it is computed from."""
+    declared = [(q.name, guard) for q in model.declaration.derived.values() for guard in q.needs]
+    found: dict[str, list[str]] = {name: [] for name in named}
+    for guard in sorted({guard for _, guard in declared}):
+        marked = program.downstream(named[name] for name, own in declared if own == guard)
+        for name, node in named.items():
+            if marked[node]:
+                found[name].append(guard)
+    return {name: tuple(guards) for name, guards in found.items()}
+
+
+def _in_order(records: Mapping[str, NamedQuantity]) -> list[NamedQuantity]:
+    """Return quantities so that each stands behind what it is computed from, otherwise as they were declared."""
+    placed: dict[str, NamedQuantity] = {}
+    stack = [name for name in reversed(list(records)) if records[name].kind != "helper"]
+    while stack:
+        q = records[stack[-1]]
+        assert q.expression is not None
+        missing = [n for n in dict.fromkeys(names_in(q.expression)) if n in records and n not in placed]
+        if missing and q.name not in placed:
+            stack += reversed(missing)
+        else:
+            placed.setdefault(q.name, q)
+            stack.pop()
+    # Parts of limits and remarks alone.
+    return [*placed.values(), *(q for name, q in records.items() if name not in placed)]
+
+
+class _Parts:
+    """Which nodes of formulas that are too long are told alone.
+
+    Parameters
+    ----------
+    program : Program
+    leaves : mapping
+        Node -> name of what has one.
+    """
+
+    def __init__(self, program: Program, leaves: Mapping[int, str]) -> None:
+        self.nodes, self.leaves = program.nodes, dict(leaves)
+        self.found: dict[int, str] = {}
+
+    def of(self, roots: Iterable[int]) -> dict[int, str]:
+        """Return names of the parts of formulas, by node; what one formula is given others find."""
+        for root in dict.fromkeys(sorted(roots)):
+            self._shorten(root)
+        return self.found
+
+    def _shorten(self, root: int) -> None:
+        while True:
+            inner, sizes, times = self._measured(root)
+            if sizes[root] <= LONGEST:
+                return
+            part = self._best(root, inner, sizes, times)
+            if part is None:
+                return
+            name = f"u_{len(self.found) + 1}"
+            self.found[part] = self.leaves[part] = name
+            self._shorten(part)
+
+    def _measured(self, root: int) -> tuple[list[int], dict[int, int], dict[int, int]]:
+        """Return the nodes of a formula in order, how much stands in each, and how often each stands there."""
+        inner, stack, seen = list[int](), [root], {root}
+        while stack:
+            node = stack.pop()
+            inner.append(node)
+            for a in self.nodes[node].args:
+                if a not in seen and a not in self.leaves and self.nodes[a].args:
+                    seen.add(a)
+                    stack.append(a)
+        inner.sort()
+        sizes: dict[int, int] = {}
+        for node in inner:
+            sizes[node] = sum(sizes.get(a, 1) for a in self.nodes[node].args)
+        times = dict.fromkeys(inner, 0)
+        times[root] = 1
+        for node in reversed(inner):
+            for a in self.nodes[node].args:
+                if a in times:
+                    times[a] += times[node]
+        return inner, sizes, times
+
+    def _best(self, root: int, inner: list[int], sizes: Mapping[int, int], times: Mapping[int, int]) -> int | None:
+        """Return the part that makes a formula shorter and is most worth a name."""
+        offered = [k for k in inner if SHORTEST <= sizes[k] < sizes[root] and not self._is_condition(k)]
+        if not offered:
+            return None
+        repeated = [k for k in offered if times[k] > 1 and sizes[k] <= LONGEST]
+        if repeated:
+            return max(repeated, key=lambda k: ((times[k] - 1) * sizes[k], -k))
+        half = max(12, sizes[root] // 2)
+        small = [k for k in offered if sizes[k] <= half]
+        return max(small or offered, key=lambda k: (sizes[k] if small else -sizes[k], -k))
+
+    def _is_condition(self, node: int) -> bool:
+        return self.nodes[node].op in COMPARISON_OF
+
+
+class _Reader:
+    """Trees of nodes, with names in place of what has one.
+
+    Parameters
+    ----------
+    program : Program
+    leaves : mapping
+        Node -> name.
+    """
+
+    def __init__(self, program: Program, leaves: Mapping[int, str]) -> None:
+        self.nodes, self.leaves = program.nodes, leaves
+        self._known: dict[int, Expression] = {}
+
+    def tree(self, node: int) -> Expression:
+        """Return the tree of a node, or its name."""
+        return ["q", self.leaves[node]] if node in self.leaves else self.own(node)
+
+    def own(self, node: int) -> Expression:
+        """Return what a node is computed from; an input is computed from nothing."""
+        if node not in self._known:
+            # Each before its readers, so that depth is no matter.
+            stack = [node]
+            while stack:
+                k = stack[-1]
+                args = self.nodes[k].args
+                missing = [a for a in args if a not in self.leaves and a not in self._known]
+                if missing:
+                    stack += missing
+                    continue
+                self._known[k] = self._made(k, [self._of(a) for a in args])
+                stack.pop()
+        return self._known[node]
+
+    def _of(self, node: int) -> Expression:
+        return ["q", self.leaves[node]] if node in self.leaves else self._known[node]
+
+    def _made(self, k: int, a: list[Expression]) -> Expression:
+        node: Node = self.nodes[k]
+        op = node.op
+        if op == ca.OP_CONST:
+            return ["n", float(node.constant)]
+        if op == ca.OP_INPUT:
+            return ["q", self.leaves[k]]
+        if op == ca.OP_ADD:
+            return simplified_sum([(a[0], 1), (a[1], 1)])
+        if op == ca.OP_SUB:
+            return simplified_sum([(a[0], 1), (a[1], -1)])
+        if op == ca.OP_NEG:
+            return a[0][1] if a[0][0] == "neg" else ["n", -a[0][1]] if a[0][0] == "n" else ["neg", a[0]]
+        return _PRODUCTS[op](a) if op in _PRODUCTS else self._other(op, a)
+
+    def _other(self, op: int, a: list[Expression]) -> Expression:
+        if op in (ca.OP_POW, ca.OP_CONSTPOW):
+            return ["^", a[0], a[1]]
+        if op == OP_SELECT:
+            return ["if", *a]
+        if op == ca.OP_IF_ELSE_ZERO:
+            return ["if", a[0], a[1], ["n", 0.0]]
+        if op in COMPARISON_OF:
+            return [COMPARISON_OF[op], *a]
+        if op in (ca.OP_FMIN, ca.OP_FMAX):
+            name, several = FUNCTION_OF[op], list[Expression]()
+            for x in a:
+                several += x[2] if x[0] == "f" and x[1] == name else [x]
+            return ["f", name, several]
+        return ["f", FUNCTION_OF[op], a]
+
+
+_PRODUCTS = {
+    ca.OP_MUL: lambda a: simplified_product(a, []),
+    ca.OP_DIV: lambda a: simplified_product([a[0]], [a[1]]),
+    ca.OP_INV: lambda a: simplified_product([ONE], [a[0]]),
+    ca.OP_TWICE: lambda a: simplified_product([["n", 2.0], a[0]], []),
+    ca.OP_SQ: lambda a: ["^", a[0], ["n", 2.0]] if a[0][0] in ("+", "neg") else simplified_product([a[0], a[0]], []),
+}
