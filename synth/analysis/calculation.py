@@ -31,7 +31,7 @@ from synth.robust.counterpart import nominal
 from synth.row_cells import CODE_OF, named_column
 from synth.special import expanded
 from synth.tables.catalogs import Catalogs
-from synth.units import si_text
+from synth.units import parse_unit, si_text
 
 LONGEST = 26  # quantities and numbers in one formula: what fits a line of a page
 SHORTEST = 5  # in a part of a formula that is told alone
@@ -158,13 +158,21 @@ def _of_user(x: Constraint) -> LimitRule:
     )
 
 
+# Units in which parts of formulas are shown; torque and energy are one dimension, and so is one of them.
+SHOWN_IN = ("mm", "mm2", "mm3", "mm4", "N", "N*m", "N/mm2", "N/mm", "W", "W/K", "J/K", "kg*m2", "kg", "s", "K", "m/s")
+UNIT_OF: dict[tuple[int, ...], str] = {parse_unit(unit).dimension: unit for unit in SHOWN_IN}
+
+
 def _with_unit(q: NamedQuantity, known: Mapping[str, NamedQuantity]) -> NamedQuantity:
-    """Return a part of a formula with its unit in SI, as far as that follows from what it is made of."""
+    """Return a part of a formula with a unit, as far as that follows from what it is made of."""
     assert q.expression is not None
     dimension = dimension_of(q.expression, known)
     if dimension is None or any(x.denominator > 1 for x in dimension):
         return replace(q, unit="")
-    return q if not any(dimension) else replace(q, unit=si_text([int(x) for x in dimension]))
+    if not any(dimension):
+        return q
+    whole = tuple(int(x) for x in dimension)
+    return replace(q, unit=UNIT_OF.get(whole, "") or si_text(whole))
 
 
 # ---- inputs ---------------------------------------------------------------------------------------------------------
@@ -301,10 +309,11 @@ class _Formulas:
         for name, node in named.items():
             if program.nodes[node].op != ca.OP_CONST:
                 leaves.setdefault(node, name)
-        roots = [*named.values(), *(node for pair in sides.values() for node in pair), *conditions]
-        helpers = _Parts(program, leaves).of(roots)
+        turned = _turned_round(program, leaves)
+        roots = [*named.values(), *turned, *(node for pair in sides.values() for node in pair), *conditions]
+        helpers = _Parts(program, leaves | turned).of(roots)
         leaves |= helpers
-        reader = _Reader(program, leaves)
+        reader = _Reader(program, leaves, turned)
         needs = _needs(model, program, {**named, **{name: node for node, name in helpers.items()}})
         records: dict[str, NamedQuantity] = {}
         for name, node in named.items():
@@ -359,6 +368,19 @@ class _Formulas:
             for c in d.constants.values()
         ]
         return _Formulas(tuple(constants), tuple(_in_order(records)), tuple(rules), tuple(remarks))
+
+
+def _turned_round(program: Program, leaves: Mapping[int, str]) -> dict[int, str]:
+    """Return nodes of which a named quantity is the negative: minus that quantity stands for them as well.
+
+    CasADi takes signs out of sums and products, so that -(-M + L) is found where M - L was written.
+    """
+    found = dict[int, str]()
+    for node, name in leaves.items():
+        own = program.nodes[node]
+        if own.op == ca.OP_NEG and own.args[0] not in leaves and program.nodes[own.args[0]].args:
+            found.setdefault(own.args[0], name)
+    return found
 
 
 def _needs(model: Model, program: Program, named: Mapping[str, int]) -> dict[str, tuple[str, ...]]:
@@ -468,15 +490,22 @@ class _Reader:
     program : Program
     leaves : mapping
         Node -> name.
+    turned : mapping, optional
+        Node -> name of what is its negative.
     """
 
-    def __init__(self, program: Program, leaves: Mapping[int, str]) -> None:
-        self.nodes, self.leaves = program.nodes, leaves
+    def __init__(self, program: Program, leaves: Mapping[int, str], turned: Mapping[int, str] | None = None) -> None:
+        self.nodes, self.leaves, self.turned = program.nodes, leaves, turned or {}
         self._known: dict[int, Expression] = {}
 
     def tree(self, node: int) -> Expression:
         """Return the tree of a node, or its name."""
-        return ["q", self.leaves[node]] if node in self.leaves else self.own(node)
+        return self._named(node) or self.own(node)
+
+    def _named(self, node: int) -> Expression | None:
+        if node in self.leaves:
+            return ["q", self.leaves[node]]
+        return ["neg", ["q", self.turned[node]]] if node in self.turned else None
 
     def own(self, node: int) -> Expression:
         """Return what a node is computed from; an input is computed from nothing."""
@@ -485,17 +514,18 @@ class _Reader:
             stack = [node]
             while stack:
                 k = stack[-1]
-                args = self.nodes[k].args
-                missing = [a for a in args if a not in self.leaves and a not in self._known]
+                missing = [a for a in self.nodes[k].args if a not in self._known and not self._stands_for(k, a)]
                 if missing:
                     stack += missing
                     continue
-                self._known[k] = self._made(k, [self._of(a) for a in args])
+                self._known[k] = self._made(k, [self._stands_for(k, a) or self._known[a] for a in self.nodes[k].args])
                 stack.pop()
         return self._known[node]
 
-    def _of(self, node: int) -> Expression:
-        return ["q", self.leaves[node]] if node in self.leaves else self._known[node]
+    def _stands_for(self, reader: int, node: int) -> Expression | None:
+        """Return the name that stands for an argument; a quantity is not told by its own negative."""
+        own = self.turned.get(node)
+        return None if own is not None and self.leaves.get(reader) == own else self._named(node)
 
     def _made(self, k: int, a: list[Expression]) -> Expression:
         node: Node = self.nodes[k]

@@ -20,7 +20,7 @@ from synth.files import read_json
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import digest_of, finite
-from synth.row_cells import CODE_OF, cell_value
+from synth.row_cells import CODE_OF, cell_value, text_code
 
 CALCULATION_FORMAT = 1
 CALCULATION = "calculation.json"
@@ -77,6 +77,15 @@ class NamedQuantity:
     def computed(self) -> bool:
         """Tell whether it follows from others in every design."""
         return self.kind in ("step", "derived", "helper")
+
+    def word(self, number: float) -> str | None:
+        """Return what a number stands for: the label of a choice, or a text that formulas ask for."""
+        if self.kind == "choice":
+            whole = float(number).is_integer() and 0 <= number < len(self.labels)
+            return self.labels[int(number)] if whole else None
+        if not self.is_text:
+            return None
+        return next((text or "nothing" for text in self.labels if text_code(text) == number), None)
 
     @property
     def is_text(self) -> bool:

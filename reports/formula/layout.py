@@ -1,0 +1,417 @@
+"""The layout of formulas: trees of what stands beside, over and above each other, whatever writes it down.
+
+Brackets, fractions of pi, signs and what counts as textbook form are decided here, once for all writers.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from reports.numbers import Shown, UnitIn, shown_number
+from synth.results.calculation import NamedQuantity
+from synth.results.expression import Expression, parts_of, with_parts
+
+NEGLIGIBLE = 1e-9  # an added number that keeps formulas away from dividing by zero; left out for readers
+
+
+@dataclass(frozen=True)
+class Letter:
+    """A symbol of a quantity, as declared."""
+
+    symbol: str
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number with its unit."""
+
+    shown: Shown
+
+
+@dataclass(frozen=True)
+class Word:
+    """An upright word: the name of a function, a label."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Sign:
+    """An operator between others, as a character."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """What stands beside each other."""
+
+    items: tuple[Layout, ...]
+
+
+@dataclass(frozen=True)
+class Fraction:
+    """What stands over and under a bar."""
+
+    over: Layout
+    under: Layout
+
+
+@dataclass(frozen=True)
+class Power:
+    """A base with what stands above it."""
+
+    base: Layout
+    exponent: Layout
+
+
+@dataclass(frozen=True)
+class Root:
+    """A square root."""
+
+    inner: Layout
+
+
+@dataclass(frozen=True)
+class Fence:
+    """What stands in brackets, or between bars."""
+
+    inner: Layout
+    bars: bool = False
+
+
+@dataclass(frozen=True)
+class Call:
+    """A function of arguments."""
+
+    name: str
+    arguments: tuple[Layout, ...]
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Values, each with the condition under which it counts; the last may have none."""
+
+    rows: tuple[tuple[Layout, Layout | None], ...]
+
+
+Layout: TypeAlias = Letter | Amount | Word | Sign | Row | Fraction | Power | Root | Fence | Call | Cases
+Leaf: TypeAlias = Callable[[NamedQuantity], Layout]
+
+PLUS, MINUS, TIMES, BESIDE = Sign("+"), Sign("−"), Sign("·"), Sign("\u2009")
+COMPARED = {"<": "<", "<=": "≤", "==": "=", "!=": "≠", "and": "and", "or": "or"}
+SUM, TERM, FACTOR, BASE = range(4)  # how strongly what stands around a formula holds it together
+
+
+def textbook(tree: Expression) -> Expression:
+    """Return a tree in the form of textbooks: what keeps digits on computers is written as it is meant.
+
+    ``expm1(x)`` is e^x - 1, ``log1p(x)`` is ln(1 + x), ``exp(a ln(1 + x))`` is (1 + x)^a, and numbers that only keep a
+    sum away from zero are left out.
+    """
+    tree = with_parts(tree, [textbook(part) for part in parts_of(tree)])
+    if tree[0] == "+":
+        kept = [t for t in tree[1] if not (t[0] == "n" and 0 < abs(t[1]) <= NEGLIGIBLE)] or tree[1]
+        return kept[0] if len(kept) == 1 else ["+", kept]
+    if tree[0] == "neg" and tree[1][0] == "+":
+        return _turned(tree[1])
+    if tree[0] == "neg" and tree[1][0] == "*":
+        return _sign_taken_in(tree)
+    if tree[0] != "f":
+        return tree
+    if tree[1] == "log1p":
+        return ["f", "ln", [["+", [["n", 1.0], *_terms(tree[2][0])]]]]
+    if tree[1] == "expm1":
+        return ["+", [_exponential(tree[2][0]), ["n", -1.0]]]
+    return _exponential(tree[2][0]) if tree[1] == "exp" else tree
+
+
+def negligible_in(tree: Expression) -> bool:
+    """Tell whether a tree has a number that readers are not shown."""
+    if tree[0] == "+" and any(t[0] == "n" and 0 < abs(t[1]) <= NEGLIGIBLE for t in tree[1]):
+        return True
+    return any(map(negligible_in, parts_of(tree)))
+
+
+def _terms(tree: Expression) -> list[Expression]:
+    return list(tree[1]) if tree[0] == "+" else [tree]
+
+
+def _turned(total: Expression) -> Expression:
+    """Return a sum with the other sign, a positive term first: -(e^x - 1) is 1 - e^x."""
+    terms: list[Expression] = [t[1] if t[0] == "neg" else ["n", -t[1]] if t[0] == "n" else ["neg", t] for t in total[1]]
+    first = next((k for k, t in enumerate(terms) if t[0] != "neg" and not (t[0] == "n" and t[1] < 0)), None)
+    if first is None:
+        return ["neg", total]
+    return ["+", [terms[first], *terms[:first], *terms[first + 1 :]]]
+
+
+def _sign_taken_in(tree: Expression) -> Expression:
+    """Return minus a product with the sign in a factor that is better read so: -(e^x - 1)/S is (1 - e^x)/S."""
+    over = tree[1][1]
+    for k, factor in enumerate(over):
+        if factor[0] == "+" and len(factor[1]) == 2 and (factor[1][1][0] == "neg" or factor[1][1] == ["n", -1.0]):
+            return ["*", [*over[:k], _turned(factor), *over[k + 1 :]], tree[1][2]]
+    return tree
+
+
+def _exponential(x: Expression) -> Expression:
+    """Return e^x, or the power that it is: exp(a ln b) is b^a."""
+    sign, inner = (True, x[1]) if x[0] == "neg" else (False, x)
+    factors, under = (inner[1], inner[2]) if inner[0] == "*" else ([inner], [])
+    for k, factor in enumerate(factors):
+        if factor[0] == "f" and factor[1] == "ln":
+            rest = [*factors[:k], *factors[k + 1 :]]
+            power: Expression = ["*", rest or [["n", 1.0]], under] if under or len(rest) != 1 else rest[0]
+            return ["^", factor[2][0], ["neg", power] if sign else power]
+    return ["f", "exp", [x]]
+
+
+class Typesetter:
+    """Lays out trees; what a quantity looks like is decided by a function.
+
+    Parameters
+    ----------
+    quantities : mapping
+        By name.
+    leaf : callable
+        Returns what stands for a quantity: its symbol, or its number.
+    numeric : bool
+        Whether numbers stand beside each other, so that products need a sign.
+    number : callable, optional
+        Returns what stands for a number without a unit.
+    """
+
+    def __init__(self, quantities: Mapping[str, NamedQuantity], leaf: Leaf, numeric: bool) -> None:
+        self.quantities, self.leaf, self.numeric = quantities, leaf, numeric
+        self.constants = [q for q in quantities.values() if q.kind == "constant"]
+
+    def lay(self, tree: Expression, around: int = SUM) -> Layout:
+        """Return the layout of a tree; ``around`` tells how strongly what stands around it holds together."""
+        kind = tree[0]
+        if kind == "q":
+            return self._quantity(tree[1], around)
+        if kind == "n":
+            return self._number(float(tree[1]), around)
+        if kind == "if":
+            return self._cases(tree)
+        if kind == "f":
+            return self._function(tree[1], tree[2])
+        if kind == "not":
+            return Row((Word("not"), Fence(self.lay(tree[1]))))
+        if kind in COMPARED:
+            return self._compared(kind, tree[1], tree[2])
+        laid: dict[str, Callable[[Expression, int], Layout]] = {
+            "+": self._sum,
+            "*": self._product,
+            "^": self._power,
+            "neg": self._negated,
+        }
+        return laid[kind](tree, around)
+
+    def _quantity(self, name: str, around: int) -> Layout:
+        found = self.leaf(self.quantities[name])
+        if isinstance(found, Amount):
+            negative, unit = found.shown.text.startswith("-"), bool(found.shown.unit) or bool(found.shown.exponent)
+            if (negative and around > SUM) or (unit and around >= BASE):
+                return Fence(found)
+        return found
+
+    def _number(self, number: float, around: int) -> Layout:
+        size: Layout = self._size(abs(number), around)
+        if number >= 0 or math.isnan(number):
+            return size
+        signed = Row((MINUS, size))
+        return Fence(signed) if around > SUM else signed
+
+    def _size(self, number: float, around: int) -> Layout:
+        named = named_constant(number, self.constants)
+        if named is None:
+            return Amount(shown_number(number, 6))
+        top: list[Layout] = [] if named.over == 1 and (named.pi > 0 or named.power > 0) else [_whole(named.over)]
+        bottom: list[Layout] = [] if named.under == 1 else [_whole(named.under)]
+        if named.pi:
+            (top if named.pi > 0 else bottom).append(_raised(Letter("pi"), abs(named.pi)))
+        if named.constant is not None:
+            (top if named.power > 0 else bottom).append(self.leaf(named.constant))
+        over = self._beside(top or [_whole(1)])
+        if not bottom:
+            return over
+        found = Fraction(over, self._beside(bottom))
+        return Fence(found) if around >= BASE else found
+
+    def _beside(self, items: Sequence[Layout]) -> Layout:
+        if len(items) == 1:
+            return items[0]
+        row: list[Layout] = []
+        for item in items:
+            row += [TIMES if self.numeric or isinstance(item, Amount) else BESIDE, item] if row else [item]
+        return Row(tuple(row))
+
+    def _sum(self, tree: Expression, around: int) -> Layout:
+        row: list[Layout] = []
+        for term in tree[1]:
+            if term[0] == "neg":
+                row += [MINUS, self.lay(term[1], TERM)]
+            elif term[0] == "n" and term[1] < 0:
+                row += [MINUS, self.lay(["n", -term[1]], TERM)]
+            else:
+                row += [PLUS, self.lay(term, TERM)] if row else [self.lay(term, SUM)]
+        found = Row(tuple(row))
+        return Fence(found) if around > SUM else found
+
+    def _negated(self, tree: Expression, around: int) -> Layout:
+        found = Row((MINUS, self.lay(tree[1], TERM)))
+        return Fence(found) if around > SUM else found
+
+    def _product(self, tree: Expression, around: int) -> Layout:
+        over = self._factors(tree[1], alone=bool(tree[2]))
+        found: Layout = over
+        if tree[2]:
+            found = Fraction(over, self._factors(tree[2], alone=True))
+        return Fence(found) if around >= BASE else found
+
+    def _factors(self, factors: Sequence[Expression], alone: bool) -> Layout:
+        if alone and len(factors) == 1:
+            return self.lay(factors[0])
+        return self._beside([self.lay(factor, FACTOR) for factor in factors])
+
+    def _power(self, tree: Expression, around: int) -> Layout:
+        base, exponent = tree[1], tree[2]
+        if exponent == ["n", 0.5]:
+            return Root(self.lay(base))
+        if exponent[0] == "n" and exponent[1] < 0 and float(exponent[1]).is_integer():
+            under = base if exponent[1] == -1 else ["^", base, ["n", -exponent[1]]]
+            return self._product(["*", [["n", 1.0]], [under]], around)
+        laid = self.lay(base, BASE)
+        if isinstance(laid, (Call, Root, Power, Fraction, Row, Cases)):
+            laid = Fence(laid)
+        return Power(laid, self.lay(exponent))
+
+    def _function(self, name: str, arguments: Sequence[Expression]) -> Layout:
+        laid = tuple(self.lay(a) for a in arguments)
+        if name == "sqrt":
+            return Root(laid[0])
+        if name == "abs":
+            return Fence(laid[0], bars=True)
+        if name == "exp":
+            return Power(Word("e"), laid[0])
+        return Call(name, laid)
+
+    def _cases(self, tree: Expression) -> Layout:
+        rows: list[tuple[Layout, Layout | None]] = []
+        while tree[0] == "if":
+            rows.append((self.lay(tree[2]), self.lay(tree[1])))
+            tree = tree[3]
+        rows.append((self.lay(tree), None))
+        return Cases(tuple(rows))
+
+    def _compared(self, kind: str, a: Expression, b: Expression) -> Layout:
+        word = self._word(a, b) or self._word(b, a)
+        if word is not None:
+            own = a if a[0] == "q" else b
+            return Row((self.lay(own), Sign(COMPARED[kind]), Word(word)))
+        joins = kind in ("and", "or")
+        sides = [
+            Fence(self.lay(x)) if joins and x[0] in ("and", "or") and x[0] != kind else self.lay(x) for x in (a, b)
+        ]
+        return Row((sides[0], Word(kind) if joins else Sign(COMPARED[kind]), sides[1]))
+
+    def _word(self, quantity: Expression, number: Expression) -> str | None:
+        """Return what a number means for a quantity that stands for words."""
+        if quantity[0] != "q" or number[0] != "n":
+            return None
+        return self.quantities[quantity[1]].word(number[1])
+
+
+def _whole(number: int) -> Layout:
+    return Amount(Shown(str(number)))
+
+
+def _raised(base: Layout, power: int) -> Layout:
+    return base if power == 1 else Power(base, _whole(power))
+
+
+# ---- numbers that are known ------------------------------------------------------------------------------------------
+
+DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 18, 24, 32, 36, 48, 64, 180)
+MOST_OVER = 36
+EXACT = 1e-14  # relative: as closely as a product of few factors is rounded
+
+
+@dataclass(frozen=True)
+class KnownNumber:
+    """A number that is over/under pi^pi constant^power."""
+
+    over: int
+    under: int
+    pi: int
+    constant: NamedQuantity | None = None
+    power: int = 0
+
+
+def named_constant(number: float, constants: Sequence[NamedQuantity]) -> KnownNumber | None:
+    """Return what a positive number is made of, if that is a fraction, a power of pi, or a declared constant.
+
+    Parameters
+    ----------
+    number : float
+        SI.
+    constants : list of NamedQuantity
+        Those that the family declares.
+    """
+    if not math.isfinite(number) or number <= 0:
+        return None
+    bare = _fraction(number, (0, 1, 2, 3, -1))
+    if bare is not None and not (bare.pi == 0 and bare.under == 1 and any(c.value == number for c in constants)):
+        short = bare.pi == 0 and _is_short(number)
+        return None if short else bare
+    for c in constants:
+        assert c.value is not None
+        for power in (1, -1):
+            found = _fraction(number / c.value**power, (0, 1, 2, -1))
+            if found is not None:
+                return KnownNumber(found.over, found.under, found.pi, c, power)
+    return None
+
+
+def _is_short(number: float) -> bool:
+    """Tell whether a number is best written as a decimal."""
+    return len(f"{number:.15g}".replace(".", "").strip("0")) <= 4
+
+
+def _fraction(number: float, powers: Sequence[int]) -> KnownNumber | None:
+    for pi in powers:
+        rest = number / math.pi**pi
+        for under in DENOMINATORS:
+            over = round(rest * under)
+            if 1 <= over <= MOST_OVER and abs(rest * under - over) <= EXACT * over and math.gcd(over, under) == 1:
+                return KnownNumber(over, under, pi)
+    return None
+
+
+# ---- leaves ----------------------------------------------------------------------------------------------------------
+
+
+def by_symbol(q: NamedQuantity) -> Layout:
+    """Return what stands for a quantity in a formula: its symbol."""
+    return Letter(q.symbol)
+
+
+@dataclass(frozen=True)
+class ByNumber:
+    """What stands for a quantity where numbers are inserted: its value in its own unit, or in SI."""
+
+    values: Mapping[str, float]
+    in_si: bool = False
+    digits: int = 5
+
+    def __call__(self, q: NamedQuantity) -> Layout:
+        """Return the number of a quantity, or the word that it stands for."""
+        value = q.value if q.value is not None else self.values[q.name]
+        if q.labels or q.is_text:
+            return Word(q.word(value) or "another")
+        return Amount(UnitIn.formula(q.unit, self.in_si).shown(value, self.digits))

@@ -1,0 +1,110 @@
+"""Layouts as MathML Core, which browsers draw without any library."""
+
+from __future__ import annotations
+
+from html import escape
+
+from reports.formula.layout import (
+    BESIDE,
+    Amount,
+    Call,
+    Cases,
+    Fence,
+    Fraction,
+    Layout,
+    Letter,
+    Power,
+    Root,
+    Row,
+    Sign,
+    Word,
+)
+from reports.formula.symbols import symbol_parts
+from reports.numbers import unit_text
+
+
+def mathml(layout: Layout) -> str:
+    """Return a layout as the inside of a ``math`` element.
+
+    Examples
+    --------
+    >>> mathml(Letter("F0"))
+    '<msub><mi>F</mi><mn>0</mn></msub>'
+    """
+    if isinstance(layout, Letter):
+        return _letter(layout.symbol)
+    if isinstance(layout, Amount):
+        return _amount(layout)
+    if isinstance(layout, Word):
+        return f"<mtext>{escape(layout.text)}</mtext>"
+    if isinstance(layout, Sign):
+        return '<mspace width="0.17em"/>' if layout == BESIDE else f"<mo>{escape(layout.text)}</mo>"
+    if isinstance(layout, Row):
+        return f"<mrow>{''.join(map(_item, layout.items))}</mrow>"
+    if isinstance(layout, Fraction):
+        return f"<mfrac>{_one(layout.over)}{_one(layout.under)}</mfrac>"
+    if isinstance(layout, Power):
+        return f"<msup>{_one(layout.base)}{_one(layout.exponent)}</msup>"
+    if isinstance(layout, Root):
+        return f"<msqrt>{mathml(layout.inner)}</msqrt>"
+    if isinstance(layout, Fence):
+        left, right = ("|", "|") if layout.bars else ("(", ")")
+        return f'<mrow><mo fence="true">{left}</mo>{mathml(layout.inner)}<mo fence="true">{right}</mo></mrow>'
+    if isinstance(layout, Call):
+        return _call(layout)
+    assert isinstance(layout, Cases)
+    rows = "".join(
+        f"<mtr><mtd>{mathml(value)}</mtd><mtd>"
+        + ("<mtext>otherwise</mtext>" if condition is None else f"<mtext>if&#160;</mtext>{mathml(condition)}")
+        + "</mtd></mtr>"
+        for value, condition in layout.rows
+    )
+    return f'<mrow><mo fence="true" stretchy="true">{{</mo><mtable class="cases">{rows}</mtable></mrow>'
+
+
+def _item(layout: Layout) -> str:
+    """Return a part of a row: words between others keep their distance."""
+    if isinstance(layout, Word) and layout.text in ("and", "or", "not"):
+        return f"<mtext>&#160;{layout.text}&#160;</mtext>"
+    return mathml(layout)
+
+
+def _one(layout: Layout) -> str:
+    """Return a layout as exactly one element."""
+    return f"<mrow>{mathml(layout)}</mrow>"
+
+
+def _letter(symbol: str) -> str:
+    parts = symbol_parts(symbol)
+    base = f"<mi>{escape(parts.base)}</mi>" if parts.italic else f"<mtext>{escape(parts.base)}</mtext>"
+    if parts.subscripts:
+        below = "<mo>,</mo>".join(map(_subscript, parts.subscripts))
+        base = f"<msub>{base}{below if len(parts.subscripts) == 1 else f'<mrow>{below}</mrow>'}</msub>"
+    return f"<mrow><mi>Δ</mi>{base}</mrow>" if parts.difference else base
+
+
+def _subscript(text: str) -> str:
+    kind = "mn" if text.isdigit() else "mi" if len(text) == 1 else "mtext"
+    return f"<{kind}>{escape(text)}</{kind}>"
+
+
+def _amount(layout: Amount) -> str:
+    number = layout.shown
+    negative, digits = number.text.startswith("-"), number.text.removeprefix("-")
+    found = f"<mo>−</mo><mn>{escape(digits)}</mn>" if negative else f"<mn>{escape(digits)}</mn>"
+    many = negative
+    if number.exponent:
+        power = f"<mo>−</mo><mn>{-number.exponent}</mn>" if number.exponent < 0 else f"<mn>{number.exponent}</mn>"
+        found += f"<mo>·</mo><msup><mn>10</mn><mrow>{power}</mrow></msup>"
+        many = True
+    if number.unit:
+        unit = unit_text(number.unit)
+        space = "" if unit == "°" else '<mspace width="0.17em"/>'
+        found += f"{space}<mtext>{escape(unit)}</mtext>"
+        many = True
+    return f"<mrow>{found}</mrow>" if many else found
+
+
+def _call(layout: Call) -> str:
+    inside = "<mo>;</mo>".join(map(mathml, layout.arguments))
+    return f'<mrow><mi>{escape(layout.name)}</mi><mo fence="true">(</mo>{inside}<mo fence="true">)</mo></mrow>'

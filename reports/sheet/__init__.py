@@ -1,0 +1,1 @@
+"""Calculation sheets: what they say as neutral blocks, and the blocks as HTML, PDF and JSON."""
