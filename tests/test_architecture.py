@@ -21,8 +21,8 @@ def packages_of(top: str) -> tuple[str, ...]:
     return tuple(sorted({path.parent.relative_to(ROOT).as_posix() for path in (ROOT / top).rglob("*.py")}))
 
 
-ENGINE, PROBLEMS = packages_of("synth"), packages_of("problems")
-PACKAGES = (*ENGINE, *PROBLEMS, "catalogs", "reports")
+ENGINE, PROBLEMS, REPORTS = packages_of("synth"), packages_of("problems"), packages_of("reports")
+PACKAGES = (*ENGINE, *PROBLEMS, "catalogs", *REPORTS)
 OURS = {package.split("/")[0] for package in PACKAGES}
 
 
@@ -68,11 +68,12 @@ def test_imports_are_found_wherever_they_stand() -> None:
 
 # package: what it may import besides the standard library
 FAMILY = {"problems", "numpy", "pandas", "synth.DesignProblem", "synth.declaration", "synth.errors", "synth.special"}
+REPORT = {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors", "synth.files"}
 MAY_IMPORT = {
     **dict.fromkeys(PROBLEMS, FAMILY),
     "problems/mechanics": {"problems.mechanics", "numpy", "pandas", "scipy", "synth.special", "synth.errors"},
     "catalogs": set(),
-    "reports": {"reports", "matplotlib", "rich", "pandas", "synth.results", "synth.units", "synth.errors"},
+    **dict.fromkeys(REPORTS, REPORT),
 }
 
 

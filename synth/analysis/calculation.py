@@ -234,7 +234,9 @@ def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> lis
                 kind=entry.kind,
                 symbol=(column.symbol if column is not None else "") or names[0],
                 unit=(column.unit if column is not None else "") or "-",
-                text=column.description if column is not None else "not in this table",
+                text=column.description
+                if column is not None
+                else f"{names[0]}, a column that this table does not have",
                 source=f"table {part.table}",
                 value=None if value is None or math.isnan(value) else value,
                 slot=entry.name,

@@ -1,0 +1,93 @@
+"""Formulas that are too wide for a line, broken where people would: before the terms of a sum, then before factors."""
+
+from __future__ import annotations
+
+from reports.formula.layout import (
+    BESIDE,
+    Amount,
+    Call,
+    Cases,
+    Fence,
+    Fraction,
+    Layout,
+    Letter,
+    Power,
+    Root,
+    Row,
+    Sign,
+    Word,
+)
+from reports.formula.symbols import symbol_parts
+from reports.numbers import printed
+
+WIDEST = 74.0  # digits side by side that a line of a page holds
+SMALL = 0.72  # size of what is raised, lowered, or stands in a fraction inside a line
+
+
+def width(layout: Layout) -> float:
+    """Return about how wide a layout is, in digits."""
+    if isinstance(layout, Letter):
+        parts = symbol_parts(layout.symbol)
+        return parts.difference + len(parts.base) + SMALL * len(",".join(parts.subscripts))
+    if isinstance(layout, Amount):
+        return len(printed(layout.shown)) * 0.95
+    if isinstance(layout, Word):
+        return len(layout.text) * 0.95
+    if isinstance(layout, Sign):
+        return 0.4 if layout == BESIDE else 1.9
+    if isinstance(layout, Row):
+        return sum(map(width, layout.items))
+    if isinstance(layout, Fraction):
+        return max(width(layout.over), width(layout.under)) + 0.5
+    if isinstance(layout, Power):
+        return width(layout.base) + SMALL * width(layout.exponent)
+    if isinstance(layout, Root):
+        return width(layout.inner) + 1.2
+    if isinstance(layout, Fence):
+        return width(layout.inner) + 1.2
+    if isinstance(layout, Call):
+        return len(layout.name) + sum(width(a) + 1.0 for a in layout.arguments) + 1.0
+    assert isinstance(layout, Cases)
+    values = max(width(value) for value, _ in layout.rows)
+    return values + max(width(condition) + 3 if condition else 9.0 for _, condition in layout.rows) + 2.0
+
+
+def broken(layout: Layout, widest: float = WIDEST) -> list[Layout]:
+    """Return a layout as lines; each but the first begins with the sign that joins it to the line before.
+
+    What has no place to break stays one line, however wide.
+    """
+    if width(layout) <= widest or not isinstance(layout, Row):
+        return [layout]
+    for signs in (("+", "−"), ("·", BESIDE.text)):
+        pieces = _pieces(layout, signs)
+        if len(pieces) > 1:
+            return [line for packed in _packed(pieces, widest) for line in _again(packed, signs, widest)]
+    return [layout]
+
+
+def _pieces(row: Row, signs: tuple[str, ...]) -> list[list[Layout]]:
+    pieces: list[list[Layout]] = [[]]
+    for position, item in enumerate(row.items):
+        if position and isinstance(item, Sign) and item.text in signs:
+            pieces.append([])
+        pieces[-1].append(item)
+    return pieces
+
+
+def _packed(pieces: list[list[Layout]], widest: float) -> list[Layout]:
+    lines: list[list[Layout]] = []
+    for piece in pieces:
+        if lines and width(Row(tuple(lines[-1]))) + width(Row(tuple(piece))) <= widest:
+            lines[-1] += piece
+        else:
+            lines.append(list(piece))
+    return [Row(tuple(line)) for line in lines]
+
+
+def _again(line: Layout, signs: tuple[str, ...], widest: float) -> list[Layout]:
+    """Break a term that is too wide alone before its factors."""
+    if signs[0] == "+" and width(line) > widest and isinstance(line, Row):
+        pieces = _pieces(line, ("·", BESIDE.text))
+        return _packed(pieces, widest) if len(pieces) > 1 else [line]
+    return [line]

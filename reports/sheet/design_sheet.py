@@ -1,0 +1,399 @@
+"""The calculation sheet of one design: what an engineer wants to check, in the order in which it is checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from reports.about import About
+from reports.formula.layout import Amount, Letter, Word, textbook
+from reports.numbers import printed, shown
+from reports.sheet.blocks import (
+    Block,
+    Bullets,
+    Cell,
+    Code,
+    Column,
+    Document,
+    Heading,
+    Listing,
+    Paragraph,
+    State,
+    Strong,
+    TableBlock,
+    TableRow,
+    said,
+)
+from reports.sheet.steps import Steps
+from synth.results import Design, ParetoFront
+from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict, NamedQuantity
+from synth.results.provenance import installed_versions
+
+LENGTHS = ("summary", "normal", "full")
+TIGHT = 0.999  # share of a limit from which on it decides something
+CONFIDENCE_NOTED = ("typical", "assumed")
+
+
+@dataclass(frozen=True)
+class SheetRequest:
+    """What a sheet is made of.
+
+    Parameters
+    ----------
+    calculation : Calculation
+    design : Design
+    front : ParetoFront, optional
+        The front it stands on; a design that was only checked has none.
+    about : About
+    length : {"summary", "normal", "full"}
+        ``summary`` leaves out the steps, ``full`` adds the list of symbols.
+    """
+
+    calculation: Calculation
+    design: Design
+    front: ParetoFront | None = None
+    about: About = field(default_factory=About)
+    length: str = "normal"
+
+
+def design_sheet(request: SheetRequest) -> Document:
+    """Return the calculation sheet of a design.
+
+    Raises
+    ------
+    InputError
+        A recorded value differs from what its formula gives.
+    """
+    return _Sheet(request).document()
+
+
+def program_name(front: ParetoFront | None) -> str:
+    """Return what computed a front, with its version."""
+    versions = installed_versions() if front is None or front.record is None else front.record.get("versions", {})
+    return f"clutchsynth {versions.get('clutchsynth', '')}".strip()
+
+
+class _Sheet:
+    def __init__(self, request: SheetRequest) -> None:
+        self.request = request
+        self.calculation, self.design, self.front = request.calculation, request.design, request.front
+        self.outcome: CalculatedDesign = self.calculation.of_design(self.design)
+        self.steps = Steps(self.calculation, self.outcome)
+
+    def document(self) -> Document:
+        frame = self.design.frame
+        name = f"Design #{self.design.rank}" if self.design.rank else "Design"
+        blocks: list[Block] = [state_of(self.design, self.front), *self._input(), *self._sizes(), *self._parts()]
+        blocks += self._limits()
+        steps = self.steps.all()
+        if self.request.length != "summary":
+            blocks.append(Heading("Calculation", anchor="calculation"))
+            blocks.append(Paragraph("Each line carries its units; numbers are shown rounded.", small=True))
+            blocks += steps
+        blocks += self._remarks()
+        if self.request.length == "full":
+            blocks += self._symbols()
+        blocks += [*self._sources(), *self._notes()]
+        return Document(
+            kind="Calculation sheet",
+            title=f"{frame.title}: {name.lower() if self.design.rank else 'design that was checked'}",
+            facts=self.request.about.facts(),
+            blocks=tuple(blocks),
+            program=program_name(self.front),
+            logo=self.request.about.logo,
+        )
+
+    # -- what was given ------------------------------------------------------------------------
+
+    def _of_kind(self, *kinds: str) -> list[NamedQuantity]:
+        return [q for q in self.calculation.quantities.values() if q.kind in kinds]
+
+    def _input(self) -> list[Block]:
+        frame = self.design.frame
+        typed = [q for q in self._of_kind("requirement") if q.name in frame.requirements]
+        usual = [q for q in self._of_kind("requirement") if q.name not in frame.requirements]
+        blocks: list[Block] = [Heading("Input", anchor="input")]
+        blocks.append(TableBlock.of("Stated", INPUT_COLUMNS, [self._input_row(q) for q in typed]))
+        options = [
+            TableRow((Code(name), word, "stated" if name in frame.options else "default"))
+            for name, word in self.calculation.options.items()
+        ]
+        if options:
+            blocks.append(
+                TableBlock.of("Options", (Column("option", width=2), Column("in force", width=2), Column("")), options)
+            )
+        groups = _grouped(usual)
+        told = tuple((label, tuple(self._input_row(q) for q in members)) for label, members in groups)
+        if usual:
+            blocks.append(TableBlock("Assumed: defaults of the family", INPUT_COLUMNS, told))
+        if frame.not_asked:
+            blocks.append(Paragraph(f"Not asked: {', '.join(frame.not_asked)}.", small=True))
+        return blocks
+
+    def _input_row(self, q: NamedQuantity) -> TableRow:
+        follows: Cell = q.source
+        if q.expression is not None:
+            laid = self.steps.symbols.lay(textbook(q.expression))
+            follows = said(f"{q.source}; " if q.source else "", "follows: ", laid)
+        return TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(self._value(q), q.unit)), follows))
+
+    def _value(self, q: NamedQuantity) -> float:
+        return self.outcome.values[q.name] if q.value is None else q.value
+
+    def _sizes(self) -> list[Block]:
+        rows = []
+        for q in self._of_kind("variable", "count", "choice"):
+            word = q.word(self._value(q))
+            amount: Cell = Word(word) if word is not None else Amount(shown(self._value(q), q.unit))
+            remark = self.design.off_grid.get(q.name) or ""
+            if q.name in self.design.outside:
+                remark = f"outside of what is searched: {self.design.outside[q.name]}"
+            rows.append(TableRow((q.text or q.name, Letter(q.symbol), amount, remark)))
+        return [Heading("Sizes", anchor="sizes"), TableBlock.of("Sizes of this design", SIZE_COLUMNS, rows)]
+
+    def _parts(self) -> list[Block]:
+        groups = []
+        for slot, row in self.design.parts.items():
+            columns = [q for q in self._of_kind("part") if q.slot == slot]
+            rows = []
+            for q in columns:
+                word, value = q.word(self._value(q)), self._value(q)
+                told: Cell = word or "another text" if q.is_text else Amount(shown(value, q.unit))
+                if math.isnan(value):
+                    told = "no value"
+                rows.append(TableRow((q.text or q.name, Letter(q.symbol), told)))
+            confidence = str(row.get("confidence") or "")
+            source = "; ".join(str(x) for x in (row.get("source"), confidence and f"confidence: {confidence}") if x)
+            label = f"{slot}: {row} ({row['table']}" + (f"; {source})" if source else ")")
+            groups.append((label, tuple(rows)))
+        fixed = self._of_kind("row")
+        for slot in dict.fromkeys(q.slot for q in fixed):
+            rows = [
+                TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(self._value(q), q.unit))))
+                for q in fixed
+                if q.slot == slot
+            ]
+            table, _, designation = slot.partition(":")
+            groups.append((f"{designation} ({table}; fixed by an option)", tuple(rows)))
+        if not groups:
+            return []
+        return [Heading("Parts", anchor="parts"), TableBlock("What tables say", PART_COLUMNS, tuple(groups))]
+
+    # -- limits --------------------------------------------------------------------------------
+
+    def _limits(self) -> list[Block]:
+        ranked = sorted(self.calculation.limits, key=lambda x: _order(x, self.outcome.verdicts[x.name]))
+        rows = [self._limit_row(x, self.outcome.verdicts[x.name]) for x in ranked]
+        blocks: list[Block] = [Heading("Limits", anchor="limits"), Paragraph(self._governing(ranked))]
+        blocks.append(TableBlock.of("Limits, the most used first", LIMIT_COLUMNS, rows))
+        return blocks + self._over_a_range()
+
+    def _governing(self, ranked: Sequence[LimitRule]) -> str:
+        broken = [x.name for x in ranked if not self.outcome.verdicts[x.name].holds]
+        if broken:
+            return f"Violated: {', '.join(broken)}."
+        tight = [x.name for x in ranked if (self.outcome.verdicts[x.name].used or 0) >= TIGHT and x.sense != "equal"]
+        return f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
+
+    def _limit_row(self, x: LimitRule, verdict: LimitVerdict) -> TableRow:
+        condition = self.steps.limit_condition(x.value, x.limit, x.sense)
+        name = said(x.text or x.name, " ", Code(x.name))
+        if verdict.void:
+            lacking = [name for name in x.optional if math.isnan(self.outcome.values[name])]
+            return TableRow((name, condition, "", "", f"not checked: no {', '.join(lacking)}"))
+        if verdict.failed:
+            told = f"not checked: {', '.join(verdict.failed)} fails"
+            return TableRow((name, condition, "", "", told))
+        numbers = self.steps.limit_numbers(verdict.value, verdict.limit, x.sense, x.unit)
+        used = "" if verdict.used is None else percent(verdict.used)
+        words: Cell = "holds" if verdict.holds else Strong("VIOLATED")
+        if x.source and "unsourced" in x.source:
+            words = said(words, " (rule of practice)")
+        mark = "bad" if not verdict.holds else "tight" if (verdict.used or 0) >= TIGHT and x.sense != "equal" else ""
+        return TableRow((name, condition, numbers, used, words), mark=mark, used=verdict.used)
+
+    def _over_a_range(self) -> list[Block]:
+        """Return how limits stand what scatters: each at its worst point."""
+        rating = self.design.robust
+        if not rating or not rating.limits:
+            return []
+        units = rating.units or {}
+        rows = []
+        for name, told in rating.limits.items():
+            unit = self.design.frame.limit_units.get(name, "-")
+            sides = " / ".join(
+                "–" if side is None or not isinstance(side, float) else printed(shown(side, unit))
+                for side in (told.value, told.limit)
+            )
+            at = told.at if isinstance(told.at, Mapping) else {}
+            place = ", ".join(f"{key} {printed(shown(value, units.get(key, '-')))}" for key, value in at.items())
+            used = percent(told.utilisation) if isinstance(told.utilisation, float) else ""
+            words: Cell = "holds" if told.holds else Strong("VIOLATED")
+            mark = "" if told.holds else "bad"
+            rows.append(TableRow((Code(name), place, sides, used, words, str(told.proof or "")), mark=mark))
+        return [
+            Heading("Limits over the range that scatters", level=2, anchor="range"),
+            TableBlock.of("Each limit at its worst point", RANGE_COLUMNS, rows),
+        ]
+
+    # -- words ---------------------------------------------------------------------------------
+
+    def _remarks(self) -> list[Block]:
+        told: list[Cell] = [*self.design.advice, *self.design.not_checked]
+        if self.design.note:
+            told.append(f"On the front: {self.design.note}.")
+        if self.design.alternatives:
+            told.append(f"The same objectives with: {'; '.join(self.design.alternatives)}.")
+        for slot, row in self.design.parts.items():
+            if str(row.get("confidence")) in CONFIDENCE_NOTED:
+                told.append(f"{slot} {row}: figures of this row are {row['confidence']}; confirm them with the maker.")
+        if not told:
+            return []
+        return [Heading("Remarks", anchor="remarks"), Bullets(tuple(told))]
+
+    def _symbols(self) -> list[Block]:
+        rows = [
+            TableRow((Letter(q.symbol), Code(q.name), q.text, "" if q.unit in ("-", "") else q.unit))
+            for q in sorted(self.calculation.quantities.values(), key=lambda q: (q.symbol.casefold(), q.symbol))
+        ]
+        return [Heading("Symbols", anchor="symbols"), TableBlock.of("Symbols and public names", SYMBOL_COLUMNS, rows)]
+
+    def _sources(self) -> list[Block]:
+        listed: dict[str, None] = dict.fromkeys(self.calculation.sources)
+        blocks: list[Block] = [Heading("Sources", anchor="sources"), Bullets(tuple(listed))]
+        return blocks
+
+    def _notes(self) -> list[Block]:
+        notes: list[Cell] = [
+            "Numbers are shown to five digits, more where a difference needs them; the calculation carries sixteen. "
+            "A pocket calculator may differ in the last digit shown.",
+            "Formulas are read back from the graph that was solved: the sheet cannot say anything else than the model.",
+        ]
+        if self.steps.negligible:
+            notes.append(
+                "Numbers of 1e-9 and less that only keep a sum away from zero are left out of the lines shown; "
+                "the files for programs have them."
+            )
+        if self.steps.in_si and self.request.length != "summary":
+            symbols = list(dict.fromkeys(self.steps.in_si))
+            told: list[Cell] = ["In SI alone: "]
+            for k, symbol in enumerate(symbols):
+                told += [", ", Letter(symbol)] if k else [Letter(symbol)]
+            notes.append(said(*told))
+        digests: list[Cell] = [said("Checksum of the calculation: ", Code(self.calculation.digest))]
+        if self.front is not None and self.front.record is not None:
+            digests.append(said("Checksum of front.json: ", Code(str(self.front.record.get("digest", "")))))
+        return [
+            Heading("Notes", anchor="notes"),
+            Bullets((*notes, *digests)),
+            Paragraph("The design, as clutchsynth check reads it:"),
+            Listing(self.design.yaml()),
+        ]
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent, with a place more near the limit."""
+    if math.isinf(share):
+        return "no bound"
+    return f"{100 * share:.2f} %" if 0.995 <= share < 1.005 and share != 1 else f"{100 * share:.1f} %"
+
+
+def _order(x: LimitRule, verdict: LimitVerdict) -> tuple[int, float]:
+    if not verdict.holds:
+        return 0, -(verdict.used or math.inf)
+    return (2, 0.0) if verdict.used is None else (1, -verdict.used)
+
+
+def _grouped(quantities: Iterable[NamedQuantity]) -> list[tuple[str, list[NamedQuantity]]]:
+    groups: dict[str, list[NamedQuantity]] = {}
+    for q in quantities:
+        groups.setdefault(q.group, []).append(q)
+    return list(groups.items())
+
+
+def state_of(design: Design, front: ParetoFront | None) -> State:
+    """Return what must be known of a design first."""
+    details: list[str] = []
+    if design.robust:
+        details.append(_over_range_in_words(design))
+    if design.violated:
+        count = len(design.violated)
+        head = f"NOT FEASIBLE: {count} limit{'s' if count > 1 else ''} violated"
+        return State("bad", head, (f"Violated: {', '.join(design.violated)}.", *details))
+    if front is None:
+        return State(
+            "good", "Feasible: all limits that apply hold", ("One design was checked; none was searched.", *details)
+        )
+    return State(*front_state(front, feasible="Feasible"), details=tuple([*front_details(front), *details]))
+
+
+def front_state(front: ParetoFront, feasible: str = "") -> tuple[str, str]:
+    """Return the level and the head line of the state of a front."""
+    before = f"{feasible}; " if feasible else ""
+    if not front.designs:
+        proven = front.certificate.kind == "global"
+        return "bad", "NOT FEASIBLE, proven: nothing meets the task" if proven else "NO DESIGN FOUND, not proven"
+    if front.interrupted:
+        return "open", f"{before}the search was stopped: NOT PROVEN to the end"
+    if front.certificate.kind == "global":
+        gap = 100 * (front.certificate.gap or 0)
+        what = "the front is proven" if before else "Proven"
+        return "good", f"{before}{what} to {gap:.3g} % over all combinations"
+    if front.certificate.kind == "exhaustive":
+        return "open", f"{before}every combination was solved, bounds are not closed"
+    return "open", f"{before}NOT PROVEN: better designs may exist"
+
+
+def front_details(front: ParetoFront) -> list[str]:
+    """Return the certificate in words, and why a search was stopped."""
+    told = [_sentence(front.certificate.sentence())]
+    if front.interrupted:
+        told.append(f"Stopped: {front.interrupted}.")
+    return told
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
+def _over_range_in_words(design: Design) -> str:
+    rating = design.robust
+    holds = "holds" if rating.holds else "DOES NOT HOLD"
+    told = f"Over the range that scatters it {holds} ({rating.proof or 'not proven'})"
+    if isinstance(rating.share_good, float):
+        told += f"; {100 * rating.share_good:.4g} % of {rating.samples} samples keep all limits"
+    if rating.worst_limit:
+        told += f"; the worst limit is {rating.worst_limit}"
+    return told + "."
+
+
+INPUT_COLUMNS = (
+    Column("meaning", width=3.2),
+    Column("symbol"),
+    Column("value", number=True, width=1.3),
+    Column("source", width=2.5),
+)
+SIZE_COLUMNS = (
+    Column("meaning", width=3.2),
+    Column("symbol"),
+    Column("value", number=True, width=1.3),
+    Column("", width=2.5),
+)
+PART_COLUMNS = (Column("meaning", width=4), Column("symbol"), Column("value", number=True, width=1.5))
+LIMIT_COLUMNS = (
+    Column("limit", width=2.6),
+    Column("condition", width=2.6),
+    Column("in numbers", width=2.1),
+    Column("used", number=True, width=0.8),
+    Column("verdict", width=1.1),
+)
+RANGE_COLUMNS = (
+    Column("limit", width=1.5),
+    Column("worst point", width=2.4),
+    Column("value / limit there", width=1.6),
+    Column("used", number=True, width=0.7),
+    Column("verdict", width=0.9),
+    Column("proof", width=0.8),
+)
+SYMBOL_COLUMNS = (Column("symbol"), Column("name", width=2), Column("meaning", width=4), Column("unit"))

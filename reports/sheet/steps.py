@@ -1,0 +1,167 @@
+"""Formulas of a design as steps: symbols, numbers inserted, result."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from reports.formula.layout import (
+    Amount,
+    ByNumber,
+    Layout,
+    Letter,
+    Row,
+    Sign,
+    Typesetter,
+    Word,
+    by_symbol,
+    negligible_in,
+    textbook,
+)
+from reports.formula.lines import broken
+from reports.formula.plain import plain
+from reports.numbers import DIGITS, Shown, UnitIn, shown
+from reports.sheet.blocks import Cell, StepBlock, said
+from synth.results.calculation import CalculatedDesign, Calculation, NamedQuantity
+from synth.results.dimensions import dimension_of
+from synth.results.expression import Expression, in_force, names_in, value_of
+from synth.units import parse_unit, to_si
+
+ENOUGH = 1e-4  # relative; what is printed gives the printed result this closely
+MORE_DIGITS = (DIGITS, 6, 7, 9, 12)
+CONDITIONS = 3  # of one formula that are told
+
+
+@dataclass
+class Steps:
+    """Lays out the formulas of one design.
+
+    Parameters
+    ----------
+    calculation : Calculation
+    outcome : CalculatedDesign
+        Its quantities and verdicts.
+    """
+
+    calculation: Calculation
+    outcome: CalculatedDesign
+    in_si: list[str] = field(default_factory=list)  # symbols of formulas whose units do not close
+    negligible: bool = False  # whether a number was left out that only keeps a sum away from zero
+
+    def __post_init__(self) -> None:
+        """Make the typesetter of symbols."""
+        self.quantities = self.calculation.quantities
+        self.symbols = Typesetter(self.quantities, by_symbol, numeric=False)
+        failing = [name for name, verdict in self.outcome.verdicts.items() if not verdict.holds]
+        self.failing = {x.name for x in self.calculation.limits if x.guard and x.name in failing}
+
+    def all(self) -> list[StepBlock]:
+        """Return every computed quantity, in order of dependency."""
+        computed = [q for q in self.quantities.values() if q.computed]
+        return [self.step(number, q) for number, q in enumerate(computed, 1)]
+
+    def step(self, number: int, q: NamedQuantity) -> StepBlock:
+        """Return one quantity: formula, numbers inserted, result."""
+        assert q.expression is not None
+        closes = dimension_of(q.expression, self.quantities) is not None
+        if not closes:
+            self.in_si.append(q.symbol)
+        self.negligible = self.negligible or negligible_in(q.expression)
+        tree = textbook(q.expression)
+        value = self.outcome.values[q.name]
+        lines = [self.symbols.lay(tree)]
+        notes: list[Cell] = []
+        missing = [guard for guard in q.needs if guard in self.failing]
+        if missing:
+            lines.append(Word("does not exist"))
+            notes.append(f"It exists only where {' and '.join(missing)} holds, which fails here.")
+        else:
+            own, met = in_force(tree, self.outcome.values)
+            if own[0] != "n":
+                lines.append(self._inserted(own, q.expression, value, in_si=not closes))
+            lines += self._results(q, value, closes)
+            notes += [self._condition(condition, answer, not closes) for condition, answer in met[:CONDITIONS]]
+            if not closes:
+                notes.append("Numbers in SI: the units of this formula do not close.")
+        symbol = Letter(q.symbol)
+        return StepBlock(
+            number=number,
+            anchor=f"step-{q.name}",
+            meaning=q.text or ("Part of a long formula" if q.kind == "helper" else q.name),
+            name=q.name,
+            source=q.source,
+            symbol=symbol,
+            equal=tuple(tuple(broken(line)) for line in lines),
+            plain=(f"{plain(symbol)} = {plain(lines[0])}", *(f"= {plain(line)}" for line in lines[1:])),
+            notes=tuple(notes),
+        )
+
+    def _inserted(self, shown_tree: Expression, exact: Expression, value: float, in_si: bool) -> Layout:
+        """Return a formula with as many digits of its numbers as its result needs."""
+        digits = next(
+            (n for n in MORE_DIGITS if self._is_enough(exact, value, in_si, n)),
+            MORE_DIGITS[-1],
+        )
+        return Typesetter(self.quantities, self._leaf(in_si, digits), numeric=True).lay(shown_tree)
+
+    def _leaf(self, in_si: bool, digits: int = DIGITS) -> ByNumber:
+        return ByNumber(self.outcome.values, in_si, digits)
+
+    def _is_enough(self, tree: Expression, value: float, in_si: bool, digits: int) -> bool:
+        rounded = {name: self._rounded(self.quantities[name], in_si, digits) for name in names_in(tree)}
+        found = value_of(tree, rounded)
+        return not math.isfinite(value) or abs(found - value) <= ENOUGH * abs(value)
+
+    def _rounded(self, q: NamedQuantity, in_si: bool, digits: int) -> float:
+        """Return the SI value that a reader has who takes the printed number."""
+        value = self.outcome.values[q.name] if q.value is None else q.value
+        if not math.isfinite(value) or q.labels or q.is_text:
+            return value
+        unit = UnitIn.formula(q.unit, in_si)
+        number = unit.shown(value, digits)
+        read = float(f"{number.text}e{number.exponent}")
+        return read if unit.unit in ("", "SI", "K", "rad/s") else float(to_si(read, parse_unit(unit.unit)))
+
+    def _results(self, q: NamedQuantity, value: float, closes: bool) -> list[Layout]:
+        """Return the result; once more in the declared unit where another one comes out of the formula."""
+        direct = UnitIn.formula(q.unit)
+        found: list[Layout] = [Amount(direct.shown(value))]
+        if q.unit and direct.unit not in ("", q.unit):
+            found.append(Amount(shown(value, q.unit)))
+        if not closes and q.unit not in ("", "-"):
+            return [Amount(UnitIn("SI").shown(value)), Amount(shown(value, q.unit))]
+        return found
+
+    def _condition(self, condition: Expression, answer: bool, in_si: bool) -> Cell:
+        numbers = Typesetter(self.quantities, self._leaf(in_si), numeric=True)
+        tree = textbook(condition)
+        words = "holds" if answer else "does not hold"
+        return said("Case in force: ", self.symbols.lay(tree), f" {words}: ", numbers.lay(tree))
+
+    # -- limits --------------------------------------------------------------------------------
+
+    def limit_condition(self, value: Expression, limit: Expression, sense: str) -> Layout:
+        """Return a limit in symbols."""
+        sides = [self.symbols.lay(textbook(side)) for side in (value, limit)]
+        return Row((sides[0], Sign(SENSES[sense]), sides[1]))
+
+    def limit_numbers(self, value: float, limit: float, sense: str, unit: str) -> Layout:
+        """Return both sides of a limit in numbers; enough digits to see that they differ."""
+        return Row((Amount(apart(value, limit, unit)), Sign(SENSES[sense]), Amount(apart(limit, value, unit))))
+
+
+SENSES = {"at_most": "≤", "at_least": "≥", "equal": "="}
+
+
+def apart(value: float, other: float, unit: str) -> Shown:
+    """Return a number with enough digits to see that it is not the other one, if that is so."""
+    for digits in MORE_DIGITS:
+        if value == other or shown(value, unit, digits) != shown(other, unit, digits):
+            return shown(value, unit, digits)
+    return shown(value, unit, MORE_DIGITS[-1])
+
+
+def names_of(steps: Sequence[StepBlock]) -> Mapping[str, int]:
+    """Return the numbers of steps by the name of their quantity."""
+    return {step.name: step.number for step in steps}
