@@ -228,6 +228,9 @@ class Typesetter:
         return Fence(signed) if around > SUM else signed
 
     def _size(self, number: float, around: int) -> Layout:
+        square = round(number**2) if 1 < number < 10 else 0
+        if square and abs(number**2 - square) <= EXACT * square and not number.is_integer():
+            return Root(_whole(square))
         named = named_constant(number, self.constants)
         if named is None:
             return Amount(shown_number(number, 6))

@@ -163,7 +163,7 @@ def _number(column: Column) -> str:
 
 
 def _step(block: StepBlock) -> str:
-    rows = []
+    rows: list[str] = []
     for position, lines in enumerate(block.equal):
         mark = "result" if position == len(block.equal) - 1 else ""
         for place, line in enumerate(lines):

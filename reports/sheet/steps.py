@@ -78,9 +78,11 @@ class Steps:
             notes.append(f"It exists only where {' and '.join(missing)} holds, which fails here.")
         else:
             own, met = in_force(tree, self.outcome.values)
+            results = self._results(q, value, closes)
             if own[0] != "n":
-                lines.append(self._inserted(own, q.expression, value, in_si=not closes))
-            lines += self._results(q, value, closes)
+                inserted = self._inserted(own, q.expression, value, in_si=not closes)
+                lines += [inserted] if inserted != results[0] else []
+            lines += results if lines[-1] != results[-1] else []
             notes += [self._condition(condition, answer, not closes) for condition, answer in met[:CONDITIONS]]
             if not closes:
                 notes.append("Numbers in SI: the units of this formula do not close.")
