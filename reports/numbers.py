@@ -19,6 +19,10 @@ class Shown:
     exponent: int = 0
     unit: str = ""
 
+    def bare(self) -> Shown:
+        """Return it without its unit, which stands somewhere else."""
+        return replace(self, unit="")
+
     def plain(self) -> str:
         """Return it as a line of text."""
         power = f"e{self.exponent}" if self.exponent else ""

@@ -61,6 +61,20 @@ def read_bytes(path: str | Path, field: str, right: str = "a file", most: int = 
     return raw
 
 
+def read_text(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> str:
+    """Return the text of a file, which is UTF-8.
+
+    Raises
+    ------
+    InputError
+        As for :func:`read_bytes`, and where it is no such text.
+    """
+    try:
+        return read_bytes(path, field, right, most).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(field, str(path), f"{right}, in UTF-8") from error
+
+
 def check_file(path: str | Path, field: str, right: str = "a file", most: int = INPUT_LIMITS.file) -> None:
     """Refuse what ``read_bytes`` would refuse, without reading it.
 

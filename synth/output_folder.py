@@ -54,6 +54,16 @@ class ResultKind:
     found: tuple[str, ...] = ()
 
 
+# What `report` makes of a front: it says what the front says, and goes with it.
+REPORT_FILES = (
+    "report.html",
+    "report.pdf",
+    "designs.xlsx",
+    "design_*_sheet.html",
+    "design_*_sheet.pdf",
+    "design_*_sheet.json",
+    "design_*_live.xlsx",
+)
 FRONT = ResultKind(
     "run",
     ("front.json", "comparison.json"),
@@ -66,6 +76,7 @@ FRONT = ResultKind(
         "explanation.txt",
         "comparison.json",
         "families.csv",
+        *REPORT_FILES,
     ),
     ("designs",),
 )
@@ -178,7 +189,7 @@ def loses_nothing(folder: Path, files: Mapping[str, str], names: Iterable[str], 
     return True
 
 
-def save_files(folder: str | Path, files: Mapping[str, str], drop: Iterable[str] = ()) -> Path:
+def save_files(folder: str | Path, files: Mapping[str, str | bytes], drop: Iterable[str] = ()) -> Path:
     """Write files that belong together, all or none, and take others away with what they replace; return the folder.
 
     Raises
@@ -188,8 +199,8 @@ def save_files(folder: str | Path, files: Mapping[str, str], drop: Iterable[str]
     """
     target = Path(folder)
     with claimed(target), replaced(target) as new:
-        for name, text in files.items():
-            new.write(name, text)
+        for name, content in files.items():
+            new.write(name, content)
         new.drop(drop)
     return target
 
@@ -233,18 +244,31 @@ class Replacement:
         self.names: list[str] = []
         self.dropped: list[str] = []
 
-    def write(self, name: str, text: str) -> None:
-        """Write a file from its text."""
+    def write(self, name: str, content: str | bytes) -> None:
+        """Write a file from its text, or from its bytes."""
+        if isinstance(content, bytes):
+            path = self._place(name)
+            with path.open("wb") as binary:
+                binary.write(content)
+                binary.flush()
+                os.fsync(binary.fileno())
+            self.names.append(name)
+            return
         with self.open(name) as file:
-            file.write(file_text(name, text))
+            file.write(file_text(name, content))
 
-    @contextmanager
-    def open(self, name: str) -> Iterator[TextIO]:
-        """Give a file to write into; it is on the disk when the block ends."""
+    def _place(self, name: str) -> Path:
+        """Return where a file is written, below its folder."""
         if not _is_inside(name):
             raise ValueError(name)
         path = self.staged(name)
         path.parent.mkdir(parents=True, exist_ok=True)
+        return path
+
+    @contextmanager
+    def open(self, name: str) -> Iterator[TextIO]:
+        """Give a file to write into; it is on the disk when the block ends."""
+        path = self._place(name)
         with path.open("w", encoding="utf-8", newline="") as file:
             yield file
             file.flush()

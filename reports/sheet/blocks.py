@@ -163,6 +163,8 @@ class Document:
         What made it, with its version.
     logo : str
         A picture as a data address; nothing where there is none.
+    data : str
+        JSON of all designs, for readers of HTML who want to see one that is not told in full.
     """
 
     kind: str
@@ -171,3 +173,4 @@ class Document:
     blocks: tuple[Block, ...]
     program: str
     logo: str = field(default="", repr=False)
+    data: str = field(default="", repr=False)

@@ -31,6 +31,8 @@ from reports.sheet.blocks import (
     TableRow,
 )
 
+SHORT = 14  # rows of a table that stays on one page
+
 
 @cache
 def asset(name: str) -> str:
@@ -38,15 +40,12 @@ def asset(name: str) -> str:
     return (files("reports") / "assets" / name).read_text(encoding="utf-8")
 
 
-def html(document: Document, script: str = "") -> str:
+def html(document: Document) -> str:
     """Return a document as an HTML file.
 
-    Parameters
-    ----------
-    document : Document
-    script : str
-        A script of ours that it is allowed to run.
+    Where it holds data of all designs a script of ours shows any of them; all else is there without it.
     """
+    script = asset("report.js") if document.data else ""
     body = "\n".join(block_html(block) for block in document.blocks)
     facts = "".join(f"<dt>{escape(label)}</dt><dd>{escape(text)}</dd>" for label, text in document.facts)
     logo = f'<img src="{escape(document.logo)}" alt="">' if document.logo else ""
@@ -69,11 +68,22 @@ def html(document: Document, script: str = "") -> str:
 </header>
 <main id="main">
 {body}
-</main>
+{_data(document.data)}</main>
 <footer>{escape(document.kind)}, computed by {escape(document.program)}</footer>
 {f"<script>{script}</script>" if script else ""}</body>
 </html>
 """
+
+
+def _data(data: str) -> str:
+    """Return the data of all designs, and the place where one is shown; no text in it can end the element."""
+    if not data:
+        return ""
+    safe = data.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    return (
+        f'<section id="any-design" hidden aria-live="polite"></section>\n'
+        f'<script type="application/json" id="all-designs">{safe}</script>\n'
+    )
 
 
 def _policy(script: str) -> str:
@@ -133,9 +143,10 @@ def _table(block: TableBlock) -> str:
         told = "".join(_row(row, block.columns) for row in rows)
         bodies.append(f"<tbody{_marked('group' if label else '')}>{head}{told}</tbody>")
     total = sum(c.width for c in block.columns)
+    kind = "scroll short" if sum(len(rows) for _, rows in block.groups) <= SHORT else "scroll"
     widths = "".join(f'<col style="width:{100 * c.width / total:.3g}%">' for c in block.columns)
     return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(block.caption)}"><table><caption>'
+        f'<div class="{kind}" tabindex="0" role="region" aria-label="{escape(block.caption)}"><table><caption>'
         f"{escape(block.caption)}</caption><colgroup>{widths}</colgroup><thead><tr>{heads}</tr></thead>"
         f"{''.join(bodies)}</table></div>"
     )

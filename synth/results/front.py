@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -151,6 +151,67 @@ class ParetoFront:
         import synth  # it knows who searches; results do not
 
         return synth.improve(self, problem, catalogs, time_limit=time_limit, workers=workers, progress=progress)
+
+    def report(
+        self,
+        folder: str | Path,
+        *,
+        design: Any = 1,
+        full: int = 5,
+        formats: Sequence[str] = ("html",),
+        about: Any = None,
+        length: str = "normal",
+        fonts: Sequence[str | Path] = (),
+        problem: Any = None,
+        catalogs: Any = None,
+    ) -> Path:
+        """Write report.html and the calculation sheets of some designs.
+
+        Parameters
+        ----------
+        folder : path
+        design : int, str or list of these
+            Designs that get sheets: ranks, or ``knee``.
+        full : int
+            Designs that the report tells in full.
+        formats : list of str
+            Some of ``html``, ``pdf``, ``xlsx``, ``json``.
+        about : mapping, optional
+            ``company``, ``project``, ``customer``, ``number``, ``title``, ``author``, ``checked_by``, ``revision``,
+            ``date``, ``note``, ``logo`` (a file).
+        length : {"summary", "normal", "full"}
+            Of the sheets: without the steps, or with a list of symbols.
+        fonts : list of path
+            Folders of fonts for the PDF beside its own.
+        problem, catalogs : optional
+            For a loaded front of a problem of one's own, and own tables that were in memory.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        InputError
+            Something asked is wrong, or an extra is not installed; then nothing is written.
+        """
+        from importlib import import_module  # results do not know who reports them
+
+        write = import_module("synth.analysis.reporting").report
+        place: Path = write(
+            self,
+            folder,
+            design=design,
+            full=full,
+            formats=formats,
+            about=about,
+            length=length,
+            fonts=fonts,
+            problem=problem,
+            catalogs=catalogs,
+        )[0]
+        return place
 
     def table(self) -> tuple[list[str], list[list[Any]]]:
         """Return headers with units, and one row per design; None where there is no value."""

@@ -18,7 +18,7 @@ from synth.output_folder import EXPLANATION, FRONT, save_files, save_result
 from synth.plain_text import plain_streams
 from synth.results.drawings import report
 from synth.terminal import batch_commands as batches
-from synth.terminal import choice_commands, robust_commands
+from synth.terminal import choice_commands, report_commands, robust_commands
 from synth.terminal import size_range_commands as size_ranges
 from synth.terminal import study_commands as studies
 from synth.terminal.design_spec import given_design, must_be_a_design, must_be_a_question, must_be_one_family
@@ -397,6 +397,7 @@ size_ranges.register(app)
 choice_commands.register(app)
 studies.register(app)
 robust_commands.register(app)
+report_commands.register(app)
 
 
 # ---- what the commands share ----------------------------------------------------------------------------------------

@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from reports.table import print_front, significant, why
+from reports.reasons import significant, why
+from reports.table import print_front
 from synth.feasibility import Status
 from synth.results import Certificate, Design, Frame, ParetoFront
 

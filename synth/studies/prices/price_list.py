@@ -65,7 +65,7 @@ class Prices:
     """Prices of requirements and limits, per design and objective.
 
     ``step`` is the share by which each was moved, ``asked`` the ranks of the designs asked for; a design that was not
-    reached has no rows.
+    reached has no rows. ``front`` is the checksum of the front they are of.
     """
 
     frame: Frame
@@ -76,6 +76,7 @@ class Prices:
     fingerprint: str
     statistics: Mapping[str, Any]
     interrupted: str = ""
+    front: str = ""
 
     @property
     def finished(self) -> tuple[int, ...]:
@@ -105,7 +106,7 @@ class Prices:
     def files(self) -> dict[str, str]:
         """Return what ``save`` writes: file name -> text."""
         table = csv_text(COLUMNS, [[getattr(row, c) for c in COLUMNS] for row in self.rows])
-        store = PriceStore(None, self.fingerprint)
+        store = PriceStore(None, self.fingerprint, self.front)
         self._enter(store)
         return {"prices.csv": table, RECORD: store.text()}
 
@@ -116,7 +117,7 @@ class Prices:
         designs that are finished are kept, and goes to the folder when it is finished.
         """
         target = Path(folder)
-        store = PriceStore.of(target, self.fingerprint)
+        store = PriceStore.of(target, self.fingerprint, self.front)
         self._enter(store)
         files = {**self.files(), RECORD: store.text()}
         if self.interrupted and store.folder != target:
@@ -135,22 +136,22 @@ class Prices:
 class PriceStore:
     """Prices of finished designs, kept in a folder; without one nothing is kept."""
 
-    def __init__(self, folder: Path | None, fingerprint: str) -> None:
-        self.folder, self.fingerprint = folder, fingerprint
+    def __init__(self, folder: Path | None, fingerprint: str, front: str = "") -> None:
+        self.folder, self.fingerprint, self.front = folder, fingerprint, front
         earlier = None if folder is None else self._read(folder / RECORD)
         self.known: dict[int, list[dict[str, Any]]] = earlier or {}
         self.begun = earlier is not None
 
     @classmethod
-    def of(cls, folder: Path | None, fingerprint: str) -> PriceStore:
+    def of(cls, folder: Path | None, fingerprint: str, front: str = "") -> PriceStore:
         """Return the store of a question: its folder, or one beside the prices of another question."""
         if folder is None:
-            return cls(None, fingerprint)
+            return cls(None, fingerprint, front)
         settle(folder)
-        here = cls(folder, fingerprint)
+        here = cls(folder, fingerprint, front)
         if here.begun or not (folder / RECORD).exists():
             return here
-        return cls(folder / f"stopped_{fingerprint[:8]}", fingerprint)
+        return cls(folder / f"stopped_{fingerprint[:8]}", fingerprint, front)
 
     def _read(self, path: Path) -> dict[int, list[dict[str, Any]]] | None:
         """Return what an earlier run of the same question has finished; None where there was none."""
@@ -164,7 +165,12 @@ class PriceStore:
 
     def text(self) -> str:
         """Return what stands in the file."""
-        content = {"format": PRICES_FORMAT, "fingerprint": self.fingerprint, "designs": self.known}
+        content = {
+            "format": PRICES_FORMAT,
+            "fingerprint": self.fingerprint,
+            "front": self.front,
+            "designs": self.known,
+        }
         return json.dumps(content, indent=1, allow_nan=False) + "\n"
 
     def get(self, design: int) -> list[Price] | None:

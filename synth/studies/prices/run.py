@@ -100,7 +100,7 @@ def prices(
     own = hash_of([PRICES_FORMAT, digest, share, instance.fingerprint().whole])
     place = None if folder is None else Path(folder)
     with nullcontext() if place is None else claimed(place):
-        store = PriceStore.of(place, own)
+        store = PriceStore.of(place, own, str(digest))
         return _Pricing(instance, front, share, settings, progress).run(chosen, store)
 
 
@@ -171,7 +171,9 @@ class _Pricing:
             "seconds": time.monotonic() - self.started,
         }
         asked, makeable = tuple(int(d.rank or 0) for d in designs), bool(self.again.form.gridded.any())
-        return Prices(self.frame, asked, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted)
+        return Prices(
+            self.frame, asked, self.step, tuple(rows), makeable, store.fingerprint, statistics, interrupted, store.front
+        )
 
     def _say(self, number: int, of: int, share: float) -> None:
         if self.progress is not None:

@@ -1,0 +1,55 @@
+// Designs that the report does not tell in full are shown on request, from the table that stands in the file.
+"use strict";
+(() => {
+  const source = document.getElementById("all-designs");
+  const place = document.getElementById("any-design");
+  if (!source || !place) return;
+  const told = JSON.parse(source.textContent);
+  const make = (tag, text, parent) => {
+    const node = document.createElement(tag);
+    if (text !== undefined) node.textContent = text;
+    if (parent) parent.append(node);
+    return node;
+  };
+  const table = (caption, heads, rows) => {
+    const frame = make("div");
+    frame.className = "scroll";
+    const node = make("table", undefined, frame);
+    make("caption", caption, node);
+    const head = make("tr", undefined, make("thead", undefined, node));
+    heads.forEach((text) => { make("th", text, head).scope = "col"; });
+    const body = make("tbody", undefined, node);
+    rows.forEach((cells) => {
+      const row = make("tr", undefined, body);
+      cells.forEach((text, k) => { make("td", text, row).className = k === 1 ? "n" : ""; });
+    });
+    return frame;
+  };
+  const show = (rank) => {
+    const row = told.rows.find((one) => one[0] === rank);
+    const pairs = told.columns.map((name, k) => [name, row[k] === null ? "" : String(row[k])]);
+    const limits = pairs.filter(([name]) => name.startsWith("utilisation: "))
+      .map(([name, used]) => [name.slice(13), used === "" ? "not checked" : `${(100 * Number(used)).toFixed(1)} %`, Number(used)])
+      .sort((a, b) => b[2] - a[2]).map((x) => x.slice(0, 2));
+    const values = pairs.filter(([name, value]) => !name.startsWith("utilisation: ") && value !== "");
+    place.replaceChildren();
+    make("h2", `Design #${rank}`, place);
+    place.append(table("Sizes, parts and results", ["quantity", "value"], values));
+    place.append(table("Limits, the most used first", ["limit", "used"], limits));
+    place.hidden = false;
+    place.tabIndex = -1;
+    place.focus();
+    place.scrollIntoView({ block: "start" });
+  };
+  told.rows.forEach(([rank]) => {
+    const row = document.getElementById(`design-${rank}`);
+    if (!row || document.getElementById(`full-${rank}`)) return;
+    const cell = row.cells[0];
+    const button = make("button", cell.textContent);
+    button.type = "button";
+    button.className = "screen more";
+    button.setAttribute("aria-label", `Show design ${rank}`);
+    button.addEventListener("click", () => show(rank));
+    cell.replaceChildren(button);
+  });
+})();

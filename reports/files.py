@@ -1,0 +1,177 @@
+"""All files of a report: the front report, and sheets of the chosen designs, as HTML, PDF, JSON and workbooks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from reports.about import About
+from reports.front_report import FrontReportRequest, front_report
+from reports.sheet.blocks import Document
+from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
+from reports.sheet.html import html
+from reports.sheet.record import sheet_record
+from synth.errors import InputError
+from synth.results import Design, ParetoFront
+from synth.results.calculation import Calculation
+
+FORMATS = ("html", "pdf", "xlsx", "json")
+
+
+@dataclass(frozen=True)
+class ReportRequest:
+    """What is to be reported.
+
+    Parameters
+    ----------
+    calculation : Calculation
+    front : ParetoFront, optional
+    design : Design, optional
+        One design that was checked, in place of a front.
+    name : str
+        Of the files of such a design.
+    chosen : list of str
+        Designs of the front that get sheets: ranks, or ``knee``.
+    full : int
+        Designs that the front report tells in full.
+    formats : list of str
+        Some of ``html``, ``pdf``, ``xlsx``, ``json``.
+    length : {"summary", "normal", "full"}
+        Of the sheets.
+    about : About
+    fonts : list of Path
+        Folders of fonts for the PDF beside its own.
+    rows : mapping
+        Slot -> rows that may be chosen in live workbooks.
+    prices, near_equals, curves : list
+        What else stands in the folder of the front.
+    """
+
+    calculation: Calculation
+    front: ParetoFront | None = None
+    design: Design | None = None
+    name: str = "design"
+    chosen: Sequence[str] = ("1",)
+    full: int = 5
+    formats: Sequence[str] = ("html",)
+    length: str = "normal"
+    about: About = field(default_factory=About)
+    fonts: Sequence[Path] = ()
+    rows: Mapping[str, Sequence[Mapping[str, Any]]] = field(default_factory=dict)
+    prices: Sequence[Mapping[str, Any]] = ()
+    near_equals: Sequence[Mapping[str, Any]] = ()
+    curves: Sequence[str] = ()
+
+
+def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return the files of a report by name, and what else is to be told.
+
+    Parameters
+    ----------
+    asked : mapping
+        Fields of :class:`ReportRequest`; ``about`` may be a mapping, ``about_folder`` the folder of its file.
+
+    Raises
+    ------
+    InputError
+        Something asked is unknown, a design is not on the front, a record differs from its formulas, or an extra is
+        not installed.
+    """
+    told = dict(asked)
+    about = About.of(told.pop("about", None), told.pop("about_folder", None))
+    request = ReportRequest(**told, about=about)
+    if request.length not in LENGTHS:
+        raise InputError("length", request.length, f"one of {', '.join(LENGTHS)}", ("length",))
+    for word in request.formats:
+        if word not in FORMATS:
+            raise InputError("formats", word, f"some of {', '.join(FORMATS)}", ("formats",))
+    return _Files(request).all()
+
+
+class _Files:
+    def __init__(self, request: ReportRequest) -> None:
+        self.request = request
+        self.files: dict[str, str | bytes] = {}
+        self.notes: list[str] = []
+
+    def all(self) -> tuple[dict[str, str | bytes], list[str]]:
+        request = self.request
+        if request.front is None:
+            assert request.design is not None
+            self._sheet(request.design, request.name)
+            return self.files, self.notes
+        front = request.front
+        width = max(2, len(str(len(front.designs))))
+        chosen = chosen_by(front, request.chosen)
+        names = {d.rank or 0: f"design_{d.rank:0{width}d}" for d in chosen}
+        kind = "html" if "html" in request.formats else "pdf" if "pdf" in request.formats else ""
+        sheets = {rank: f"{name}_sheet.{kind}" for rank, name in names.items()} if kind else {}
+        document = front_report(
+            FrontReportRequest(
+                front=front,
+                calculation=request.calculation,
+                about=request.about,
+                full=request.full,
+                sheets=sheets,
+                prices=request.prices,
+                near_equals=request.near_equals,
+                curves=request.curves,
+            )
+        )
+        self._document(document, "report")
+        if "xlsx" in request.formats:
+            front_workbook = import_module("reports.workbook_front").front_workbook
+            self.files["designs.xlsx"] = front_workbook(front, request.calculation)
+        for design in chosen:
+            self._sheet(design, names[design.rank or 0])
+        return self.files, self.notes
+
+    def _document(self, document: Document, name: str) -> None:
+        if "html" in self.request.formats:
+            self.files[f"{name}.html"] = html(document)
+        if "pdf" in self.request.formats:
+            content, notes = import_module("reports.sheet.pdf").pdf_with_notes(document, self.request.fonts)
+            self.files[f"{name}.pdf"] = content
+            self.notes += [note for note in notes if note not in self.notes]
+
+    def _sheet(self, design: Design, name: str) -> None:
+        request = self.request
+        sheet = SheetRequest(request.calculation, design, request.front, request.about, request.length)
+        self._document(design_sheet(sheet), f"{name}_sheet")
+        if "json" in request.formats:
+            content = sheet_record(request.calculation, design)
+            self.files[f"{name}_sheet.json"] = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+        if "xlsx" in request.formats:
+            live_workbook = import_module("reports.workbook").live_workbook
+            self.files[f"{name}_live.xlsx"] = live_workbook(request.calculation, design, request.rows, request.about)
+
+
+def chosen_by(front: ParetoFront, words: Sequence[str]) -> list[Design]:
+    """Return the designs of a front that are named by rank, or as its knee.
+
+    Raises
+    ------
+    InputError
+        There is no such design.
+    """
+    found: dict[int, Design] = {}
+    for word in words:
+        if not front.designs and list(words) == ["1"]:
+            return []  # the default of a front that has none
+        text = str(word).strip()
+        known = {str(d.rank): d for d in front.designs}
+        knee = next((d for d in front.designs if "knee" in d.note), None)
+        known |= {} if knee is None else {"knee": knee}
+        if text not in known:
+            last = front.designs[-1].rank if front.designs else 0
+            right = (
+                f"a rank from 1 to {last}" + (" or knee" if "knee" in known else "") if last else "a front with designs"
+            )
+            raise InputError("design", text, right, ("design",))
+        design = known[text]
+        found[design.rank or 0] = design
+    return list(found.values())

@@ -1,0 +1,560 @@
+"""The report of a front: task, proof, ranked designs and the chosen ones in full, as neutral blocks."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from reports.about import About
+from reports.formula.layout import Amount, Letter
+from reports.front_plot import front_in_words, front_svg
+from reports.numbers import printed, shown, unit_text
+from reports.reasons import significant, why
+from reports.sheet.blocks import (
+    Block,
+    Bullets,
+    Cell,
+    Code,
+    Column,
+    Document,
+    Figure,
+    Heading,
+    Link,
+    Listing,
+    Paragraph,
+    State,
+    Strong,
+    TableBlock,
+    TableRow,
+    said,
+)
+from reports.sheet.design_sheet import TIGHT, front_details, front_state, percent, program_name
+from synth.results import Design, ParetoFront
+from synth.results.calculation import Calculation, NamedQuantity
+from synth.results.plain import finite
+
+SCORE = "score"
+PAGE = 86.0  # letters beside each other in a table
+LEFT_OUT = 40  # rows that are told one by one
+NEAR = 20  # near-equal designs that are listed
+ELASTICITIES = 8  # of a design, the largest first
+NOT_COVERED = (
+    "The certificate speaks of the model and its tables, in floating-point arithmetic: not of physics that the model "
+    "leaves out, and not of figures of tables that are marked typical."
+)
+
+
+@dataclass(frozen=True)
+class FrontReportRequest:
+    """What a report of a front is made of.
+
+    Parameters
+    ----------
+    front : ParetoFront
+    calculation : Calculation
+    about : About
+    full : int
+        How many designs are told in full: rank 1, the knee, the best of each objective, then by rank.
+    sheets : mapping
+        Rank -> file of its calculation sheet, where there is one.
+    prices : list of mapping
+        Rows of prices.json, if it is there.
+    near_equals : list of mapping
+        ``rank`` of a design, ``sentence`` and ``rows`` of what comes near it.
+    curves : list of str
+        Files of curves and simulations in the folder.
+    """
+
+    front: ParetoFront
+    calculation: Calculation
+    about: About = field(default_factory=About)
+    full: int = 5
+    sheets: Mapping[int, str] = field(default_factory=dict)
+    prices: Sequence[Mapping[str, Any]] = ()
+    near_equals: Sequence[Mapping[str, Any]] = ()
+    curves: Sequence[str] = ()
+
+
+def chosen_designs(front: ParetoFront, count: int) -> list[Design]:
+    """Return the designs that are told in full: rank 1, the knee, the best of each objective, then by rank."""
+    wanted = list(front.designs[:1]) + [d for d in front.designs if "knee" in d.note]
+    for name, sense in front.frame.objectives.items():
+        if front.designs:
+            sign = 1 if sense == "min" else -1
+            wanted.append(min(front.designs, key=lambda d: (sign * d.objectives[name], d.rank or 0)))
+    wanted += front.designs
+    unique = list({d.rank: d for d in wanted}.values())[:count]
+    return sorted(unique, key=lambda d: d.rank or 0)
+
+
+def front_report(request: FrontReportRequest) -> Document:
+    """Return the report of a front."""
+    return _Report(request).document()
+
+
+class _Report:
+    def __init__(self, request: FrontReportRequest) -> None:
+        self.request, self.front, self.calculation = request, request.front, request.calculation
+        self.frame = request.front.frame
+        self.quantities = request.calculation.quantities
+        self.full = chosen_designs(self.front, request.full)
+
+    def document(self) -> Document:
+        level, head = front_state(self.front)
+        blocks: list[Block] = [State(level, head, tuple(front_details(self.front)))]
+        if not self.front.designs:
+            blocks += self._nothing()
+        blocks += self._ranked() if self.front.designs else []
+        for design in self.full:
+            blocks += self._design(design)
+        blocks += [*self._runners_up(), *self._task(), *self._search(), *self._left_out(), *self._certificate()]
+        blocks += [*self._files(), *self._again()]
+        return Document(
+            kind="Design report",
+            title=self.request.about.title or f"{self.frame.title}: {self._counted()}",
+            facts=self.request.about.facts(),
+            blocks=tuple(blocks),
+            program=program_name(self.front),
+            logo=self.request.about.logo,
+            data=self._data(),
+        )
+
+    def _data(self) -> str:
+        """Return the table of all designs, in six digits, where not all are told in full."""
+        if len(self.full) == len(self.front.designs):
+            return ""
+        columns, rows = self.front.table()
+        short = [[_short(x) for x in row] for row in rows]
+        return json.dumps({"columns": columns, "rows": short}, separators=(",", ":"), ensure_ascii=False)
+
+    def _counted(self) -> str:
+        count = len(self.front.designs)
+        return "no design" if not count else "one design" if count == 1 else f"{count} designs"
+
+    # -- what was found ------------------------------------------------------------------------
+
+    def _nothing(self) -> list[Block]:
+        told = self.front.explanation
+        if not told:
+            return []
+        blocks: list[Block] = [Heading("Why", anchor="why"), Paragraph(str(told.message))]
+        rows = []
+        for miss in told.conflicts or ():
+            unit = str(miss.unit or "-")
+            sides = [
+                Amount(shown(float(side), unit)) if isinstance(side, float) else ""
+                for side in (miss.value, miss.limit_value)
+            ]
+            missed = percent(float(miss.missed_by)) if isinstance(miss.missed_by, float) else ""
+            rows.append(TableRow((Code(str(miss.limit)), *sides, missed), mark="bad"))
+        if rows:
+            blocks.append(TableBlock.of("Limits that the nearest design misses", MISSED_COLUMNS, rows))
+        nearest = {**(told.nearest or {}), **(told.parts or {})}
+        if nearest:
+            blocks.append(Paragraph("The nearest design: " + ", ".join(f"{k} {v}" for k, v in nearest.items()) + "."))
+        blocks.append(
+            Paragraph(
+                said(
+                    "What would help, and which limits exclude each other, tells ",
+                    Code("clutchsynth explain SPEC.yaml"),
+                    ".",
+                )
+            )
+        )
+        return blocks
+
+    def _ranked(self) -> list[Block]:
+        svg = front_svg(self.front, [d.rank or 0 for d in self.full])
+        blocks: list[Block] = [Heading("The designs", anchor="designs")]
+        if svg:
+            blocks.append(Figure(svg, f"The front. {front_in_words(self.front)}", _plot_caption(self.front)))
+        for number, names in enumerate(self._column_groups()):
+            columns = (Column("rank", number=True, width=4), *(self._column(name) for name in names))
+            caption = "All designs of the front, the best rank first" + (" (continued)" if number else "")
+            rows = [self._ranked_row(design, names, number == 0) for design in self.front.designs]
+            blocks.append(TableBlock.of(caption, columns, rows))
+        return blocks
+
+    def _column_groups(self) -> list[list[str]]:
+        """Return the columns of the ranked table in groups that a page holds beside each other."""
+        first, kinds = self.front.designs[0], self.frame.kinds
+        sizes = [n for n, kind in kinds.items() if kind in ("variable", "count") and n not in self.frame.objectives]
+        names = [SCORE, *self.frame.objectives, *sizes, *first.choices, *first.parts]
+        groups: list[list[str]] = [[]]
+        room = PAGE
+        for name in names:
+            needed = self._column(name).width + 2
+            if needed > room and groups[-1]:
+                groups.append([])
+                room = PAGE
+            groups[-1].append(name)
+            room -= needed
+        return groups
+
+    def _column(self, name: str) -> Column:
+        """Return a column as wide as its longest word."""
+        number = name in self.frame.units or name == SCORE
+        unit = unit_text(self.frame.units.get(name, "-"))
+        title = name.replace("_", " ") + (f" [{unit}]" if unit else "")
+        words = [*title.split(), *(str(self._ranked_cell(design, name)) for design in self.front.designs)]
+        return Column(title, number=number, width=float(max(map(len, words))))
+
+    def _ranked_row(self, design: Design, names: Sequence[str], anchored: bool) -> TableRow:
+        rank: Cell = Link(f"#{design.rank}", f"#full-{design.rank}") if design in self.full else f"#{design.rank}"
+        cells = (rank, *(self._ranked_cell(design, name) for name in names))
+        return TableRow(cells, anchor=f"design-{design.rank}" if anchored else "")
+
+    def _ranked_cell(self, design: Design, name: str) -> str:
+        if name == SCORE:
+            return "" if design.score is None else significant(design.score, 4)
+        if name in design.parts:
+            return str(design.parts[name])
+        if name in design.choices:
+            return design.choices[name]
+        return printed(
+            shown(design.values[name], "-" if name not in self.frame.units else self.frame.units[name]).bare()
+        )
+
+    # -- one design ----------------------------------------------------------------------------
+
+    def _design(self, design: Design) -> list[Block]:
+        rank = design.rank or 0
+        blocks: list[Block] = [Heading(f"Design #{rank}", anchor=f"full-{rank}")]
+        reason = why(self.front, design)
+        blocks.append(Paragraph(reason[:1].upper() + reason[1:] + "."))
+        if rank in self.request.sheets:
+            blocks.append(
+                Paragraph(said("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
+            )
+        blocks.append(Bullets((*self._choices(design), *self._parts(design))))
+        blocks.append(TableBlock("Sizes and results", VALUE_COLUMNS, self._values(design)))
+        blocks.append(TableBlock.of("Limits, the most used first", USED_COLUMNS, self._limits(design)))
+        blocks += self._prices(design)
+        remarks = [*design.advice, *design.not_checked]
+        if remarks:
+            blocks += [Heading(f"Remarks on #{rank}", level=2), Bullets(tuple(remarks))]
+        return blocks
+
+    def _choices(self, design: Design) -> list[Cell]:
+        return [f"{self._meaning(name)}: {word}" for name, word in design.choices.items()]
+
+    def _parts(self, design: Design) -> list[Cell]:
+        """Return what fills the slots, with table, source and confidence."""
+        told: list[Cell] = []
+        for slot, row in design.parts.items():
+            confidence = f"confidence: {row['confidence']}" if row.get("confidence") else ""
+            source = "; ".join(str(x) for x in (f"table {row['table']}", row.get("source"), confidence) if x)
+            told.append(said(f"{slot.replace('_', ' ')}: ", Code(str(row)), f" ({source})"))
+        return told
+
+    def _values(self, design: Design) -> tuple[tuple[str, tuple[TableRow, ...]], ...]:
+        groups: list[tuple[str, tuple[TableRow, ...]]] = []
+        for label, kinds in (("Sizes and counts", ("variable", "count")), ("Results", ("derived",))):
+            names = [n for n, kind in self.frame.kinds.items() if kind in kinds]
+            groups.append((label, tuple(self._value_row(design, name) for name in names)))
+        return tuple((label, rows) for label, rows in groups if rows)
+
+    def _meaning(self, name: str) -> str:
+        q = self.quantities.get(name)
+        return q.text if q is not None and q.text else name
+
+    def _symbol(self, name: str) -> Cell:
+        q = self.quantities.get(name)
+        return Letter(q.symbol) if q is not None else ""
+
+    def _value_row(self, design: Design, name: str) -> TableRow:
+        remark = design.off_grid.get(name, "")
+        return TableRow(
+            (
+                self._meaning(name),
+                self._symbol(name),
+                Amount(shown(design.values[name], self.frame.units[name])),
+                remark or Code(name),
+            )
+        )
+
+    def _limits(self, design: Design) -> list[TableRow]:
+        texts = {x.name: x.text for x in self.calculation.limits}
+
+        def order(name: str) -> tuple[int, float]:
+            used = design.utilisation.get(name)
+            return (0 if name in design.violated else 1 if used is not None else 2, -(used or 0.0))
+
+        rows = []
+        for name in sorted(design.limits, key=order):
+            value, limit = design.limits[name]
+            used, unit = design.utilisation.get(name), self.frame.limit_units.get(name, "-")
+            bad, tight = name in design.violated, (used or 0) >= TIGHT and self.frame.limit_senses.get(name) != "equal"
+            verdict: Cell = Strong("VIOLATED") if bad else "holds" if used is not None else "not checked"
+            sides: list[Cell] = ["", ""] if used is None else [Amount(shown(x, unit)) for x in (value, limit)]
+            rows.append(
+                TableRow(
+                    (
+                        said(texts.get(name) or name, " ", Code(name)),
+                        sides[0],
+                        SENSES[self.frame.limit_senses[name]],
+                        sides[1],
+                        "" if used is None else percent(used),
+                        verdict,
+                    ),
+                    mark="bad" if bad else "tight" if tight else "",
+                    used=used,
+                )
+            )
+        return rows
+
+    def _prices(self, design: Design) -> list[Block]:
+        own = [row for row in self.request.prices if row.get("design") == design.rank]
+        if own:
+            told = [str(row["sentence"]) for row in own if row.get("status") != "no influence"]
+            return [Heading(f"Prices at #{design.rank}", level=2), Bullets(tuple(told[:12]))] if told else []
+        found = sorted(
+            (
+                (abs(slope), objective, name, slope)
+                for objective, slopes in design.elasticity.items()
+                for name, slope in slopes.items()
+                if slope and abs(slope) > 1e-3
+            ),
+            key=lambda entry: (-entry[0], entry[1], entry[2]),
+        )
+        if not found:
+            return []
+        rows = [
+            TableRow((Code(name), Code(objective), f"{slope:+.2g} %"))
+            for _, objective, name, slope in found[:ELASTICITIES]
+        ]
+        return [
+            Heading(f"What 1 % more changes at #{design.rank}", level=2),
+            TableBlock.of(
+                "Elasticities: parts kept, sizes taken as continuous, good for a few per cent", PRICE_COLUMNS, rows
+            ),
+        ]
+
+    def _runners_up(self) -> list[Block]:
+        same: list[Cell] = [
+            f"#{d.rank}: the same objectives with {'; '.join(d.alternatives)}" for d in self.full if d.alternatives
+        ]
+        blocks: list[Block] = []
+        if same:
+            blocks.append(Bullets(tuple(same)))
+        for near in self.request.near_equals:
+            rows = [_near_row(row) for row in near["rows"][:NEAR]]
+            blocks.append(Paragraph(f"Near #{near['rank']}: {near['sentence']}."))
+            if rows:
+                blocks.append(
+                    TableBlock.of(f"Designs of other parts that come near #{near['rank']}", NEAR_COLUMNS, rows)
+                )
+        if not blocks and not self.front.designs:
+            return []
+        hint = said(
+            "A design that is not listed is beaten: some design here is at least as good in every objective and better "
+            "in one, up to the gap. Which other parts come near, and by how much they lose, tells ",
+            Code("clutchsynth near-equals DIR --design 1"),
+            ".",
+        )
+        return [Heading("Runners-up", anchor="runners-up"), *blocks, Paragraph(hint)]
+
+    # -- what was asked ------------------------------------------------------------------------
+
+    def _of_kind(self, *kinds: str) -> list[NamedQuantity]:
+        return [q for q in self.quantities.values() if q.kind in kinds]
+
+    def _task(self) -> list[Block]:
+        values = self.frame.requirement_values
+        typed = [q for q in self._of_kind("requirement") if q.name in self.frame.requirements]
+        usual = [q for q in self._of_kind("requirement") if q.name not in self.frame.requirements]
+
+        def rows(quantities: Sequence[NamedQuantity]) -> tuple[TableRow, ...]:
+            return tuple(
+                TableRow((q.text or q.name, Letter(q.symbol), Amount(shown(values[q.name], q.unit)), Code(q.name)))
+                for q in quantities
+                if q.name in values
+            )
+
+        groups: list[tuple[str, tuple[TableRow, ...]]] = [("Stated", rows(typed))]
+        options = tuple(
+            TableRow((name, "", word, "stated" if name in self.frame.options else "default"))
+            for name, word in self.calculation.options.items()
+        )
+        groups += [("Options", options)] if options else []
+        groups += [("Assumed: defaults of the family", rows(usual))] if usual else []
+        blocks: list[Block] = [
+            Heading("The task", anchor="task"),
+            TableBlock("Requirements", VALUE_COLUMNS, tuple(groups)),
+        ]
+        if self.frame.not_asked:
+            blocks.append(Paragraph(f"Not asked: {', '.join(self.frame.not_asked)}.", small=True))
+        return blocks
+
+    def _search(self) -> list[Block]:
+        settings = self.front.settings
+        told: list[Cell] = [
+            "Objectives: "
+            + ", ".join(
+                f"{name} ({'small' if sense == 'min' else 'large'})" for name, sense in self.frame.objectives.items()
+            )
+        ]
+        for key, words in (
+            ("parts", "Parts held to"),
+            ("limits", "Own limits"),
+            ("fix", "Fixed"),
+            ("robust", "Scatters"),
+        ):
+            if settings.get(key):
+                told.append(f"{words}: {_in_words(settings[key])}")
+        gap, sizes = 100 * float(settings.get("gap") or 0), "makeable" if settings.get("grid") else "continuous"
+        told.append(
+            f"At most {settings.get('points')} designs, gap {gap:.3g} %, {sizes} sizes, seed {settings.get('seed')}"
+        )
+        weights = settings.get("weights")
+        if weights:
+            told.append(f"Weights of the ranking: {_in_words(weights)}")
+        return [Heading("What was asked of the search", anchor="search"), Bullets(tuple(told))]
+
+    def _left_out(self) -> list[Block]:
+        statistics = self.front.statistics
+        rows = list(statistics.get("rows_left_out") or ())
+        others = list(statistics.get("combinations_left_out") or ())
+        if not rows and not others:
+            return []
+        table = [
+            TableRow(tuple(str(row.get(key, "")) for key in ("slot", "designation", "reason")))
+            for row in rows[:LEFT_OUT]
+        ]
+        blocks: list[Block] = [Heading("Rows left out, and why", anchor="left-out")]
+        if table:
+            blocks.append(TableBlock.of("Rows of tables that were not searched", OUT_COLUMNS, table))
+        if len(rows) > LEFT_OUT:
+            blocks.append(Paragraph(f"{len(rows) - LEFT_OUT} more are named in front.json."))
+        return blocks + ([Bullets(tuple(map(str, others)))] if others else [])
+
+    def _certificate(self) -> list[Block]:
+        c, statistics = self.front.certificate, self.front.statistics
+        told: list[Cell] = [*front_details(self.front), NOT_COVERED]
+        numbers = [f"{c.combinations:,} combinations of parts and counts".replace(",", " ")]
+        numbers += [
+            f"{c.excluded_by_bound:,} excluded by bounds".replace(",", " "),
+            f"{c.solved:,} solved".replace(",", " "),
+        ]
+        if statistics.get("boxes"):
+            numbers.append(f"{statistics['boxes']:,} boxes".replace(",", " "))
+        told.append("; ".join(numbers) + ".")
+        told.append(said("It can be checked by other code: ", Code("clutchsynth verify DIR"), "."))
+        return [Heading("The certificate", anchor="certificate"), Bullets(tuple(told))]
+
+    def _files(self) -> list[Block]:
+        if not self.request.curves:
+            return []
+        return [
+            Heading("Curves in the folder", anchor="curves"),
+            Bullets(tuple(Link(name, name) for name in self.request.curves)),
+        ]
+
+    def _again(self) -> list[Block]:
+        record = self.front.record or {}
+        versions = record.get("versions", {})
+        told: list[Cell] = [said("Checksum of front.json: ", Code(str(record.get("digest", "not saved yet"))))]
+        told.append(said("Checksum of the calculation: ", Code(self.calculation.digest)))
+        if versions:
+            told.append("Computed with " + ", ".join(f"{name} {version}" for name, version in versions.items()))
+        digests = sorted(
+            {f"{row['table']}: {row} {str(row['hash'])[:12]}" for d in self.front.designs for row in d.parts.values()}
+        )
+        if digests:
+            told.append("Rows of tables used, with the first digits of their hashes: " + "; ".join(digests[:60]))
+        sources: list[Cell] = list(self.calculation.sources)
+        return [
+            Heading("Sources of the model", anchor="sources"),
+            Bullets(tuple(sources)),
+            Heading("To reproduce", anchor="again"),
+            Bullets(tuple(told)),
+            Paragraph(said("The question, as ", Code("clutchsynth run"), " reads it:")),
+            Listing(_spec_text(self.front)),
+        ]
+
+
+def _plot_caption(front: ParetoFront) -> str:
+    words = "Each point is a design and leads to its row; filled points are told in full below"
+    if any("knee" in d.note for d in front.designs):
+        words += ", the ringed one is the knee"
+    if len(front.frame.objectives) == 2:
+        words += "; beyond the dashed line nothing was found or, where it is proven, nothing exists"
+    return words + "."
+
+
+def _short(x: Any) -> Any:
+    """Return a cell of a table as JSON knows it, numbers in six digits."""
+    return float(f"{x:.6g}") if isinstance(x, float) and math.isfinite(x) else finite(x)
+
+
+def _near_row(row: Mapping[str, str]) -> TableRow:
+    """Return a row of near_equals.csv: in what it differs, and by how much it is worse."""
+    changes = [
+        f"{key.removeprefix('change: ').removesuffix(' [%]')} {float(value):+.2g} %"
+        for key, value in row.items()
+        if key.startswith("change: ") and value
+    ]
+    return TableRow((row.get("number", ""), row.get("differences", ""), ", ".join(changes)))
+
+
+def _in_words(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {_in_words(inner)}" for key, inner in value.items())
+    if isinstance(value, (list, tuple)):
+        return " and ".join(map(_in_words, value))
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _spec_text(front: ParetoFront) -> str:
+    """Return the question of a front as a spec; what is JSON is YAML as well."""
+    frame, settings = front.frame, front.settings
+    spec: dict[str, Any] = {"family": frame.family}
+    if frame.options:
+        spec["options"] = dict(frame.options)
+    spec["requirements"] = dict(frame.requirements)
+    for key in ("parts", "limits", "fix", "robust"):
+        if settings.get(key):
+            spec[key] = settings[key]
+    if frame.restated.get("catalogs"):
+        spec["catalogs"] = frame.restated["catalogs"]
+    spec["objectives"] = {name: sense for name, sense in frame.objectives.items()}
+    for key in ("points", "gap", "grid", "seed"):
+        if settings.get(key) is not None:
+            spec[key] = settings[key]
+    lines = []
+    for key, value in spec.items():
+        lines.append(f"{key}: {json.dumps(value, ensure_ascii=False) if not isinstance(value, str) else value}")
+    return "\n".join(lines) + "\n"
+
+
+SENSES = {"at_most": "≤", "at_least": "≥", "equal": "="}
+VALUE_COLUMNS = (
+    Column("meaning", width=3.4),
+    Column("symbol", width=0.8),
+    Column("value", number=True, width=1.3),
+    Column("", width=2.0),
+)
+USED_COLUMNS = (
+    Column("limit", width=4.0),
+    Column("value", number=True, width=1.3),
+    Column("", width=0.3),
+    Column("limit value", number=True, width=1.3),
+    Column("used", number=True, width=0.9),
+    Column("verdict", width=1.0),
+)
+MISSED_COLUMNS = (
+    Column("limit", width=2),
+    Column("value", number=True),
+    Column("limit value", number=True),
+    Column("missed by", number=True),
+)
+PRICE_COLUMNS = (
+    Column("requirement or limit", width=2),
+    Column("objective", width=1.5),
+    Column("changes by", number=True),
+)
+NEAR_COLUMNS = (Column("design"), Column("other", width=3), Column("worse by", width=2))
+OUT_COLUMNS = (Column("slot"), Column("row", width=1.5), Column("reason", width=3))

@@ -1,0 +1,105 @@
+"""Why a design is on its front, in one sentence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from synth.results import Design, ParetoFront
+
+BINDING = 0.999  # a limit used more than this decides something
+EQUAL = 1e-9  # relative; objectives closer than this are the same
+
+
+def significant(value: float, digits: int = 5) -> str:
+    """Write a number with so many significant digits and without an exponent where people would not use one.
+
+    Examples
+    --------
+    >>> significant(13394.966), significant(1234567.0), significant(0.25), significant(math.nan)
+    ('13395', '1234567', '0.25', '')
+    """
+    if math.isnan(value):
+        return ""
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e" in text and 1 <= abs(value) < 1e12 else text
+
+
+def why(front: ParetoFront, design: Design) -> str:
+    """Return in one sentence why a design is on the front: what it is best in, what it trades, which limits it meets.
+
+    Parameters
+    ----------
+    front : ParetoFront
+        The front it belongs to.
+    design : Design
+        One of its designs.
+    """
+    objectives = front.frame.objectives
+    clauses = [
+        f"{'smallest' if sense == 'min' else 'largest'} {name}"
+        for name, sense in objectives.items()
+        if _is_best(front, design, name, sense)
+    ]
+    if "knee" in design.note:
+        clauses.insert(0, "knee of the front")
+    others = [d for d in front.designs if d is not design]
+    if len(objectives) == 2 and others:
+        clauses.append(_between(front, design))
+    elif len(objectives) > 2 and others:
+        nearest = min(others, key=lambda d: _distance(front, design, d))
+        clauses.append(f"against #{nearest.rank} next to it {_comparison(design, nearest, list(objectives))}")
+    binding = [
+        name
+        for name, used in design.utilisation.items()
+        if used is not None and used >= BINDING and front.frame.limit_senses[name] != "equal"
+    ]
+    clauses.append(f"at the limit of {', '.join(binding)}" if binding else "no limit is reached")
+    if design.alternatives:
+        clauses.append(f"{len(design.alternatives)} others with the same objectives")
+    return "; ".join(clause for clause in clauses if clause)
+
+
+def _is_best(front: ParetoFront, design: Design, name: str, sense: str) -> bool:
+    values = [d.objectives[name] for d in front.designs]
+    best = min(values) if sense == "min" else max(values)
+    return abs(design.objectives[name] - best) <= EQUAL * max(abs(best), 1e-300)
+
+
+def _between(front: ParetoFront, design: Design) -> str:
+    """Return what a design of a front of two objectives gains over each of its two neighbours."""
+    first, second = front.frame.objectives
+    line = sorted(front.designs, key=lambda d: d.objectives[first])
+    place = next(k for k, d in enumerate(line) if d is design)
+    sides = [line[k] for k in (place - 1, place + 1) if 0 <= k < len(line)]
+    if len(sides) == 2:
+        # The neighbour that is better in the first objective is worse in the second: name what is gained.
+        lower, upper = sides
+        toward = (second, first) if front.frame.objectives[first] == "min" else (first, second)
+        gains = [_comparison(design, other, [name]) for other, name in zip((lower, upper), toward, strict=True)]
+        return f"between #{lower.rank} and #{upper.rank}: {gains[0]} than #{lower.rank}, {gains[1]} than #{upper.rank}"
+    return f"{_comparison(design, sides[0], [first, second])} than #{sides[0].rank} next to it"
+
+
+def _comparison(design: Design, other: Design, names: Sequence[str]) -> str:
+    parts = []
+    for name in names:
+        mine, theirs = design.objectives[name], other.objectives[name]
+        difference = mine - theirs
+        if abs(difference) <= EQUAL * max(abs(mine), abs(theirs)):
+            parts.append(f"the same {name}")
+            continue
+        size = f"{significant(100 * abs(difference / theirs), 2)} % " if theirs else ""
+        parts.append(f"{size}{'more' if difference > 0 else 'less'} {name}")
+    return " and ".join(parts) if len(parts) < 3 else ", ".join(parts)
+
+
+def _distance(front: ParetoFront, design: Design, other: Design) -> float:
+    """Return the distance of two designs, every objective measured by its range on the front."""
+    total = 0.0
+    for name in front.frame.objectives:
+        values = [d.objectives[name] for d in front.designs]
+        span = max(values) - min(values)
+        if span > 0:
+            total += ((design.objectives[name] - other.objectives[name]) / span) ** 2
+    return total

@@ -1,0 +1,92 @@
+"""The command that hands results on: report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from synth.terminal.options import Quiet
+from synth.terminal.session import INFEASIBLE, check_output, tell_written
+
+FILES = (".yaml", ".yml", ".json")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to the command line."""
+    app.command(name="report")(report)
+
+
+def report(
+    source: Annotated[Path, typer.Argument(help="A folder that run has written, or a DESIGN.yaml.", metavar="SOURCE")],
+    folder: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for the files, by default that of the source.", metavar="DIR"),
+    ] = None,
+    design: Annotated[str, typer.Option(help="Designs that get sheets: ranks or knee, such as 1,3,knee.")] = "1",
+    full: Annotated[int, typer.Option(help="Designs that report.html tells in full.", min=0)] = 5,
+    as_pdf: Annotated[bool, typer.Option("--pdf", help="PDF as well (extra pdf).")] = False,
+    as_xlsx: Annotated[bool, typer.Option("--xlsx", help="Live workbooks and designs.xlsx (extra excel).")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Sheets for programs as well.")] = False,
+    about: Annotated[
+        Path | None, typer.Option(help="YAML: project, customer, number, author, date, ...", metavar="FILE")
+    ] = None,
+    length: Annotated[str, typer.Option(help="Of the sheets: summary, normal or full.")] = "normal",
+    fonts: Annotated[
+        list[Path] | None,
+        typer.Option("--font-path", help="Folder of fonts for PDF; repeat it.", metavar="DIR"),
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Write what can be handed on: the report of a front, calculation sheets, PDF, live workbooks."""
+    asked: dict[str, Any] = {
+        "formats": ["html", *(word for word, on in (("pdf", as_pdf), ("xlsx", as_xlsx), ("json", as_json)) if on)],
+        "length": length,
+        "fonts": fonts or [],
+        **_about(about),
+    }
+    given = source.suffix in FILES and source.is_file() and source.name != "front.json"
+    target = folder or (source if source.is_dir() else source.parent)
+    check_output(target)
+    if given:
+        place, names, notes, status = _of_design(source, target, asked)
+    else:
+        from synth.analysis.reporting import report as write
+        from synth.results.loading import load_front
+
+        chosen = [word.strip() for word in design.split(",")]
+        place, names, notes = write(load_front(source), target, design=chosen, full=full, **asked)
+        status = 0
+    for note in notes:
+        typer.echo(f"clutchsynth: {note}", err=True)
+    if not quiet:
+        tell_written(place, target, names)
+    if status:
+        raise typer.Exit(status)
+
+
+def _about(file: Path | None) -> dict[str, Any]:
+    """Return what a file says about a report."""
+    if file is None:
+        return {}
+    from synth.question.spec import read_content
+
+    return {"about": read_content(file, "about"), "about_folder": file.parent}
+
+
+def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path, list[str], list[str], int]:
+    """Write the sheet of a design that stands in a file; where it is not feasible the exit code says so."""
+    from synth.analysis.reporting import report_design
+    from synth.feasibility import Status
+    from synth.question.instance import Instance
+    from synth.question.request import Request
+    from synth.question.spec import read_spec
+    from synth.terminal.design_spec import given_design, must_be_a_design
+
+    spec = read_spec(source)
+    must_be_a_design(spec)
+    problem, catalogs, design = given_design(spec)
+    instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)
+    place, names, notes = report_design(design, instance, target, name=source.stem, **asked)
+    return place, names, notes, INFEASIBLE if design.status is Status.INFEASIBLE else 0
