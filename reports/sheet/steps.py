@@ -64,7 +64,7 @@ class Steps:
     def step(self, number: int, q: NamedQuantity) -> StepBlock:
         """Return one quantity: formula, numbers inserted, result."""
         assert q.expression is not None
-        closes = dimension_of(q.expression, self.quantities) is not None
+        closes = self._closes(q)
         if not closes:
             self.in_si.append(q.symbol)
         self.negligible = self.negligible or negligible_in(q.expression)
@@ -98,6 +98,13 @@ class Steps:
             plain=(f"{plain(symbol)} = {plain(lines[0])}", *(f"= {plain(line)}" for line in lines[1:])),
             notes=tuple(notes),
         )
+
+    def _closes(self, q: NamedQuantity) -> bool:
+        """Tell whether the units of a formula give the unit of its result, so that numbers carry theirs."""
+        assert q.expression is not None
+        found = dimension_of(q.expression, self.quantities)
+        declared = parse_unit(q.unit).dimension if q.unit else None
+        return found is not None and found == declared
 
     def _inserted(self, shown_tree: Expression, exact: Expression, value: float, in_si: bool) -> Layout:
         """Return a formula with as many digits of its numbers as its result needs."""
