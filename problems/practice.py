@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from problems.mechanics import shaft as shaft_formulas
-from synth.declaration import Block, Declaration, Requirement
+from synth.declaration import Block, Declaration, Requirement, RowRange
 
 UNSOURCED = "practice, unsourced"
 
@@ -132,3 +132,16 @@ class ShaftRequirements(ShaftSize):
 def shaft_for(torque: Any) -> Any:
     """Return the default of shaft_diameter [m] for a torque [N m], as a function of the block."""
     return lambda block: shaft_formulas.shaft_diameter(torque, block.shaft_shear_allow)
+
+
+def name_shaft_end(d: Declaration, diameter: Any) -> None:
+    """Name with every design the shaft end of the tables that is next to a diameter [m], and its key."""
+    d.next_row(
+        "shaft_end",
+        diameter,
+        "shaft_ends",
+        "diameter",
+        beside=RowRange("parallel_keys", over="shaft_diameter_over", up_to="shaft_diameter_up_to"),
+        text="Shaft end to make, and the parallel key that goes with it",
+        source="DIN 748-1, DIN 6885-1",
+    )

@@ -7,7 +7,7 @@ from typing import Any
 
 from problems.mechanics import centrifugal
 from problems.mechanics.shaft import shaft_diameter
-from problems.practice import UNSOURCED, Scope, ShaftRequirements
+from problems.practice import UNSOURCED, Scope, ShaftRequirements, name_shaft_end
 from problems.sources import DRIVE, TYPICAL, UNIFORM_WEAR
 from synth.declaration import Block, Declaration, Requirement
 
@@ -233,7 +233,12 @@ def declare_duty(d: Declaration, *, scope: Scope) -> Duty:
     Duty
         Symbols of the block; a WholeDuty where the scope asks for one.
     """
-    duty = d.block(WholeDuty if scope.whole else Duty)
+    if scope.whole:
+        whole = d.block(WholeDuty)
+        name_shaft_end(d, whole.shaft_diameter)
+        duty: Duty = whole
+    else:
+        duty = d.block(Duty)
     _refuse_contradictions(d, duty=duty)
     return duty
 

@@ -12,7 +12,7 @@ from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup
 from problems.mechanics import plates
 from problems.mechanics.wear import wear_life
-from problems.practice import UNSOURCED, ShaftRequirements, shaft_for
+from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Option, Requirement
 
@@ -191,7 +191,9 @@ class ConeBody:
 
 def declare_body_requirements(d: Declaration, *, required: Any) -> ConeBodyRequirements:
     """Declare the requirements of the complete clutch, whose shaft carries the sizing torque M_req [N m]."""
-    return d.block(ConeBodyRequirements, shaft_diameter=shaft_for(required))
+    wants = d.block(ConeBodyRequirements, shaft_diameter=shaft_for(required))
+    name_shaft_end(d, wants.shaft_diameter)
+    return wants
 
 
 def declare_cone_rules(d: Declaration) -> ConeRules:

@@ -13,7 +13,7 @@ from problems.friction.engagement import Pair, Startup
 from problems.friction.ring import Ring
 from problems.mechanics import disc, plates
 from problems.mechanics.wear import wear_life
-from problems.practice import UNSOURCED, ShaftRequirements, shaft_for
+from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Requirement
 
@@ -125,7 +125,9 @@ def declare_body_requirements(d: Declaration, *, required: Any, wear_depth_limit
     DiscBodyRequirements
         Symbols of the block.
     """
-    return d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=wear_depth_limit)
+    wants = d.block(DiscBodyRequirements, shaft_diameter=shaft_for(required), wear_depth_limit=wear_depth_limit)
+    name_shaft_end(d, wants.shaft_diameter)
+    return wants
 
 
 def declare_disc_requirements(d: Declaration, *, body: DiscBodyRequirements) -> DiscRequirements:

@@ -134,6 +134,7 @@ class ElectromagneticClutch(DesignProblem):
                 shaft_diameter=practice.shaft_for(required),
                 wear_depth_limit=0.2 if lubrication == "oil" else WEAR_AT_MAGNET,
             )
+            practice.name_shaft_end(d, body_wants.shaft_diameter)
         if scope.rules:
             oil = lubrication == "oil"
             rules = d.block(PackRules, friction_surfaces_max=12 if oil else 8, release_gap_min=0.05 if oil else 0.3)

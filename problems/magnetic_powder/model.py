@@ -286,6 +286,7 @@ class MagneticPowderClutch(DesignProblem):
             shaft = d.block(
                 practice.ShaftSize, shaft_diameter=practice.shaft_for(wants.torque_reserve * wants.required_torque)
             )
+            practice.name_shaft_end(d, shaft.shaft_diameter)
             bore = d.block(Bore, shaft_radius=shaft.shaft_diameter / 2)
         else:
             bore = d.block(Bore)

@@ -22,7 +22,7 @@ from problems.multi_plate.requirements import (
     PackRules,
     PistonPackRules,
 )
-from problems.practice import UNSOURCED, shaft_for
+from problems.practice import UNSOURCED, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Declaration
 
@@ -63,13 +63,15 @@ def declare_body_requirements(d: Declaration, *, lubrication: str, required: Any
         Symbols of the block.
     """
     oil = lubrication == "oil"
-    return d.block(
+    wants = d.block(
         BodyRequirements,
         shaft_diameter=shaft_for(required),
         actuator="hydraulic" if oil else "pneumatic",
         actuator_pressure=1.4 if oil else 0.55,
         wear_depth_limit=0.2 if oil else 1.0,
     )
+    name_shaft_end(d, wants.shaft_diameter)
+    return wants
 
 
 def declare_pack_rules(d: Declaration, *, lubrication: str) -> PistonPackRules:

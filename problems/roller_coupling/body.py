@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from problems.practice import UNSOURCED, ShaftRequirements, shaft_for
+from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
 from problems.roller_coupling import formulas
 from synth.declaration import Block, Declaration, Part, Requirement
 from synth.errors import InputError
@@ -119,7 +119,9 @@ def track_rollers(d: Declaration, *, contact: str) -> tuple[str, ...]:
 
 def declare_body_requirements(d: Declaration, *, torque: Any) -> CouplingBodyRequirements:
     """Declare the requirements of the complete coupling; its shafts carry a multiple of the torque [N m]."""
-    return d.block(CouplingBodyRequirements, shaft_diameter=shaft_for(SHAFT_FACTOR * torque))
+    wants = d.block(CouplingBodyRequirements, shaft_diameter=shaft_for(SHAFT_FACTOR * torque))
+    name_shaft_end(d, wants.shaft_diameter)
+    return wants
 
 
 def declare_body(d: Declaration, *, wants: CouplingBodyRequirements, part_mass: Any, arm_radius: Any) -> None:

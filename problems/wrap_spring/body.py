@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from problems import cost
 from problems.mechanics import shaft as shaft_formulas
-from problems.practice import UNSOURCED, ShaftRequirements
+from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end
 from synth.declaration import Block, Declaration, Requirement
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring
     """
     d.derive("part_mass", "kg", spring.mass, symbol="m_part", text="Spring and both hubs under it", source="geometry")
     d.derive("spring_length", "mm", spring.length, symbol="L_sp", text="Length of the spring", source="geometry")
+    name_shaft_end(d, duty.bore_diameter)
     d.advise(
         "thin_shaft",
         duty.bore_diameter < THIN * wants.bore(duty),

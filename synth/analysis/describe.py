@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from synth.bounds.structure import classify
-from synth.declaration import Part, RequirementRecord, VariableRecord
+from synth.declaration import NextRowRecord, Part, RequirementRecord, VariableRecord
 from synth.model.numbers import number
 from synth.model.problem import DesignProblem
 from synth.model.registry import load
@@ -56,11 +56,11 @@ def describe(p: str | type[DesignProblem] | DesignProblem, catalogs: Any = None)
     -------
     pandas.DataFrame
         One row per option, requirement, variable, count, choice, slot, column used, derived quantity, limit,
-        objective, refusal and advice; numbers in the unit of their row, defaults that follow from other
-        quantities as text. Limits of optional requirements are included. The column group says which requirements
-        and options belong together (duty, practice, ...), in the words of the family. The column classification says
-        what kind of function a derived quantity, limit or objective is over all that may be declared and chosen
-        (see ``synth.bounds.structure``).
+        objective, refusal, advice and row named with a design; numbers in the unit of their row, defaults that follow
+        from other quantities as text. Limits of optional requirements are included. The column group says which
+        requirements and options belong together (duty, practice, ...), in the words of the family. The column
+        classification says what kind of function a derived quantity, limit or objective is over all that may be
+        declared and chosen (see ``synth.bounds.structure``).
 
     Raises
     ------
@@ -125,6 +125,7 @@ def described(
     rows += [_row("point", setting, name=name) for name, setting in problem.operating_point.items()]
     rows += [_row("refusal", r, name=r.code, text=r.message) for r in d.refusals]
     rows += [_row("advice", a, name=a.code, text=a.message) for a in d.advices]
+    rows += [_row("next_row", r, choices=_looked_up(r)) for r in d.next_rows.values()]
     return rows
 
 
@@ -197,6 +198,12 @@ def _closes_last(text: str) -> bool:
         if depth == 0:
             return position == len(text) - 1
     return False
+
+
+def _looked_up(r: NextRowRecord) -> str:
+    """Return which row is named, in short."""
+    beside = f", with its row of {r.beside.table}" if r.beside else ""
+    return f"next {r.column} of {r.table}{beside}"
 
 
 def _variable(v: VariableRecord) -> dict[str, Any]:

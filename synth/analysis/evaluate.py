@@ -102,9 +102,18 @@ def _evaluate(
     result = instance.evaluate(np.asarray(variables, dtype=float)[None, :], data)
     found = outside(model, {**known, **dict(zip((v.name for v in model.variables), variables.tolist(), strict=True))})
     refuse_not_computable(model, result, found, variables, data)
-    steps = DesignSteps(model.steps(variables[None, :], data)[0])
     return make_design(
-        instance, frame, variables, result, 0, part_rows, choices, remarks=remarks, outside=found, steps=steps
+        instance,
+        frame,
+        variables,
+        result,
+        0,
+        part_rows,
+        choices,
+        remarks=remarks,
+        outside=found,
+        steps=DesignSteps(model.steps(variables[None, :], data)[0]),
+        next_rows=model.next_rows(variables[None, :], data)[0],
     )
 
 

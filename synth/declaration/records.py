@@ -241,6 +241,30 @@ class Constant:
 
 
 @dataclass(frozen=True)
+class RowRange:
+    """The row of a second table whose range holds a value: above its column ``over``, up to its column ``up_to``."""
+
+    table: str
+    over: str
+    up_to: str
+
+
+@dataclass(frozen=True)
+class NextRowRecord:
+    """The row of a table whose column is next at or above a quantity, and the row of another one that goes with it."""
+
+    name: str
+    unit: str
+    symbol: str
+    text: str
+    source: str
+    sx: Any
+    table: str
+    column: str
+    beside: RowRange | None
+
+
+@dataclass(frozen=True)
 class Limit:
     """A limit ``value <= limit`` (at_most), ``value >= limit`` (at_least) or ``value == limit`` (equal)."""
 

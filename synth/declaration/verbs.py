@@ -18,12 +18,14 @@ from synth.declaration.records import (
     DeclarationError,
     Derived,
     Limit,
+    NextRowRecord,
     Objective,
     OptionRecord,
     Part,
     Quantity,
     Refusal,
     RequirementRecord,
+    RowRange,
     Step,
     VariableRecord,
 )
@@ -273,6 +275,7 @@ class Declaration:
         self.derived: dict[str, Derived] = {}
         self.steps: dict[str, Step] = {}
         self.constants: dict[str, Constant] = {}
+        self.next_rows: dict[str, NextRowRecord] = {}
         self.limits: dict[str, Limit] = {}
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
@@ -293,9 +296,8 @@ class Declaration:
 
     def names(self) -> dict[str, str]:
         """Return every accepted spelling (name or symbol) and the name it stands for."""
-        return {
-            word: name for word, name in self._symbols.items() if name not in self.steps and name not in self.constants
-        }
+        silent = {*self.steps, *self.constants, *self.next_rows}
+        return {word: name for word, name in self._symbols.items() if name not in silent}
 
     # -- verbs ---------------------------------------------------------------------------------
 
@@ -551,6 +553,41 @@ class Declaration:
         si = float(to_si(value, parse_unit(unit)))
         self.constants[name] = Constant(name, unit, symbol, text, source, si)
         return si
+
+    def next_row(
+        self,
+        name: str,
+        quantity: Any,
+        table: str,
+        column: str,
+        beside: RowRange | None = None,
+        text: str = "",
+        source: str = "",
+    ) -> None:
+        """Name with every design the row of a table whose column is smallest but not below a quantity (SI).
+
+        It tells what to buy or to make next to a size that no table decides; the search does not see it.
+
+        Parameters
+        ----------
+        name : str
+            Under which the row stands in ``design.next_rows``.
+        quantity : symbol or expression
+            SI.
+        table, column : str
+            A catalogue table, and its column of numbers.
+        beside : RowRange, optional
+            A second table, of which the row is named whose range holds the value that was found in the first.
+        text, source : str
+        """
+        self._claim(name, None)
+        lookups = [(table, column)]
+        if beside is not None:
+            lookups += [(beside.table, beside.over), (beside.table, beside.up_to)]
+        for where, key in lookups:
+            self.catalogs.table(where).number(key)  # tells now what is no column of numbers
+        unit = self.catalogs.table(table).column(column).unit or "-"
+        self.next_rows[name] = NextRowRecord(name, unit, name, text, source, ca.SX(quantity), table, column, beside)
 
     def at_most(self, name: str, value: Any, limit: Any, unit: str, **details: Any) -> None:
         """Declare the limit ``value <= limit``; both sides in SI, ``unit`` is for people."""

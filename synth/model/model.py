@@ -15,8 +15,10 @@ from synth.errors import InputError
 from synth.feasibility import holds, residual
 from synth.interrupts import held_back
 from synth.model.constraint import SIGNS, Constraint
+from synth.model.next_rows import next_row
 from synth.model.numbers import numeric
 from synth.model.program import InputValue, Program
+from synth.results.next_row import NextRow
 from synth.special import SpecialCall, expanded
 from synth.units import format_quantity
 
@@ -170,27 +172,38 @@ class Model:
         data : list of numbers or arrays (batch,)
             One entry per data input.
         """
-        steps = self.declaration.steps
-        if not steps:
+        return self._unsearched("steps", self.declaration.steps, variables, data)
+
+    def next_rows(self, variables: np.ndarray, data: Sequence[InputValue]) -> list[dict[str, NextRow]]:
+        """Return, per design of a batch, the rows of tables that are next to its quantities, by name.
+
+        Where a guard fails without which the quantity does not exist, there is none. Parameters as of ``steps``.
+        """
+        declared, catalogs = self.declaration.next_rows, self.declaration.catalogs
+        needed = self._unsearched("next rows", declared, variables, data)
+        return [{n: next_row(declared[n], x, catalogs) for n, x in own.items() if not np.isnan(x)} for own in needed]
+
+    def _unsearched(
+        self, what: str, named: Mapping[str, Any], variables: np.ndarray, data: Sequence[InputValue]
+    ) -> list[dict[str, float]]:
+        """Return what only results and hooks read: the search does not carry it, so it has a program of its own."""
+        if not named:
             return [{} for _ in variables]
-        # A program of its own: the search does not carry what only hooks read.
-        if "steps" not in self._function_cache:
-            program = Program(self.inputs, [s.sx for s in steps.values()], self.calls)
-            self._function_cache["steps"] = program.compile()
+        expressions = [record.sx for record in named.values()]
+        compiled = self.function(what, lambda: Program(self.inputs, expressions, self.calls).compile())
         given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (*np.asarray(variables, dtype=float).T, *data)]
         with np.errstate(all="ignore"):
-            found = self._function_cache["steps"](given)
+            found = compiled(given)
         columns = [np.broadcast_to(np.ravel(x), len(variables)) for x in found]
-        behind = self.function("guards of steps", self._guards_of_steps)
+        behind = self.function(f"guards of {what}", lambda: self._guards_of(expressions))
         held = self.evaluate(np.asarray(variables, dtype=float), data).holds if any(behind) else {}
         for k, guards in enumerate(behind):
             for guard in guards:
                 columns[k] = np.where(held[guard], columns[k], np.nan)
-        return [dict(zip(steps, row, strict=True)) for row in zip(*(x.tolist() for x in columns), strict=True)]
+        return [dict(zip(named, row, strict=True)) for row in zip(*(x.tolist() for x in columns), strict=True)]
 
-    def _guards_of_steps(self) -> list[list[str]]:
-        """Return, per step, the guards without which it does not exist: those of what it is computed from."""
-        steps = [s.sx for s in self.declaration.steps.values()]
+    def _guards_of(self, steps: Sequence[Any]) -> list[list[str]]:
+        """Return, per expression, the guards without which it does not exist: those of what it is computed from."""
         needs = [(q.sx, guard) for q in self.declaration.derived.values() for guard in q.needs]
         program = Program(self.inputs, [*steps, *(sx for sx, _ in needs)], self.calls)
         own, needing = program.outputs[: len(steps)], program.outputs[len(steps) :]
@@ -222,6 +235,7 @@ class Model:
         sides = [(f"limit {x.name}", e) for x in self.limits for e in (x.value, x.limit)]
         named = [(f"derived {q.name}", q.sx) for q in d.derived.values()]
         named += [(f"step {s.name}", s.sx) for s in d.steps.values()]
+        named += [(f"next row {r.name}", r.sx) for r in d.next_rows.values()]
         when = [(f"refusal {r.code}", r.when) for r in d.refusals] + [(f"advice {a.code}", a.when) for a in d.advices]
         for label, expression in sides + named + when:
             strange = sorted({str(s) for s in ca.symvar(expression)} - known)

@@ -9,6 +9,7 @@ from typing import Any
 from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import yaml_text
+from synth.results.next_row import NextRow
 from synth.results.ratings import DesignRating
 from synth.units import finite_from_si, format_quantity, header
 
@@ -75,7 +76,8 @@ class Design:
     ``values`` holds every variable, count and derived quantity in SI (not-a-number where it does not exist),
     ``utilisation`` every limit (None where it is void), ``limits`` both sides of it in SI. ``outside`` tells which
     values of a given design lie outside of the range that is searched, and what that is. ``steps`` holds quantities
-    on the way to others by name in SI, which hooks read. ``robust`` tells, where that was asked, how the design
+    on the way to others by name in SI, which hooks read, ``next_rows`` the rows of tables that come next to some of its
+    quantities. ``robust`` tells, where that was asked, how the design
     stands what scatters: ``holds``, ``proof``, ``yield`` with ``yield_low`` and ``yield_high``, ``worst_limit``,
     and per limit its worst point.
     """
@@ -102,6 +104,7 @@ class Design:
     not_checked: tuple[str, ...] = ()
     robust: DesignRating = field(default_factory=DesignRating)
     steps: Mapping[str, float] = field(default_factory=DesignSteps)
+    next_rows: Mapping[str, NextRow] = field(default_factory=dict)
 
     def to_spec(self) -> dict[str, Any]:
         """Return the design as a DESIGN.yaml mapping: strings with units that read back exactly."""

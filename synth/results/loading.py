@@ -14,6 +14,7 @@ from synth.results.design import Design, DesignSteps, Frame, PartRow
 from synth.results.front import ParetoFront
 from synth.results.front_record import FRONT_FORMAT, changed
 from synth.results.least_infeasible import LeastInfeasible
+from synth.results.next_row import NextRow
 from synth.results.ratings import DesignRating
 from synth.results.search_record import SettingsRecord
 from synth.results.statistics import SearchStatistics
@@ -156,6 +157,7 @@ def _design_from_json(frame: Frame, d: dict[str, Any], rows: dict[str, dict[str,
         not_checked=tuple(d["not_checked"]),
         robust=DesignRating.read(d.get("robust", {})),
         steps=DesignSteps({n: _number(v) for n, v in d.get("steps", {}).items()}),
+        next_rows={n: NextRow.read(told) for n, told in d.get("next_rows", {}).items()},
     )
 
 

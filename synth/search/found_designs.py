@@ -41,13 +41,16 @@ def found_designs(
     told = told_by(form.instance, result, points, range(len(candidates)))
     known: dict[tuple[str, int], PartRow] = {}
     data = form.instance.data(np.array([c.combination for c in candidates], dtype=np.int64))
-    steps = form.model.steps(points, data)
+    beside = [
+        {"steps": DesignSteps(steps), "next_rows": rows}
+        for steps, rows in zip(form.model.steps(points, data), form.model.next_rows(points, data), strict=True)
+    ]
     designs = []
-    for frame, candidate, own, passed, details in zip(frames, candidates, told, steps, more, strict=True):
+    for frame, candidate, own, unsearched, details in zip(frames, candidates, told, beside, more, strict=True):
         parts, _, choices = form.instance.combinations.describe(candidate.combination)
         for slot, (table, number) in parts.items():
             if (slot, number) not in known:
                 known[slot, number] = part_row(table, number)
         rows = {slot: known[slot, number] for slot, (_, number) in parts.items()}
-        designs.append(design_of(frame, own, rows, choices, {"steps": DesignSteps(passed), **details}))
+        designs.append(design_of(frame, own, rows, choices, {**unsearched, **details}))
     return designs

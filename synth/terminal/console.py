@@ -122,17 +122,21 @@ TITLES = {
     "point": "Operating point (check --at)",
     "refusal": "Refused input",
     "advice": "Remarks",
+    "next_row": "Rows of tables named with a design",
 }
+
+
+CODED = ("refusal", "advice", "next_row")  # kinds of which only a code or name and a text are shown
 
 
 def print_description(description: Sequence[Mapping[Any, Any]], console: Console) -> None:
     """Print the rows of ``describe``, kind by kind; requirements group by group."""
     for kind, title, rows in _sections(description):
         console.print(f"\n{title}")
-        if kind in ("refusal", "advice"):
-            shown = plain_table("code", "meaning", wide=1)
+        if kind in CODED:
+            shown = plain_table("name" if kind == "next_row" else "code", "meaning", wide=1)
             for row in rows:
-                shown.add_row(row["name"], row["text"])
+                shown.add_row(row["name"], _meaning(row))
         else:
             shown = plain_table("name", "unit", "value", "meaning", wide=3)
             for row in rows:
@@ -203,9 +207,7 @@ def print_check(design: Design, details: Sequence[Mapping[Any, Any]], console: C
     console : rich.console.Console
     """
     frame = design.frame
-    known = {
-        row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "refusal", "advice", "point")
-    }
+    known = {row["name"]: row for row in details if row["kind"] not in ("limit", "objective", "point", *CODED)}
     console.print(f"{frame.title} ({frame.family})")
     if frame.options:
         console.print("options: " + ", ".join(f"{n} {v}" for n, v in frame.options.items()))
@@ -272,6 +274,7 @@ def _remarks(design: Design) -> list[str]:
         *([f"not asked, so their limits are not built: {', '.join(not_asked)}"] if not_asked else []),
         *(f"off the grid: {name}, {remark}" for name, remark in design.off_grid.items()),
         *(f"outside the range that is searched: {name} {remark}" for name, remark in design.outside.items()),
+        *(f"next in the tables: {name} {row}" for name, row in design.next_rows.items()),
         *(f"advice: {remark}" for remark in design.advice),
     ]
 
@@ -410,6 +413,8 @@ def print_outcome(front: ParetoFront, console: Console) -> None:
         console.print(line)
     if front.designs:
         leader = front.designs[0]
+        for name, row in leader.next_rows.items():
+            console.print(f"next in the tables for #{leader.rank}: {name} {row}")
         for remark in (*leader.advice, *leader.not_checked):
             console.print(f"remark on #{leader.rank}: {remark}")
 

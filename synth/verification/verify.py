@@ -263,9 +263,18 @@ class VerificationRun:
                 self.find(f"{label}: objective {name} is {design.objectives.get(name)}, evaluated {values[name]}")
         if {text.split(":")[0] for text in design.advice} - {"unusual_part"} != remarks:
             self.find(f"{label}: the remarks are {sorted(design.advice)}, evaluated they are {sorted(remarks)}")
+        self._next_rows(design, label, point)
         self._limits(design, label, point, limits, values)
         self._bounds(design, label, point)
         self._claims_of_design(design, label)
+
+    def _next_rows(self, design: Design, label: str, point: Point) -> None:
+        """Find rows of tables that are not the next ones to the design."""
+        (right,) = self.model.next_rows(point.variables[None, :], point.data)
+        for name, told in design.next_rows.items():
+            row = right.get(name)
+            if row is None or str(told) != str(row):
+                self.find(f"{label}: {name} is told as {told}, by the tables it is {row or 'none'}")
 
     def _point(self, design: Design, label: str) -> Point | None:
         """Return the inputs of a design, or None where they do not exist."""

@@ -9,7 +9,7 @@ import pytest
 
 import synth
 from synth.analysis.describe import COLUMNS, describe
-from synth.declaration import Block, Option, Requirement
+from synth.declaration import Block, Option, Requirement, RowRange
 from synth.question.catalogs import as_catalogs
 from synth.question.ranges import declared_ranges
 
@@ -43,6 +43,8 @@ class Sample(synth.DesignProblem):
         d.objective("area", "max", default=False)
         d.refuse("too_much", force > 1e6, "less force")
         d.advise("thick", side > 0.05, "a thick rod", source="habit")
+        ends = RowRange("parallel_keys", over="shaft_diameter_over", up_to="shaft_diameter_up_to")
+        d.next_row("end_piece", side, "shaft_ends", "diameter", beside=ends, text="Machined end")
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +69,14 @@ def test_every_kind_is_there(rows: dict[tuple[str, str], dict[str, Any]]) -> Non
         "objective",
         "refusal",
         "advice",
+        "next_row",
     }
+
+
+def test_a_row_that_is_named_says_where_it_stands(rows: dict[tuple[str, str], dict[str, Any]]) -> None:
+    row = rows["next_row", "end_piece"]
+    assert (row["unit"], row["text"]) == ("mm", "Machined end")
+    assert row["choices"] == "next diameter of shaft_ends, with its row of parallel_keys"
 
 
 def test_numbers_are_in_the_unit_of_their_row(rows: dict[tuple[str, str], dict[str, Any]]) -> None:

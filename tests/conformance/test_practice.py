@@ -74,3 +74,14 @@ def test_every_rule_is_told_where_it_comes_from_and_stands_in_its_group(family: 
     assert (added["source"] != "").all()
     assert set(added["group"]) <= {"practice", "duty", "envelope", "actuator", "material"}
     assert (added["group"] == "practice").sum() > 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "name"), KNOWN)
+def test_the_next_shaft_end_and_its_key_are_named(family: str, name: str) -> None:
+    found = asked(family, name).next_rows["shaft_end"]
+    assert (found.table, found.beside_table) == ("shaft_ends", "parallel_keys")
+    assert found.value is not None
+    assert found.needed <= found.value * (1 + 1e-9)
+    assert found.beside is not None
+    assert not asked(family, name, practice="off", mass_scope="parts").next_rows

@@ -14,6 +14,7 @@ from synth.declaration import (
     DeclarationError,
     Option,
     Requirement,
+    RowRange,
     Slot,
     Variable,
     grid_values,
@@ -785,3 +786,107 @@ def test_a_step_has_a_name_of_its_own():
     assert "area" not in d.names()
     with pytest.raises(DeclarationError, match="'A' of area_2"):
         d.derive("area_2", "mm2", 1.0, symbol="A")
+
+
+# -- rows next to a quantity -----------------------------------------------------------------------
+
+PINS = pd.DataFrame(
+    {
+        "designation": ["C", "A", "blank", "B"],  # in no order
+        "diameter [mm]": [24.0, 8.0, None, 12.0],
+        "source": ["made up"] * 4,
+    }
+)
+CLIPS = pd.DataFrame(
+    {
+        "designation": ["small", "large"],
+        "over [mm]": [8.0, 12.0],
+        "up_to [mm]": [12.0, 20.0],
+        "source": ["made up"] * 2,
+    }
+)
+BOUGHT = Catalogs({"pins": PINS, "clips": CLIPS})
+
+
+def pinned(d):
+    force = d.requirement("force", "N", symbol="F")
+    need = d.requirement("need", "mm", (force / 100e6) ** 0.5, upper=1000)
+    length = d.variable("length", "mm", 1, 50)
+    clips = RowRange("clips", over="over", up_to="up_to")
+    d.next_row("pin", need, "pins", "diameter", beside=clips, text="Pin to buy")
+    d.next_row("rod", length, "pins", "diameter")
+    d.at_least("stress", d.derive("grip", "mm", length), need, "mm")
+    d.objective("length")
+
+
+def beside(need, length="20 mm"):
+    kind = problem(pinned)
+    return synth.evaluate(kind, {"force": "1 kN", "need": need}, values={"length": length}, catalogs=BOUGHT).next_rows
+
+
+@pytest.mark.parametrize(
+    ("need", "pin", "clip"),
+    [("3 mm", "A", None), ("8.1 mm", "B", "small"), ("12 mm", "B", "small"), ("12.001 mm", "C", None)],
+)
+def test_the_next_row_is_the_smallest_that_is_not_below(need, pin, clip):
+    found = beside(need)
+    assert (found["pin"].designation, found["pin"].beside) == (pin, clip)
+    assert (found["rod"].designation, found["rod"].beside_table) == ("C", None)
+    lack = "" if clip else ", for which clips has no row"
+    assert str(found["pin"]).endswith(f"{need} needed)" + (f" with {clip}" if clip else lack))
+
+
+def test_beyond_the_last_row_there_is_none_and_it_is_said():
+    found = beside("24.1 mm")["pin"]
+    assert (found.designation, found.value, found.beside) == (None, None, None)
+    assert str(found) == "none, 24.1 mm needed and table pins ends at 24 mm"
+
+
+def test_the_next_row_of_a_size_that_is_typed_in_another_unit():
+    assert beside("0.012 m")["pin"].designation == beside("1.2 cm")["pin"].designation == "B"
+
+
+def test_next_rows_stand_in_front_json_alone(tmp_path):
+    def bare(d):
+        force = d.requirement("force", "N", symbol="F")
+        need = d.requirement("need", "mm", (force / 100e6) ** 0.5, upper=1000)
+        length = d.variable("length", "mm", 1, 50)
+        d.at_least("stress", d.derive("grip", "mm", length), need, "mm")
+        d.objective("length")
+
+    folders = [
+        synth.synthesize(problem(declare), {"force": "20 kN"}, catalogs=BOUGHT).save(tmp_path / name)
+        for name, declare in (("with", pinned), ("without", bare))
+    ]
+    tables = [(folder / "designs.csv").read_bytes() for folder in folders]
+    assert tables[0] == tables[1]
+    told, plain = (synth.load_front(folder).designs[0] for folder in folders)
+    assert str(told.next_rows["pin"]) == "C (24 mm, 14.142 mm needed), for which clips has no row"
+    assert not plain.next_rows
+    assert "next_rows" not in (folders[1] / "front.json").read_text(encoding="utf-8")
+
+
+def test_where_a_quantity_does_not_exist_no_row_is_next_to_it():
+    def declare(d):
+        diameter = d.variable("diameter", "mm", 1, 50, symbol="d")
+        d.at_least("room", diameter, 5e-3, "mm", guard=True)
+        d.next_row("pin", d.derive("left", "mm", diameter - 5e-3, needs=["room"]), "pins", "diameter")
+        d.objective("diameter")
+
+    def found(diameter):
+        return synth.evaluate(problem(declare), {}, values={"diameter": diameter}, catalogs=BOUGHT).next_rows
+
+    assert found("10 mm")["pin"].designation == "A"
+    assert not found("4 mm")
+
+
+def test_a_next_row_has_a_name_of_its_own_and_a_column_of_numbers():
+    d = Declaration("sample", {}, frozenset(), BOUGHT)
+    d.next_row("pin", 1e-3, "pins", "diameter")
+    assert "pin" not in d.names()
+    with pytest.raises(DeclarationError, match="pin"):
+        d.next_row("pin", 1e-3, "pins", "diameter")
+    with pytest.raises(synth.InputError, match="diametre"):
+        d.next_row("other", 1e-3, "pins", "diametre")
+    with pytest.raises(synth.InputError, match="text"):
+        d.next_row("third", 1e-3, "pins", "diameter", beside=RowRange("clips", over="source", up_to="up_to"))

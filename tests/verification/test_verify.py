@@ -18,6 +18,7 @@ from synth.proof.questions import Point
 from synth.proof_limits import PROOF
 from synth.results import ParetoFront, PartRow
 from synth.results.loading import load_front, unchecked_front
+from synth.results.next_row import NextRow
 from synth.results.verification import Verdict
 from synth.tables.catalogs import Catalogs
 from synth.verification.pareto_regions import uncovered
@@ -317,6 +318,10 @@ TAMPERINGS = {
     "a column of a part": (
         lambda f: changed(f, 0, parts=row_of(f, "material", str(f.designs[0].parts["material"]), **DENSE)),
         "is not the row of table rods in force",
+    ),
+    "a row next to a size": (
+        lambda f: changed(f, 0, next_rows={"pin": NextRow(1e-3, "mm", "rods", "core 3", 3e-3, 9e-3)}),
+        "pin is told as core 3 (3 mm, 1 mm needed), by the tables it is none",
     ),
     "a rank": (lambda f: changed(f, 0, rank=2), "ranks are not"),
     "the order": (lambda f: dataclasses.replace(f, designs=f.designs[::-1]), "not in the order of their scores"),

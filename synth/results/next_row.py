@@ -1,0 +1,66 @@
+"""The row of a table that is next to a quantity of a design, as results tell it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from synth.units import format_quantity, parse_unit
+
+
+@dataclass(frozen=True)
+class NextRow:
+    """The row of a table whose column is smallest but not below what a design needs; quantities in SI.
+
+    Attributes
+    ----------
+    needed : float
+        What the design needs.
+    unit : str
+        In which people read it.
+    table : str
+    designation : str or None
+        The row; None where the table ends below what is needed.
+    value : float or None
+        What the row has.
+    last : float or None
+        The largest value that the table has; None where it has none.
+    beside_table, beside : str or None
+        The second table that was asked, and its row for the value; None where none was asked, or none fits.
+    """
+
+    needed: float
+    unit: str
+    table: str
+    designation: str | None
+    value: float | None
+    last: float | None
+    beside_table: str | None = None
+    beside: str | None = None
+
+    def __str__(self) -> str:
+        """Return what to take, in one short line."""
+        needed = format_quantity(self.needed, self.unit, 5)
+        if self.designation is None or self.value is None:
+            ends = "has no row" if self.last is None else f"ends at {format_quantity(self.last, self.unit, 5)}"
+            return f"none, {needed} needed and table {self.table} {ends}"
+        line = f"{self.designation} ({format_quantity(self.value, self.unit, 5)}, {needed} needed)"
+        if self.beside_table is None:
+            return line
+        return f"{line} with {self.beside}" if self.beside else f"{line}, for which {self.beside_table} has no row"
+
+    def record(self) -> dict[str, Any]:
+        """Return what front.json says of it."""
+        return asdict(self)
+
+    @classmethod
+    def read(cls, told: Mapping[str, Any]) -> NextRow:
+        """Return what a front.json says of it."""
+        designation, beside_table, beside = (
+            None if told[key] is None else str(told[key]) for key in ("designation", "beside_table", "beside")
+        )
+        value, last = (None if told[key] is None else float(told[key]) for key in ("value", "last"))
+        unit = str(told["unit"])
+        parse_unit(unit)
+        return cls(float(told["needed"]), unit, str(told["table"]), designation, value, last, beside_table, beside)
