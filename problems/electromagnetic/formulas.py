@@ -16,6 +16,39 @@ import numpy as np
 from problems.mechanics import Quantity, magnetics
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExpectedPack:
+    """What a duty lets expect of a pack before it is sized; figures of engineering practice, without a source.
+
+    Parameters
+    ----------
+    friction : float
+        Coefficient of a dry lining.
+    surfaces : float
+        Friction surfaces of one disc.
+    radius : float
+        Friction radius over shaft diameter; packs that were searched have 1.8 to 3.
+    return_share, drag_share : float
+        Return springs and sliding plates over the clamping force.
+    gap_ratio : float
+        Gap at each pole of the engaged magnet over shaft diameter.
+    gap_min, gap_max : float
+        Its ends [m]: what can be held, and the typical gap of larger magnets.
+    """
+
+    friction: float = 0.3
+    surfaces: float = 2.0
+    radius: float = 2.5
+    return_share: float = 0.015
+    drag_share: float = 0.004
+    gap_ratio: float = 0.015
+    gap_min: float = 0.1e-3
+    gap_max: float = 0.4e-3
+
+
+EXPECTED = ExpectedPack()
+
+
 @dataclass(frozen=True)
 class PotMagnet:
     """Dimensions of a pot magnet with its armature plate [m]."""
@@ -203,6 +236,120 @@ def pull_in_force(ampere_turns: Quantity, gap: Quantity, pole_area: Quantity) ->
     60.56
     """
     return magnetics.MU_0 * pole_area * (ampere_turns / (2 * gap)) ** 2
+
+
+def expected_clamping_force(torque: Quantity, shaft_diameter: Quantity) -> Quantity:
+    """Force that presses a pack for a torque, as far as the duty alone tells it, F_c = M/(mu z r).
+
+    With two dry surfaces and the friction radius of packs on such a shaft.
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        M [N m].
+    shaft_diameter : scalar, array or symbol
+        d_s [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_c [N].
+
+    References
+    ----------
+    Torque of a friction pack; coefficient, surfaces and radius are engineering practice.
+
+    Examples
+    --------
+    8.82 N m on a shaft of 13.1 mm, by hand 8.82/(0.3 x 2 x 2.5 x 0.0131):
+
+    >>> round(float(expected_clamping_force(8.82, 0.0131)), 2)
+    448.85
+    """
+    return torque / (EXPECTED.friction * EXPECTED.surfaces * EXPECTED.radius * shaft_diameter)
+
+
+def return_force(clamping_force: Quantity) -> Quantity:
+    """Springs that part a pack whose magnet has let go: a share of the clamping force.
+
+    They stand against three things that grow with it. Iron of a coercive field H_c around a path l keeps
+    B_r = mu0 H_c l/(2 g): with 200 A/m, 0.15 m and 0.4 mm 0.047 T, or 0.13 % of the pull at 1.3 T; twice the field, of
+    iron that was not annealed, 0.5 %. An armature weighs about 0.4 % of its clamping force, plates that slide take as
+    much (``release_drag``).
+
+    Parameters
+    ----------
+    clamping_force : scalar, array or symbol
+        F_c [N].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_ret [N].
+
+    References
+    ----------
+    Ampere's law, Maxwell's force; the share is engineering practice.
+
+    Examples
+    --------
+    >>> round(float(return_force(448.85)), 3)
+    6.733
+    """
+    return EXPECTED.return_share * clamping_force
+
+
+def release_drag(clamping_force: Quantity) -> Quantity:
+    """Push of plates that slide in their guides, a share of the clamping force: 20 N of 5000 N.
+
+    Parameters
+    ----------
+    clamping_force : scalar, array or symbol
+        F_c [N].
+
+    Returns
+    -------
+    scalar, array or symbol
+        F_drag [N].
+
+    References
+    ----------
+    Engineering practice.
+
+    Examples
+    --------
+    >>> release_drag(5000.0)
+    20.0
+    """
+    return EXPECTED.drag_share * clamping_force
+
+
+def gap_against_sticking(shaft_diameter: Quantity) -> Quantity:
+    """Gap at each pole of the engaged magnet for a clutch of a size, g_r = 0.015 d_s from 0.1 to 0.4 mm.
+
+    Remanence makes B_r = mu0 H_c l/(2 g_r) across it, and the way l through the iron grows with the size: the gap of a
+    small magnet may be as much smaller. Larger ones keep the typical 0.4 mm.
+
+    Parameters
+    ----------
+    shaft_diameter : scalar, array or symbol
+        d_s [m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        g_r [m].
+
+    References
+    ----------
+    Ampere's law; the ratio is engineering practice, so chosen that a shaft of 27 mm has 0.4 mm.
+
+    Examples
+    --------
+    >>> [round(1e3 * float(gap_against_sticking(d)), 4) for d in (0.004, 0.0131, 0.045)]
+    [0.1, 0.1965, 0.4]
+    """
+    return np.minimum(np.maximum(EXPECTED.gap_ratio * shaft_diameter, EXPECTED.gap_min), EXPECTED.gap_max)
 
 
 def magnet_mass(density: Quantity, magnet: PotMagnet, copper: Quantity) -> Quantity:

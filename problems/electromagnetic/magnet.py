@@ -14,6 +14,8 @@ from problems.sources import S0, S4, TYPICAL
 from synth.declaration import Block, Declaration, Option, Requirement
 
 HOLDS = "magnet_overcomes_springs"
+STICKING_GAP = 0.3e-3  # m, least of the typical gaps
+STICKING_SHARE = 0.75  # least of the typical gaps over their middle, 0.3 and 0.4 mm
 
 
 class MagnetRequirements(Block):
@@ -27,7 +29,8 @@ class MagnetRequirements(Block):
         lower=0,
         upper=1e5,
         symbol="F_ret",
-        text=f"Springs that draw the armature back ({TYPICAL})",
+        text=f"Springs that draw the armature back ({TYPICAL}; with rules of practice 1.5 % of the clamping force that "
+        f"the torque lets expect, {UNSOURCED})",
         source=f"{S4}, section 6.6",
     )
     release_drag_force = Requirement(
@@ -36,7 +39,8 @@ class MagnetRequirements(Block):
         lower=0,
         upper=1e5,
         symbol="F_drag",
-        text=f"Push of the first phase: plates that slide in their guides ({TYPICAL})",
+        text=f"Push of the first phase: plates that slide in their guides ({TYPICAL}; with rules of practice 0.4 % of "
+        f"the clamping force that the torque lets expect, {UNSOURCED})",
         source=f"{S0}, first phase of engagement",
     )
     pull_in_margin = Requirement(
@@ -54,7 +58,8 @@ class MagnetRequirements(Block):
         lower=0.05,
         upper=3,
         symbol="g_r",
-        text=f"Gap at each pole of the engaged magnet, against sticking ({TYPICAL}, 0.3 to 0.5)",
+        text=f"Gap at each pole of the engaged magnet, against sticking ({TYPICAL}, 0.3 to 0.5; with rules of practice "
+        f"0.015 of the shaft, 0.1 to 0.4, {UNSOURCED})",
         source=f"{S4}, section 6.6",
     )
     magnet_bore_radius = Requirement(
@@ -104,6 +109,31 @@ class Practice:
 
 
 @dataclass(frozen=True)
+class Seat:
+    """What defaults of a magnet follow from where rules of practice count: sizing torque [N m], shaft and hub [m]."""
+
+    torque: Any
+    shaft_diameter: Any
+    hub_diameter: Any
+
+    @property
+    def defaults(self) -> dict[str, Any]:
+        """Defaults of MagnetRequirements that grow with the clutch, in SI."""
+        clamping = pot_magnet.expected_clamping_force(self.torque, self.shaft_diameter)
+        return {
+            "return_spring_force": pot_magnet.return_force(clamping),
+            "release_drag_force": pot_magnet.release_drag(clamping),
+            "residual_gap": self.residual_gap,
+            "magnet_bore_radius": self.hub_diameter / 2,
+        }
+
+    @property
+    def residual_gap(self) -> Any:
+        """Gap that a magnet of this size needs against sticking [m]."""
+        return pot_magnet.gap_against_sticking(self.shaft_diameter)
+
+
+@dataclass(frozen=True)
 class MagnetSize:
     """Mass of the magnet and of the copper in it [kg]."""
 
@@ -113,13 +143,14 @@ class MagnetSize:
 
 @dataclass(frozen=True)
 class Magnet:
-    """The magnet and what it leaves for the pack."""
+    """The magnet and what it leaves for the pack; below a gap of ``sticking_gap`` [m] it may hold without current."""
 
     wants: MagnetRequirements
     iron: coil_blocks.CoilRequirements
     unknowns: coil_blocks.CoilUnknowns
     shape: pot_magnet.PotMagnet
     actuation_force: Any
+    sticking_gap: Any
 
 
 def declare_magnet_rules(d: Declaration) -> MagnetRules:
@@ -129,22 +160,22 @@ def declare_magnet_rules(d: Declaration) -> MagnetRules:
     return rules
 
 
-def declare_magnet(d: Declaration, *, bore_radius: Any = None) -> Magnet:
+def declare_magnet(d: Declaration, *, seat: Seat | None = None) -> Magnet:
     """Declare requirements and unknowns of the magnet, its force, and what is left for the pack.
 
     Parameters
     ----------
     d : Declaration
         Takes the declarations.
-    bore_radius : symbol, optional
-        Default of magnet_bore_radius where it follows from the shaft [m].
+    seat : Seat, optional
+        What defaults follow from where rules of practice count.
 
     Returns
     -------
     Magnet
         Symbols of the block.
     """
-    wants = d.block(MagnetRequirements, **({} if bore_radius is None else {"magnet_bore_radius": bore_radius}))
+    wants = d.block(MagnetRequirements, **({} if seat is None else seat.defaults))
     iron = coil_blocks.declare_coil_requirements(d)
     pole_width = d.variable(
         "inner_pole_width",
@@ -191,7 +222,8 @@ def declare_magnet(d: Declaration, *, bore_radius: Any = None) -> Magnet:
         text="Axial force on the pack: magnet less return springs",
         source=f"{S4}, section 6.6",
     )
-    return Magnet(wants, iron, unknowns, shape, force)
+    sticking_gap = STICKING_GAP if seat is None else STICKING_SHARE * seat.residual_gap
+    return Magnet(wants, iron, unknowns, shape, force, sticking_gap)
 
 
 def declare_magnet_coil(
@@ -286,7 +318,7 @@ def declare_magnet_coil(
     winding = coil_blocks.declare_winding(
         d, wants=iron, unknowns=unknowns, ampere_turns=ampere_turns, bore_radius=shape.inner_pole_radius, around=around
     )
-    _declare_remarks(d, wants=wants)
+    _declare_remarks(d, magnet=magnet)
     if practice is not None:
         coil_blocks.limit_coil(d, rules=practice.rules, wants=iron, unknowns=unknowns)
         rise = coil_blocks.declare_rise_time(
@@ -382,11 +414,13 @@ def _name_release(d: Declaration, *, wants: MagnetRequirements, surfaces: Any, g
     return released, force
 
 
-def _declare_remarks(d: Declaration, *, wants: MagnetRequirements) -> None:
+def _declare_remarks(d: Declaration, *, magnet: Magnet) -> None:
+    wants = magnet.wants
     d.advise(
         "armature_sticks",
-        wants.residual_gap < 0.3e-3,
-        "with a residual_gap below 0.3 mm the remanence of the iron may hold the armature after the current is off",
+        wants.residual_gap < magnet.sticking_gap,
+        "with a residual_gap below 0.3 mm, or three quarters of its default with rules of practice, the remanence of "
+        "the iron may hold the armature after the current is off",
         source=f"{S4}, section 6.6",
     )
     d.advise(

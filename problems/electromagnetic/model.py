@@ -127,7 +127,7 @@ class ElectromagneticClutch(DesignProblem):
             d, duty=duty, options=options, lubrication=lubrication, rules=scope.rules
         )
         required = friction.sizing_torque(duty, wants.surface_factor if options.guide_model == "cz" else 1.0)
-        body_wants = rules = coil_rules = None
+        body_wants = rules = coil_rules = seat = None
         if scope.rules or scope.complete:
             body_wants = d.block(
                 PackBodyRequirements,
@@ -139,10 +139,10 @@ class ElectromagneticClutch(DesignProblem):
             oil = lubrication == "oil"
             rules = d.block(PackRules, friction_surfaces_max=12 if oil else 8, release_gap_min=0.05 if oil else 0.3)
             coil_rules = magnet_blocks.declare_magnet_rules(d)
+            if body_wants is not None:
+                seat = magnet_blocks.Seat(required, body_wants.shaft_diameter, body_wants.hub_diameter)
         ring = friction.declare_ring(d, ratio_min=0.15 if scope.rules else 0.10, ratio_max=0.25)
-        magnet = magnet_blocks.declare_magnet(
-            d, bore_radius=None if body_wants is None or rules is None else body_wants.hub_diameter / 2
-        )
+        magnet = magnet_blocks.declare_magnet(d, seat=seat)
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(
             d, family=self.name, duty=duty, lubrication=lubrication, rules=scope.rules
@@ -231,19 +231,19 @@ class ElectromagneticClutch(DesignProblem):
             kind=friction.DutyOfDiscs if scope.rules else friction.Duty,
         )
         required = friction.sizing_torque(duty)
-        body_wants = wants = rules = coil_rules = None
+        body_wants = wants = rules = coil_rules = seat = None
         if scope.rules or scope.complete:
             body_wants = disc_body.declare_body_requirements(d, required=required, wear_depth_limit=WEAR_AT_MAGNET)
             wants = disc_body.declare_disc_requirements(d, body=body_wants)
         if scope.rules:
             rules = d.block(disc_body.DiscRules)
             coil_rules = magnet_blocks.declare_magnet_rules(d)
+            if body_wants is not None:
+                seat = magnet_blocks.Seat(required, body_wants.shaft_diameter, body_wants.hub_diameter)
         least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
         ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
         pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants)
-        magnet = magnet_blocks.declare_magnet(
-            d, bore_radius=None if body_wants is None or rules is None else body_wants.hub_diameter / 2
-        )
+        magnet = magnet_blocks.declare_magnet(d, seat=seat)
         force = magnet.actuation_force
         ramp_time = friction.declare_ramp_time(d)
         pair = friction.declare_friction_pair(d, family=self.name, duty=duty, lubrication="dry", rules=scope.rules)

@@ -73,7 +73,7 @@ DUTIES = [
         "electromagnetic_clutch",
         "5 N m",
         _start("5 N*m", "1500 1/min", "0.01 kg*m2"),
-        fix={"ramp_time": "0.1 s", "coil_height": "14 mm", "yoke_thickness": "8 mm"},
+        fix={"ramp_time": "0.1 s", "coil_height": "10 mm", "yoke_thickness": "5 mm"},
     ),
     Duty(
         "electromagnetic_clutch",

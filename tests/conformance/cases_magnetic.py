@@ -179,7 +179,14 @@ def magnetic(family: Callable[..., Any], case: Callable[..., Any], design: Calla
                 "hub_bore_diameter": "40 mm",
                 "drag_torque_limit": "5 N*m",
             },
-            needed={"practice=on": {"wear_life_min": "10000"}},
+            needed={
+                "practice=on": {
+                    "wear_life_min": "10000",
+                    "return_spring_force": "100 N",  # what the known designs were made for
+                    "release_drag_force": "20 N",
+                    "residual_gap": "0.4 mm",
+                }
+            },
             unknown={"pack=disc": frozenset({"hub_bore_diameter", "drag_torque_limit"})},
             feasible={
                 "spindle": case(

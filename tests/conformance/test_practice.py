@@ -17,7 +17,12 @@ KNOWN = [
 # What follows from the shaft with rules of practice, and is a figure of the source without them.
 SAME = {
     "disc_clutch": {"disc_hub_radius": "20 mm"},
-    "electromagnetic_clutch": {"magnet_bore_radius": "20 mm"},
+    "electromagnetic_clutch": {
+        "magnet_bore_radius": "20 mm",
+        "return_spring_force": "100 N",
+        "release_drag_force": "20 N",
+        "residual_gap": "0.4 mm",
+    },
 }
 
 

@@ -34,6 +34,9 @@ CASES = [
     (of_shape(lambda m, ni, gap: pot_magnet.pull_in_force(ni, gap, m.pole_area)), {"ni": "A", "gap": "m"}, "N"),
     (of_shape(lambda m, rho, copper: pot_magnet.magnet_mass(rho, m, copper)), {"rho": "kg/m3", "copper": "kg"}, "kg"),
     (of_shape(lambda m: m.length), {}, "m"),
+    (of_shape(lambda m, torque: pot_magnet.expected_clamping_force(torque, m.bore)), {"torque": "N*m"}, "N"),
+    (of_shape(lambda m, force: pot_magnet.return_force(force)), {"force": "N"}, "N"),
+    (of_shape(lambda m, force: pot_magnet.release_drag(force)), {"force": "N"}, "N"),
 ]
 
 
@@ -47,7 +50,8 @@ def test_scales_as_its_unit_on_floats_arrays_and_symbols(function, units, result
 
 def test_no_formula_is_left_out():
     public = {n for n, f in inspect.getmembers(pot_magnet, inspect.isfunction) if f.__module__ == pot_magnet.__name__}
-    assert public == {"magnet_force", "yoke_flux_ratio", "engaged_ampere_turns", "pull_in_force", "magnet_mass"}
+    sized = {"magnet_force", "yoke_flux_ratio", "engaged_ampere_turns", "pull_in_force", "magnet_mass"}
+    assert public == sized | {"expected_clamping_force", "return_force", "release_drag", "gap_against_sticking"}
 
 
 def test_both_poles_have_the_same_area():

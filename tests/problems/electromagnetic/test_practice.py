@@ -15,7 +15,14 @@ DUTY = {
     "engagements_per_hour": "60 1/h",
 }
 # The worked numbers were computed with these, which are no longer defaults.
-THEN = {"plate_gap": "0.3 mm", "magnet_bore_radius": "20 mm", "shaft_shear_allow": "40 N/mm2"}
+THEN = {
+    "plate_gap": "0.3 mm",
+    "magnet_bore_radius": "20 mm",
+    "shaft_shear_allow": "40 N/mm2",
+    "return_spring_force": "100 N",
+    "release_drag_force": "20 N",
+    "residual_gap": "0.4 mm",
+}
 SIZES = {
     "multi_plate": {
         "ring_outer_diameter": "112 mm",
@@ -180,12 +187,54 @@ def test_a_gap_that_is_set_again_is_that_of_new_linings():
 
 def test_gap_lugs_and_bore_follow_from_size_and_shaft():
     found = design(SHORT)
-    assert found.steps["released_gap"] == pytest.approx(0.4e-3 + 4 * (0.1e-3 + 0.0005 * 112e-3), rel=1e-12)
-    assert "release_clearance" not in found.limits
     torque = 8 * 1.5 / 0.85
-    bore = 0.75 * (16 * torque / (math.pi * 20e6)) ** (1 / 3)
+    shaft = (16 * torque / (math.pi * 20e6)) ** (1 / 3)
+    assert found.steps["released_gap"] == pytest.approx(0.015 * shaft + 4 * (0.1e-3 + 0.0005 * 112e-3), rel=1e-12)
+    assert "release_clearance" not in found.limits
+    bore = 0.75 * shaft
     typed = design(SHORT, {"magnet_bore_radius": f"{bore!r} m"})
     assert found.values["magnet_diameter"] == pytest.approx(typed.values["magnet_diameter"], rel=1e-12)
+
+
+SCALED = ("return_spring_force", "release_drag_force", "residual_gap")
+
+
+@pytest.mark.parametrize("pack", SIZES)
+def test_springs_drag_and_gap_grow_with_the_clutch(pack):
+    sizes = SHORT if pack == "multi_plate" else {}
+
+    def values(torque, **more):
+        return design(sizes, {"load_torque": torque, **more}, pack=pack).frame.requirement_values
+
+    small, large = values("2 N*m"), values("16 N*m")
+    # Eight times the torque on twice the shaft: four times the force, and twice the way through the iron.
+    for name, factor in zip(("shaft_diameter", *SCALED), (2, 4, 4, 2), strict=True):
+        assert large[name] / small[name] == pytest.approx(factor, rel=1e-9)
+    clamping = 16 * 1.5 / 0.85 / (0.3 * 2 * 2.5 * large["shaft_diameter"])
+    assert large["return_spring_force"] == pytest.approx(0.015 * clamping, rel=1e-9)
+    assert large["release_drag_force"] == pytest.approx(0.004 * clamping, rel=1e-9)
+    assert large["residual_gap"] == pytest.approx(0.015 * large["shaft_diameter"], rel=1e-9)
+    assert values("600 N*m")["residual_gap"] == pytest.approx(0.4e-3, rel=1e-12)
+    assert values("1 N*m", return_spring_force="70 N")["return_spring_force"] == 70.0
+
+
+@pytest.mark.parametrize("pack", SIZES)
+def test_without_practice_springs_drag_and_gap_are_the_typical_ones(pack):
+    found = design(SHORT if pack == "multi_plate" else {}, pack=pack, practice="off").frame.requirement_values
+    assert [found[name] for name in SCALED] == pytest.approx([100.0, 20.0, 0.4e-3], rel=1e-15)
+
+
+def test_a_small_magnet_may_have_a_small_gap():
+    def sticks(gap, **options):
+        told = design(SHORT, {"residual_gap": gap}, **options).advice
+        return any(remark.startswith("armature_sticks") for remark in told)
+
+    shaft = (16 * 8 * 1.5 / 0.85 / (math.pi * 20e6)) ** (1 / 3)
+    least = 0.75 * 0.015 * shaft
+    assert not sticks(f"{1.01 * least!r} m")
+    assert sticks(f"{0.99 * least!r} m")
+    assert sticks("0.29 mm", practice="off")
+    assert not sticks("0.3 mm", practice="off")
 
 
 def test_discs_have_their_own_rules():
@@ -235,13 +284,13 @@ def test_designs_by_practice_are_ones_that_are_built():
         synth.load("electromagnetic_clutch", practice="on"),
         {"load_torque": "5 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.01 kg*m2"},
         points=4,
-        fix={"ramp_time": "0.1 s", "yoke_thickness": "8 mm", "coil_height": "14 mm"},
+        fix={"ramp_time": "0.1 s", "yoke_thickness": "5 mm", "coil_height": "10 mm"},
     )
     assert front.certificate.kind == "global"
     for found in front.designs:
         v = found.values
-        assert 1 < v["mass"] < 3
-        assert 10 < v["coil_power"] < 30
+        assert 0.3 < v["mass"] < 1
+        assert 4 < v["coil_power"] < 15
         assert v["rise_time"] <= 0.1 * (1 + 1e-6)
         assert v["coil_voltage"] >= 0.85 * 24 * (1 - 1e-6)
         assert v["friction_surfaces"] <= 12
