@@ -98,7 +98,7 @@ def track_rollers(d: Declaration, *, contact: str) -> tuple[str, ...]:
     d : Declaration
         Knows the tables.
     contact : str
-        line or crowned; the rows must have such a tread.
+        line, crowned or either; the rows must have such a tread.
 
     Raises
     ------
@@ -108,7 +108,8 @@ def track_rollers(d: Declaration, *, contact: str) -> tuple[str, ...]:
     if not d.has_column(ROLLERS, "outer_ring_load_limit"):
         return ()
     crowned, limit = d.numbers(ROLLERS, "crowned"), d.numbers(ROLLERS, "outer_ring_load_limit")
-    if not np.any((crowned == (contact == "crowned")) & (limit > 0)):
+    tread = contact == "either" or crowned == (contact == "crowned")
+    if not np.any(tread & (limit > 0)):
         raise InputError(
             "no_track_roller",
             f"roller_contact {contact}",

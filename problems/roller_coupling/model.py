@@ -32,6 +32,13 @@ PLASTIC_MODULUS, PLASTIC_PRESSURE = 20e9, 100e6
 LONG_OSCILLATION = 0.5
 
 # What the source says of the two predecessors (chapter X); what it does not say is said to be missing or assumed.
+DEFAULT_CONTACT = {"track": "crowned", "any": "either"}  # by roller_kind; line where rules of practice do not count
+# Where both treads count, a row goes by its own; spherical bearings roll in a housing, not in a guide.
+CONTACT_ROWS = {
+    "line": ("crowned == 0", "kind != 'spherical_roller_bearing'"),
+    "crowned": ("crowned == 1",),
+    "either": ("kind != 'spherical_roller_bearing'",),
+}
 GUIDES = {
     "roller": "rollers in the guides of the float; the only guide that the source gives formulas for",
     "piston": (
@@ -359,7 +366,8 @@ class RollerCoupling(DesignProblem):
     def declare(self, d: Declaration) -> None:
         """Declare requirements, unknowns, limits and objectives."""
         scope = practice.declare_scope(d)
-        track = scope.rules and coupling_body.declare_roller_kind(d) == "track"
+        kind = coupling_body.declare_roller_kind(d) if scope.rules else ""
+        track = kind == "track"
         guide = d.option(
             "guide",
             tuple(GUIDES),
@@ -381,10 +389,11 @@ class RollerCoupling(DesignProblem):
         )
         contact = d.option(
             "roller_contact",
-            ("line", "crowned"),
-            "crowned" if track else "line",
+            ("line", "crowned", "either"),
+            DEFAULT_CONTACT.get(kind, "line"),
             symbol="rc",
-            text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact",
+            text="line: cylindrical outer ring; crowned: track rollers with a crowned tread, point contact; either: "
+            "both, each row by its own tread",
             source=f"{S3}, XIV.3",
             group="model",
         )
@@ -419,9 +428,7 @@ class RollerCoupling(DesignProblem):
             d.objective("length", default=False)
 
     def _declare_unknowns(self, d: Declaration, *, contact: str, track: bool) -> Unknowns:
-        conditions = (
-            ["crowned == 1"] if contact == "crowned" else ["crowned == 0", "kind != 'spherical_roller_bearing'"]
-        )
+        conditions = list(CONTACT_ROWS[contact])
         if track:
             conditions += coupling_body.track_rollers(d, contact=contact)
         return Unknowns(
@@ -525,10 +532,11 @@ class RollerCoupling(DesignProblem):
             "an oscillation_factor of 1: without offset the bearings do not oscillate, and the raised static rating "
             "does not apply",
         )
-        if contact == "crowned":
+        if contact != "line":
+            round_crown = wants.crown_radius < roller.outer_diameter / 2
             d.refuse(
                 "crown_too_round",
-                wants.crown_radius < roller.outer_diameter / 2,
+                np.logical_and(roller.crowned, round_crown) if contact == "either" else round_crown,
                 "a crown_radius of at least the radius of the roller; the formula for the contact ellipse ends there",
             )
         if removable == "yes":
@@ -826,12 +834,14 @@ class RollerCoupling(DesignProblem):
         roller, material = unknowns.roller, unknowns.material
         length, radius = unknowns.contact_length, roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
-        if contact == "crowned":
-            pressure = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
-            source = "Hamrock and Brewe (1983)"
-        else:
+        pressure, source = None, ""
+        if contact != "crowned":
             pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
             source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
+        if contact != "line":
+            point = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
+            pressure = point if contact == "crowned" else np.where(roller.crowned, point, pressure)
+            source = "; ".join(x for x in (source, "Hamrock and Brewe (1983)") if x)
         pressure = d.derive(
             "hertz_pressure",
             "N/mm2",
@@ -857,14 +867,15 @@ class RollerCoupling(DesignProblem):
             text="The guide is not dented",
             source=source,
         )
-        if contact == "crowned":
+        if contact != "line":
+            ellipse = 2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius)
             d.at_most(
                 "contact_ellipse",
-                2 * hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius),
+                ellipse if contact == "crowned" else roller.crowned * ellipse,
                 length,
                 "mm",
                 text="The contact ellipse lies on the tread",
-                source=source,
+                source="Hamrock and Brewe (1983)",
             )
         d.at_most(
             "outer_ring_bending",

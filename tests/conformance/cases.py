@@ -846,6 +846,7 @@ CASES: dict[str, Family] = {
                 "roller_contact": "line",
                 "mass_scope": "parts",
             },
+            "practice_any": {"practice": "on", "roller_kind": "any"},
         },
         requirements=MILL,
         designs={
@@ -853,6 +854,11 @@ CASES: dict[str, Family] = {
                 {**MILL_COUPLING, "rim": "8 mm", "contact_length": "10 mm"},
                 {},
                 {"roller": "NATR 15", "float_material": "100Cr6"},
+            ),
+            "practice_any": Design(
+                {**MILL_COUPLING, "rim": "9 mm", "contact_length": "9 mm"},
+                {},
+                {"roller": "6203", "float_material": "100Cr6"},
             ),
             "practice_ball_bearings": Design(
                 {**MILL_COUPLING, "rim": "9 mm", "contact_length": "9 mm"},

@@ -108,6 +108,8 @@ def test_only_track_rollers_are_offered_unless_others_are_asked_for():
     assert tracks
     assert all(kind.startswith("track_roller") for kind in tracks)
     assert rollers(**BALLS) == {"deep_groove_ball_bearing"}
+    assert rollers(roller_kind="any") == tracks | {"deep_groove_ball_bearing"}
+    assert rollers(roller_contact="either") == tracks
     with pytest.raises(synth.InputError, match="no_track_roller"):
         rollers(roller_contact="line")
 
@@ -151,3 +153,41 @@ def test_designs_by_practice_are_ones_that_are_built(torque, speed, offset, heav
         assert found.values["rim"] >= 0.2 * found.parts["roller"]["outer_diameter"] * (1 - 1e-9)
         assert found.values["float_width"] > 0.06 * (found.values["outer_diameter"] - 0.03)
         assert found.values["mass"] < heaviest
+
+
+@pytest.mark.parametrize(("parts", "contact"), [(("6203", "100Cr6"), "line"), (("NATR 15", "100Cr6"), "crowned")])
+def test_where_both_kinds_are_searched_a_row_goes_by_its_own_tread(parts, contact):
+    sizes = SOLID[0] | {"rim": "9 mm", "contact_length": "9 mm"}
+    both = design((sizes, parts, {"roller_kind": "any"}))
+    own = design((sizes, parts, {"roller_kind": "any", "roller_contact": contact}))
+    assert both.values == own.values
+    assert both.not_checked == own.not_checked
+    for name, sides in own.limits.items():
+        assert both.limits[name] == pytest.approx(sides, rel=1e-15, nan_ok=True), name
+    # A cylinder touches along a line that is as long as its contact: there is no ellipse that could be too long.
+    assert both.limits["contact_ellipse"][0] == (own.limits["contact_ellipse"][0] if contact == "crowned" else 0)
+    assert missed(both) == missed(own)
+
+
+def test_a_crown_that_is_too_round_leaves_ball_bearings():
+    sizes = SOLID[0] | {"rim": "9 mm", "contact_length": "9 mm"}
+    small = {"crown_radius": "7 mm"}
+    assert design((sizes, ("6203", "100Cr6"), {"roller_kind": "any"}), small).values
+    with pytest.raises(synth.InputError, match="crown_too_round"):
+        design((sizes, ("NATR 15", "100Cr6"), {"roller_kind": "any"}), small)
+
+
+@pytest.mark.slow
+def test_any_kind_finds_what_either_kind_alone_finds_best():
+    small = {"required_torque": "20 N*m", "driver_speed": "960 1/min", "offset": "2 mm"}
+
+    def least(quantity, **options):
+        kind = synth.load("roller_coupling", **options)
+        (best,) = synth.synthesize(kind, small, objectives=quantity).designs
+        return best.objectives[quantity], str(best.parts["roller"])
+
+    for quantity in ("mass", "outer_diameter"):
+        alone = [least(quantity), least(quantity, **BALLS)]
+        value, roller = least(quantity, roller_kind="any")
+        assert value == pytest.approx(min(alone)[0], rel=2e-3)
+        assert roller in {name for _, name in alone}
