@@ -74,7 +74,7 @@ def lining_conditions(d: Declaration, allow_obsolete: str, *, rules: bool) -> li
     """
     conditions = [] if allow_obsolete == "yes" else ["new_design_allowed == 1"]
     if rules and allow_obsolete == "no" and d.has_column("friction_materials", "status"):
-        conditions.append("status == 'current'")
+        conditions.append("status in ('current', '')")  # a row of one's own need not say that it is current
     return conditions
 
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from problems import cost
+from problems import cost, wear
 from problems.friction.duty import Duty as FrictionDuty
 from problems.mechanics import centrifugal
-from problems.mechanics.wear import wear_life
 from problems.practice import UNSOURCED, Scope
 from problems.sources import DRIVE
 from synth.declaration import Block, Requirement
@@ -233,19 +232,14 @@ def declare_body(
         "hub_radius is below the hub that shaft_diameter needs: check the hub and its key",
         source=UNSOURCED,
     )
-    d.derive(
-        "wear_life",
-        "-",
-        wear_life(
-            lining.area,
-            np.minimum(pair.wearable_depth, around.wear / lining.surfaces),
-            pair.wear_rate,
-            np.maximum(duty.engagement_energy, LEAST_WORK),
-        ),
-        symbol="N_w",
+    wear.declare_wear_life(
+        d,
+        pair,
+        area=lining.area,
+        depth=wear.depth(pair, around.wear / lining.surfaces),
+        work=np.maximum(duty.engagement_energy, LEAST_WORK),
         text="Engagements, each of the heat of engagement_heat, until the linings are worn by lining_wear together or "
         "by wearable_depth each",
-        source="wear volume in proportion to friction work (Archard)",
     )
     _declare_cost(d, lining=lining, flyweights=flyweights, springs=springs, around=around, mass=whole)
 
@@ -314,14 +308,7 @@ def limit_discs(d: Declaration, *, rules: Rules, lining: Lining, travel: Any) ->
         source="practice, 0.3 to 0.5 mm and the run-out",
     )
     if rules.wear_life_min is not None:
-        d.at_least(
-            "wear_life",
-            d.derived["wear_life"].sx,
-            rules.wear_life_min,
-            "-",
-            text="The linings last long enough",
-            source=DRIVE,
-        )
+        wear.limit_wear_life(d, lining.pair, rules.wear_life_min, text="The linings last long enough", source=DRIVE)
     d.advise(
         "narrow_ring",
         lining.inner_radius > NARROW_RING * lining.outer_radius,

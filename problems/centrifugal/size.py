@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from problems import wear
 from problems.centrifugal.body import Surroundings, declare_body
 from problems.centrifugal.duty import WholeDuty
 from problems.mechanics import centrifugal
@@ -113,6 +114,6 @@ def declare_objectives(d: Declaration, *, scope: Scope) -> None:
     d.objective("mass")
     if scope.whole:
         d.objective("length", default=False)
-        d.objective("wear_life", "max", default=False)
+        wear.offer_wear_life(d)
     d.objective("engagement_band", default=False)
     d.objective("idle_margin", "max", default=False)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from problems import wear
 from problems.cone import formulas as cone
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup
 from problems.mechanics import plates
-from problems.mechanics.wear import wear_life
 from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Option, Requirement
@@ -209,7 +209,7 @@ def declare_cone_rules(d: Declaration) -> ConeRules:
 
 def wear_depth(wants: ConeBodyRequirements, pair: Pair) -> Any:
     """Return the wear of the lining before it is replaced [m]."""
-    return np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+    return wear.depth(pair.part, wants.wear_depth_limit)
 
 
 def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair: Pair, pack_size: Size) -> ConeBody:
@@ -300,13 +300,13 @@ def declare_body(
         "the wedge effect gains less than 1.5: a disc with two surfaces of the same diameter gains 2",
         source="derived",
     )
-    d.derive(
-        "wear_life",
-        "-",
-        wear_life(shape.area, wear_depth(body.wants, pair), pair.part.wear_rate, start.friction_work),
-        symbol="N_w",
+    wear.declare_wear_life(
+        d,
+        pair.part,
+        area=shape.area,
+        depth=wear_depth(body.wants, pair),
+        work=start.friction_work,
         text="Engagements until the lining is worn",
-        source="wear volume in proportion to friction work (Archard)",
     )
 
 
@@ -392,11 +392,4 @@ def declare_rules(d: Declaration, *, rules: ConeRules, shape: Cone, pair: Pair, 
         source=UNSOURCED,
     )
     if rules.wear_life_min is not None:
-        d.at_least(
-            "wear_life",
-            d.derived["wear_life"].sx,
-            rules.wear_life_min,
-            "-",
-            text="The lining lasts long enough",
-            source=DRIVE,
-        )
+        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The lining lasts long enough", source=DRIVE)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, friction, practice
+from problems import cost, friction, practice, wear
 from problems.cone import body as cone_body
 from problems.cone import formulas as cone
 from problems.cone.body import Cone
@@ -229,7 +229,7 @@ class ConeClutch(DesignProblem):
         for name in ("outer_diameter", "length", "volume", "friction_work"):
             d.objective(name, default=False)
         if scope.rules or scope.complete:
-            d.objective("wear_life", "max", default=False)
+            wear.offer_wear_life(d)
             d.objective("stroke", default=False)
 
     def _declare_requirements(self, d: Declaration, *, pull_max: Any) -> Wants:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from problems import wear
 from problems.disc.pack import DiscPack, DiscRequirements
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup
 from problems.friction.ring import Ring
 from problems.mechanics import disc, plates
-from problems.mechanics.wear import wear_life
 from problems.practice import UNSOURCED, ShaftRequirements, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Block, Declaration, Requirement
@@ -195,7 +193,7 @@ def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, p
 
 def wear_depth(wants: DiscBodyRequirements, pair: Pair) -> Any:
     """Return the wear of one lining before it is replaced [m]."""
-    return np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+    return wear.depth(pair.part, wants.wear_depth_limit)
 
 
 def declare_body(
@@ -231,25 +229,21 @@ def declare_body(
         text="Released discs and pressure plates",
         source="geometry",
     )
-    life = d.derive(
-        "wear_life",
-        "-",
-        wear_life(
-            pack.surfaces * ring.area,
-            wear_depth(body.wants, pair),
-            pair.part.wear_rate,
-            start.friction_work,
-        ),
-        symbol="N_w",
+    life = wear.declare_wear_life(
+        d,
+        pair.part,
+        area=pack.surfaces * ring.area,
+        depth=wear_depth(body.wants, pair),
+        work=start.friction_work,
         text="Engagements until the linings are worn",
-        source="wear volume in proportion to friction work (Archard)",
     )
-    d.advise(
-        "few_starts",
-        life < FEW_STARTS,
-        "the linings last for less than 20 000 engagements",
-        source=UNSOURCED,
-    )
+    if life is not None:
+        d.advise(
+            "few_starts",
+            life < FEW_STARTS,
+            "the linings last for less than 20 000 engagements",
+            source=UNSOURCED,
+        )
 
 
 def declare_rules(d: Declaration, *, rules: DiscRules, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
@@ -304,11 +298,4 @@ def declare_rules(d: Declaration, *, rules: DiscRules, duty: Duty, ring: Ring, p
             source=UNSOURCED,
         )
     if rules.wear_life_min is not None:
-        d.at_least(
-            "wear_life",
-            d.derived["wear_life"].sx,
-            rules.wear_life_min,
-            "-",
-            text="The linings last long enough",
-            source=DRIVE,
-        )
+        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)

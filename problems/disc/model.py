@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import cost, friction, practice
+from problems import cost, friction, practice, wear
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
@@ -113,7 +113,7 @@ class DiscClutch(DesignProblem):
         for name in ("outer_diameter", "length", "volume", "friction_work", "disc_inertia"):
             d.objective(name, default=False)
         if body is not None:
-            d.objective("wear_life", "max", default=False)
+            wear.offer_wear_life(d)
 
     def simulate(self, spec: Mapping[str, Any], design: Any) -> dict[str, pd.DataFrame]:
         """Return the start-up in time, and the temperature of the pressure plates over repeated engagements."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from problems import cost, friction, practice
+from problems import cost, friction, practice, wear
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
 from problems.disc import pack as disc_pack
@@ -73,7 +73,7 @@ class ElectromagneticClutch(DesignProblem):
         for name in ("volume", "friction_work", extra):
             d.objective(name, default=False)
         if scope.rules or scope.complete:
-            d.objective("wear_life", "max", default=False)
+            wear.offer_wear_life(d)
             d.objective("length", default=False)
             if pack == "multi_plate":
                 d.objective("inner_inertia", default=False)

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from problems import wear
 from problems.friction.duty import Duty, Size
 from problems.friction.engagement import Pair, Startup
 from problems.friction.ring import Ring
 from problems.mechanics import heat, plates
 from problems.mechanics import ring as ring_formulas
-from problems.mechanics.wear import wear_life
 from problems.multi_plate.pack import Pack, PackSize
 from problems.multi_plate.requirements import (
     FLATNESS,
@@ -95,7 +95,7 @@ def declare_pack_rules(d: Declaration, *, lubrication: str) -> PistonPackRules:
 
 def wear_depth(wants: PackBodyRequirements, pair: Pair, pack: Pack) -> Any:
     """Return the wear of one lining before it is replaced [m]; plates of a list wear no deeper than they are lined."""
-    depth = np.minimum(pair.part.wearable_depth, wants.wear_depth_limit)
+    depth = wear.depth(pair.part, wants.wear_depth_limit)
     lining = pack.plates.lining_thickness
     return depth if lining is None else np.minimum(depth, lining)
 
@@ -273,18 +273,13 @@ def declare_body(
         d.derive(
             "stroke", "mm", body.stroke, symbol="s_st", text="Way of the actuator with worn linings", source="geometry"
         )
-    d.derive(
-        "wear_life",
-        "-",
-        wear_life(
-            pack.aid.area_factor * pack.surfaces * ring.area,
-            wear_depth(body.wants, pair, pack),
-            pair.part.wear_rate,
-            start.friction_work,
-        ),
-        symbol="N_w",
+    wear.declare_wear_life(
+        d,
+        pair.part,
+        area=pack.aid.area_factor * pack.surfaces * ring.area,
+        depth=wear_depth(body.wants, pair, pack),
+        work=start.friction_work,
         text="Engagements until the linings are worn",
-        source="wear volume in proportion to friction work (Archard)",
     )
     inner = ring_formulas.inner_plate_count(pack.surfaces) * pack.inner_thickness
     thicker = body.end_plates * (body.end_thickness - pack.inner_thickness)
@@ -444,16 +439,4 @@ def declare_rules(
         source="Neale, Tribology Handbook, Table 7.4",
     )
     if rules.wear_life_min is not None:
-        d.at_least(
-            "wear_life",
-            wear_life(
-                pack.aid.area_factor * pack.surfaces * ring.area,
-                wear_depth(body.wants, pair, pack),
-                pair.part.wear_rate,
-                start.friction_work,
-            ),
-            rules.wear_life_min,
-            "-",
-            text="The linings last long enough",
-            source=DRIVE,
-        )
+        wear.limit_wear_life(d, pair.part, rules.wear_life_min, text="The linings last long enough", source=DRIVE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import cost, friction, practice
+from problems import cost, friction, practice, wear
 from problems.friction import startup_curves
 from problems.multi_plate import body as plate_body
 from problems.multi_plate import curves as pack_curves
@@ -222,6 +222,6 @@ class MultiPlateClutch(DesignProblem):
         for name in ("outer_diameter", "volume", "friction_work", "drag_torque"):
             d.objective(name, default=False)
         if scope.rules or scope.complete:
-            d.objective("wear_life", "max", default=False)
+            wear.offer_wear_life(d)
             for name in ("stroke", "inner_inertia"):
                 d.objective(name, default=False)

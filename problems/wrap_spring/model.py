@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from problems import practice
+from problems import practice, wear
 from problems.practice import UNSOURCED
 from problems.sources import DRIVE, NOT_IN_S2, S2, TYPICAL
 from problems.wrap_spring import blocks, body, curves, formulas
@@ -292,7 +292,7 @@ class WrapSpringClutch(DesignProblem):
             d.objective(name, default=False)
         if rules is not None:
             d.objective("length")
-            if wants.overrun_speed is not None:
+            if "overrun_life" in d.derived:
                 d.objective("overrun_life", "max", default=False)
 
     def curves(self, spec: Mapping[str, Any], design: Any = None) -> dict[str, Any]:
@@ -590,20 +590,25 @@ class WrapSpringClutch(DesignProblem):
         )
         if wants.overrun_speed is None:
             return
-        life = d.derive(
-            "overrun_life",
-            "h",
-            formulas.overrun_life(
-                friction.part.wearable_depth,
-                friction.part.wear_rate,
-                friction.part.mu_max,
-                d.derived["overrun_pv"].sx,
-                wants.overrun_duty,
-            ),
-            symbol="t_wear",
-            text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",
-            source=WEAR,
-        )
+        pair, needed = friction.part, (wear.DEPTH, wear.RATE)
+        if pair.known.issuperset(needed):
+            life = d.derive(
+                "overrun_life",
+                "h",
+                formulas.overrun_life(
+                    pair.wearable_depth,
+                    pair.wear_rate,
+                    pair.mu_max,
+                    d.derived["overrun_pv"].sx,
+                    wants.overrun_duty,
+                ),
+                symbol="t_wear",
+                text="Time in service until overrunning has worn the hubs: highest friction, tightest fit",
+                source=WEAR,
+            )
+        else:
+            life = pair.optional(next(column for column in needed if column not in pair.known))
+            wear.remark_no_wear(d, pair, "overrun_life is not told", needed)
         d.at_least("overrun_life", life, rules.overrun_life_min, "h", text="The hubs last long enough", source=WEAR)
 
     def _declare_windup(

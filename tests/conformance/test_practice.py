@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
 import pytest
 
 import synth
+from synth.tables.catalogs import Catalogs
 from tests.conformance.cases import CASES, Design
 
 KNOWN = [
@@ -26,7 +31,7 @@ SAME = {
 }
 
 
-def asked(family: str, name: str, **changed: str) -> synth.Design:
+def asked(family: str, name: str, catalogs: Any = None, **changed: str) -> synth.Design:
     """Return the design that is known of an option set, with some of its options changed."""
     data = CASES[family]
     design: Design = data.designs[name]
@@ -43,6 +48,7 @@ def asked(family: str, name: str, **changed: str) -> synth.Design:
         {**data.requirements, **SAME.get(family, {}), **{key: own for more in needed for key, own in more.items()}},
         values={**design.sizes, **design.counts},
         parts=design.parts,
+        catalogs=catalogs,
     )
 
 
@@ -90,3 +96,52 @@ def test_the_next_shaft_end_and_its_key_are_named(family: str, name: str) -> Non
     assert found.needed <= found.value * (1 + 1e-9)
     assert found.beside is not None
     assert not asked(family, name, practice="off", mass_scope="parts").next_rows
+
+
+# -- tables of linings of one's own ------------------------------------------------------------------
+
+LIVES = {"wear_life", "overrun_life"}
+LINED = [case for case in KNOWN if case.values[0] not in ("magnetic_powder_clutch", "roller_coupling")]
+
+
+def linings(without: Sequence[str] = (), **cells: Any) -> dict[str, pd.DataFrame]:
+    """Return the shipped linings as a table of one's own, without some columns, with others all alike."""
+    table = Catalogs().table("friction_materials").to_frame()
+    heads = [head for head in table if str(head).split(" [")[0] in without]
+    assert len(heads) == len(without)
+    return {"friction_materials": table.drop(columns=heads).assign(**cells)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "name"), LINED)
+@pytest.mark.parametrize("lacking", [("wear_rate",), ("wearable_depth", "wear_rate")], ids=["rate", "both"])
+def test_linings_whose_wear_is_not_known_can_be_used(family: str, name: str, lacking: tuple[str, ...]) -> None:
+    full, found = asked(family, name), asked(family, name, catalogs=linings(lacking))
+    assert set(found.values) == set(full.values) - LIVES
+    lives = LIVES & set(full.limits)
+    assert set(found.limits) == set(full.limits)
+    assert {name for name in found.limits if found.utilisation[name] is None} >= lives
+    assert not lives & set(found.violated)
+    assert {remark.split(",")[0] for remark in found.not_checked} >= {f"not checked: {life}" for life in lives}
+    told = [remark for remark in found.advice if remark.startswith("wear_not_known")]
+    assert bool(told) == bool(LIVES & set(full.values))
+    for remark in told:
+        assert "table friction_materials has no wear" in remark
+
+
+def test_a_lining_that_does_not_say_its_status_is_current() -> None:
+    duty = {"load_torque": "5 N*m", "driver_speed": "1500 1/min", "driven_inertia": "0.02 kg*m2"}
+    for status, left in (("", True), ("current", True), ("historical", False)):
+        tables = linings(status=status)
+        if left:
+            assert synth.synthesize("disc_clutch", duty, catalogs=tables, points=2).designs
+        else:
+            with pytest.raises(synth.InputError, match="status in"):
+                synth.synthesize("disc_clutch", duty, catalogs=tables, points=2)
+
+
+def test_no_objective_is_offered_of_a_wear_that_is_not_known() -> None:
+    tables = linings(["wear_rate"])
+    offered = synth.describe("disc_clutch", tables).query("kind == 'objective'")["name"].tolist()
+    assert "wear_life" not in offered
+    assert "wear_life" in synth.describe("disc_clutch").query("kind == 'objective'")["name"].tolist()

@@ -34,7 +34,7 @@ CASES = [
     (of_shape(lambda m, ni, gap: pot_magnet.pull_in_force(ni, gap, m.pole_area)), {"ni": "A", "gap": "m"}, "N"),
     (of_shape(lambda m, rho, copper: pot_magnet.magnet_mass(rho, m, copper)), {"rho": "kg/m3", "copper": "kg"}, "kg"),
     (of_shape(lambda m: m.length), {}, "m"),
-    (of_shape(lambda m, torque: pot_magnet.expected_clamping_force(torque, m.bore)), {"torque": "N*m"}, "N"),
+    (of_shape(lambda m, torque: pot_magnet.expected_clamping_force(torque, m.bore)), {"torque": "N m"}, "N"),
     (of_shape(lambda m, force: pot_magnet.return_force(force)), {"force": "N"}, "N"),
     (of_shape(lambda m, force: pot_magnet.release_drag(force)), {"force": "N"}, "N"),
 ]
