@@ -133,6 +133,13 @@ class DesignProblem:
         """The class whose sources decide what is declared."""
         return type(self)
 
+    def declaration(self, given: frozenset[str], catalogs: Catalogs) -> Declaration:
+        """Return what the problem declares, without tracing it into a model: for whoever asks for names alone."""
+        declaration = Declaration(self.name, self.options, given, catalogs)
+        with held_back(), recorded():
+            self.declare(declaration)
+        return declaration
+
     def model(self, given: frozenset[str], catalogs: Catalogs, compared: tuple[SlotComparison, ...] = ()) -> Model:
         """Trace the problem once for the requirements given, the catalogues in force and the slots compared."""
         key = (given, id(catalogs), compared)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from synth.errors import InputError
+from synth.model.model import Model
 from synth.model.problem import DesignProblem
 from synth.tables.catalogs import Catalogs
 
@@ -36,7 +37,10 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
     # Whoever gives names gets the model that is asked next: tracing one costs as much as reading all else.
     model = problem.model(frozenset(str(word) for word, value in requirements.items() if value is not None), catalogs)
     result: dict[str, Any] = {}
+    spellings = model.declaration.names()
     for word, value in requirements.items():
+        if str(word) not in spellings:
+            _refuse_of_other_options(problem, str(word), value, model, catalogs)
         name = model.name_of(str(word), "requirements", list(model.declaration.requirements), "a requirement")
         if name in result:
             right = "each requirement once (name and symbol mean the same)"
@@ -44,3 +48,41 @@ def known_requirements(problem: DesignProblem, requirements: Mapping[str, Any], 
         if value is not None:
             result[name] = value
     return result
+
+
+def _refuse_of_other_options(problem: DesignProblem, word: str, value: Any, model: Model, catalogs: Catalogs) -> None:
+    """Refuse a requirement that the problem has with another value of one of its options, and say with which.
+
+    Raises
+    ------
+    InputError
+        When there is such a value.
+    """
+    found, groups = dict[str, list[str]](), set[str]()
+    for option in model.declaration.options.values():
+        for label in option.choices:
+            if label == option.chosen:
+                continue
+            others = {k: v for k, v in problem.options.items() if k not in (option.name, option.symbol)}
+            try:
+                declared = problem.declared_by(**others, **{option.name: label}).declaration(
+                    frozenset({word}), catalogs
+                )
+            except InputError:  # what was asked beside it does not go with this value
+                continue
+            record = declared.requirements.get(declared.names().get(word, ""))
+            if record is not None:
+                found.setdefault(option.name, []).append(label)
+                groups.add(record.group)
+    if not found:
+        return
+    ways = [f"{name}: {' or '.join(labels)}" for name, labels in found.items()]
+    # By an option that is called as the group is, the rules of that group are switched.
+    own = [name for name in found if groups == {name}]
+    asked = [f"{name}: {model.declaration.options[name].chosen}" for name in (own or found)]
+    if own:
+        ways = [way for way in ways if way.split(":")[0] in own]
+        right = f"no value with {asked[0]}: it is a rule of {own[0]} and counts only with {ways[0]}"
+    else:
+        right = f"no value with {' and '.join(asked)}: it counts only with {', or with '.join(ways)}"
+    raise InputError(f"requirement {word}", value, right, ("requirements", word))

@@ -98,6 +98,26 @@ def test_the_next_shaft_end_and_its_key_are_named(family: str, name: str) -> Non
     assert not asked(family, name, practice="off", mass_scope="parts").next_rows
 
 
+RULED = {
+    "multi_plate_clutch": "friction_surfaces_max",
+    "disc_clutch": "plate_stiffness_ratio",
+    "cone_clutch": "hub_factor",
+    "electromagnetic_clutch": "over_excitation",
+    "magnetic_powder_clutch": "shaft_shear_allow",
+    "roller_coupling": "rim_ratio",
+    "wrap_spring": "coils_per_hub_max",
+    "wrap_spring_actuated": "spring_index_max",
+    "centrifugal_lever": "shaft_shear_allow",
+}
+
+
+@pytest.mark.parametrize("family", RULED)
+def test_a_rule_without_practice_is_refused_by_its_reason(family: str) -> None:
+    requirements = {**CASES[family].requirements, RULED[family]: 5}
+    with pytest.raises(synth.InputError, match="is a rule of practice and counts only with practice: on"):
+        synth.synthesize(synth.load(family, practice="off"), requirements)
+
+
 # -- tables of linings of one's own ------------------------------------------------------------------
 
 LIVES = {"wear_life", "overrun_life"}

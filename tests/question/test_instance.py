@@ -77,6 +77,52 @@ def test_the_ends_of_a_range_are_inside():
     assert instance({"load": 20, "safety": 10}).values.requirements["safety"] == 10.0
 
 
+class Switched(synth.DesignProblem):
+    """Requirements that only some values of its options have."""
+
+    name, title = "switched", "Switched"
+
+    def declare(self, d):
+        habits = d.option("habits", ("on", "off"), "on", symbol="hab")
+        shape = d.option("shape", ("round", "square", "oval"), "round")
+        d.requirement("force", "N")
+        length = d.variable("length", "mm", 1, 50)
+        d.at_most("least", 1e-3, length, "mm")
+        if habits == "on":
+            d.requirement("slack", "mm", 1, symbol="sl", group="habits")
+        if habits == "on" or shape == "oval":
+            d.requirement("axis", "mm", 1)
+        if shape != "round":
+            d.requirement("corner", "mm", optional=True)
+        d.objective("length")
+
+
+@pytest.mark.parametrize(
+    ("options", "word", "told"),
+    [
+        (
+            {"habits": "off"},
+            "slack",
+            "requirement slack: got 2; expected no value with habits: off: it is a rule of habits and counts only with "
+            "habits: on",
+        ),
+        ({"hab": "off"}, "sl", "requirement sl: got 2; expected no value with habits: off: it is a rule of habits"),
+        (
+            {"habits": "off"},
+            "axis",
+            "requirement axis: got 2; expected no value with habits: off and shape: round: it counts only with "
+            "habits: on, or with shape: oval",
+        ),
+        ({}, "corner", "no value with shape: round: it counts only with shape: square or oval"),
+        ({}, "slak", "requirements: got 'slak'; expected a requirement of switched (did you mean slack"),
+    ],
+)
+def test_a_requirement_of_another_option_says_of_which(options, word, told):
+    with pytest.raises(synth.InputError) as caught:
+        instance_of(Switched(**options), {"force": 1, word: 2}, Catalogs({}))
+    assert told in str(caught.value)
+
+
 # -- limits ------------------------------------------------------------------------------------------
 
 
