@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from synth.model.constraint import Constraint
@@ -9,6 +11,9 @@ from synth.nlp.batch import Tasks
 from synth.results.least_infeasible import LeastInfeasible, MissedLimit
 from synth.search.formulation import Formulation
 from synth.units import format_quantity
+
+NEAREST = "The nearest design found"
+BETWEEN = "Sizes between the makeable ones would keep every limit; the nearest makeable design found"
 
 
 def explain_infeasible(form: Formulation, rng: np.random.Generator, among: range | None = None) -> LeastInfeasible:
@@ -37,8 +42,38 @@ def explain_infeasible(form: Formulation, rng: np.random.Generator, among: range
         return LeastInfeasible(
             message="no design could be evaluated; check the requirements for values far from each other"
         )
+    if found[0][0] <= 0 and form.gridded.any():
+        # Something keeps every limit, but only between makeable sizes: what these miss is what is in the way.
+        _, combination, variables = _makeable(form, [x for x in found if x[0] <= 0], rng)
+        return _told(form, combination, variables, BETWEEN)
     _, combination, variables = found[0]
     return _told(form, combination, variables)
+
+
+def _makeable(
+    form: Formulation, found: Sequence[tuple[float, int, np.ndarray]], rng: np.random.Generator
+) -> tuple[float, int, np.ndarray]:
+    """Return the makeable design around designs that keep all limits which misses them by least."""
+    limits = form.tuning.heuristics.least_infeasible
+    around = [form.makeable.around(point, limits.tries // len(found), rng) for _, _, point in found]
+    every = np.repeat([combination for _, combination, _ in found], [len(points) for points in around])
+    start = np.concatenate(around)
+    points = start
+    if not form.gridded.all():
+        low = np.where(form.gridded, start, form.lower)
+        high = np.where(form.gridded, start, form.upper)
+        solved = form.continuous.solve_many(_elastic(form, len(every)), every, start, low, high).variables
+        better = _misses(form, solved, every) <= _misses(form, start, every)
+        points = np.where(better[:, None], solved, start)
+    misses = _misses(form, points, every)
+    best = int(np.argmin(misses))
+    return float(misses[best]), int(every[best]), points[best]
+
+
+def _elastic(form: Formulation, count: int) -> Tasks:
+    """Return the task of missing all limits by as little as can be, so many times."""
+    nothing = np.zeros((count, len(form.goals)))
+    return Tasks(nothing, nothing, np.full(nothing.shape, np.inf), form.objectives.scales, elastic=1.0)
 
 
 def _least_missed(
@@ -51,9 +86,8 @@ def _least_missed(
     """
     limits = form.tuning.heuristics.least_infeasible
     number = np.repeat(np.arange(len(combinations)), np.clip(limits.tries // len(combinations), 1, limits.starts))
-    every, goals = combinations[number], len(form.goals)
-    nothing = np.zeros((len(every), goals))
-    tasks = Tasks(nothing, nothing, np.full((len(every), goals), np.inf), form.objectives.scales, elastic=1.0)
+    every = combinations[number]
+    tasks = _elastic(form, len(every))
     start = form.boxes.inside(form.boxes.leaves(every), rng.random((len(every), form.n)))
     points = form.continuous.solve_many(tasks, every, start).variables if form.n else start
     misses, before = _misses(form, points, every), _misses(form, start, every)
@@ -76,7 +110,7 @@ def _misses(form: Formulation, variables: np.ndarray, combinations: np.ndarray) 
     return worst
 
 
-def _told(form: Formulation, combination: int, variables: np.ndarray) -> LeastInfeasible:
+def _told(form: Formulation, combination: int, variables: np.ndarray, nearest_is: str = NEAREST) -> LeastInfeasible:
     result = form.points.evaluate(variables[None, :], np.array([combination]))
     conflicts = []
     for limit in form.constraints:
@@ -89,8 +123,10 @@ def _told(form: Formulation, combination: int, variables: np.ndarray) -> LeastIn
     nearest |= {n: f"{v:g}" for n, v in counts.items()} | dict(choices)
     names = ", ".join(c["limit"] for c in conflicts)
     sentences = "; ".join(c["sentence"] for c in conflicts)
+    # What holds by the tolerance of limits alone misses none.
+    told = f"misses {names}: {sentences}" if conflicts else "keeps every limit by its tolerance alone"
     return LeastInfeasible(
-        message=f"No combination is feasible. The nearest design found misses {names}: {sentences}.",
+        message=f"No combination is feasible. {nearest_is} {told}.",
         conflicts=conflicts,
         nearest=nearest,
         parts={slot: table.designations[row] for slot, (table, row) in parts.items()},

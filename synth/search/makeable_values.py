@@ -36,6 +36,27 @@ class MakeableValues:
                 result[:, k] = np.where(nearer, grid[after], grid[before])
         return result
 
+    def around(self, point: np.ndarray, most: int, rng: np.random.Generator) -> np.ndarray:
+        """Return the makeable points around a point (variables,): each gridded variable next below or next above.
+
+        Parameters
+        ----------
+        point : array (variables,)
+        most : int
+            Points; where there are more around, so many of them at random.
+        rng : Generator
+        """
+        sides = []
+        for k in np.flatnonzero(self.gridded).tolist():
+            after = int(np.searchsorted(self.grids[k], point[k]))
+            sides.append(self.grids[k][[max(after - 1, 0), min(after, len(self.grids[k]) - 1)]])
+        count = 2 ** len(sides)
+        chosen = np.arange(count) if count <= most else rng.choice(count, size=most, replace=False)
+        result = np.tile(point, (len(chosen), 1))
+        for k, (variable, values) in enumerate(zip(np.flatnonzero(self.gridded).tolist(), sides, strict=True)):
+            result[:, variable] = values[(chosen >> k) & 1]
+        return np.unique(result, axis=0)
+
     def snap(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Move ends of ranges (boxes, variables or more) onto the grids, in place.
 

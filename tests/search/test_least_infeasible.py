@@ -73,3 +73,42 @@ def test_no_design_that_chance_finds_is_nearer() -> None:
     result = form.points.evaluate(points, combinations)
     capacity, needed = (np.asarray(x, dtype=float) for x in result.limits["torque_capacity"])
     assert missed["torque_capacity"] <= 1 - (capacity / needed).max() + 1e-9
+
+
+class Stepped(synth.DesignProblem):
+    """Sizes that keep both limits exist, but none that is made."""
+
+    name, title = "stepped", "Stepped"
+
+    def declare(self, d: Any) -> None:
+        side = d.variable("side", "mm", 1, 10, grid=1, symbol="s")
+        height = d.variable("height", "mm", 1, 10, grid=(1, 4, 10), symbol="h")
+        free = d.variable("free", "mm", 1, 10)
+        d.at_least("area", side * height, 21e-6, "mm2")
+        d.at_most("edge", side + height, 9.6e-3, "mm")
+        d.at_most("free", free, 0.5 * side, "mm")
+        d.objective("side")
+
+
+def test_where_only_sizes_between_the_makeable_ones_keep_all_limits_a_makeable_one_tells_what_is_in_the_way() -> None:
+    assert synth.synthesize(Stepped, {}, grid=False).designs
+    front = synth.synthesize(Stepped, {})
+    assert front.certificate.kind == "global"
+    assert not front.designs
+    explanation = dict(front.explanation or {})
+    # Beside what keeps both lie sides of 5 and 6 with a height of 4: one misses the area by 1/21, the other the edge.
+    assert [c["limit"] for c in explanation["conflicts"]] in (["area"], ["edge"])
+    assert all(0 < c["missed_by"] < 0.05 for c in explanation["conflicts"])
+    assert explanation["nearest"]["height"] == "4 mm"
+    assert explanation["nearest"]["side"] in ("5 mm", "6 mm")
+    told = "Sizes between the makeable ones would keep every limit; the nearest makeable design found misses "
+    assert told in explanation["message"]
+
+
+def test_a_winding_of_a_batch_row_that_only_other_hubs_would_hold_names_its_limits() -> None:
+    row = {"required_torque": "460.7 N*m", "bore_diameter": "48 mm", "length_limit": "180 mm"}
+    front = synth.synthesize("wrap_spring", row, points=3)
+    assert not front.designs
+    missed = {c["limit"] for c in dict(front.explanation or {})["conflicts"]}
+    assert missed
+    assert missed <= {"closing_torque", "wire_stress", "interference_range", "length"}

@@ -60,3 +60,13 @@ def test_ranges_are_halved_between_neighbours_or_by_ratio():
     left, right = made.middle(variable, low, high)
     np.testing.assert_allclose(left, [3.0, 0.0, 3.0, 2.0, 6.0])  # the last is of an auxiliary variable
     np.testing.assert_allclose(right, [3.0, 0.0, 4.0, 3.0, 6.0])
+
+
+def test_around_a_point_are_its_makeable_neighbours():
+    rng = np.random.default_rng(0)
+    values = grids([1.0, 2.0, 5.0], NONE, [10.0, 20.0])
+    around = values.around(np.array([3.0, 0.7, 20.0]), 100, rng)
+    assert around.tolist() == [[2.0, 0.7, 10.0], [2.0, 0.7, 20.0], [5.0, 0.7, 10.0], [5.0, 0.7, 20.0]]
+    beyond = values.around(np.array([9.0, 0.7, 3.0]), 100, rng)
+    assert beyond.tolist() == [[5.0, 0.7, 10.0]]
+    assert len(values.around(np.array([3.0, 0.7, 15.0]), 2, rng)) == 2
