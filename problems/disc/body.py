@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from problems import wear
 from problems.disc.pack import DiscPack, DiscRequirements
 from problems.friction.duty import Duty, Size
@@ -191,9 +193,10 @@ def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, p
     return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
 
 
-def wear_depth(wants: DiscBodyRequirements, pair: Pair) -> Any:
-    """Return the wear of one lining before it is replaced [m]."""
-    return wear.depth(pair.part, wants.wear_depth_limit)
+def wear_depth(wants: DiscBodyRequirements, pair: Pair, pack: DiscPack) -> Any:
+    """Return the wear of one lining before it is replaced [m]; facings of a list wear no deeper than it says."""
+    depth = wear.depth(pair.part, wants.wear_depth_limit)
+    return depth if pack.facing is None else np.minimum(depth, pack.facing.wearable_depth)
 
 
 def declare_body(
@@ -233,7 +236,7 @@ def declare_body(
         d,
         pair.part,
         area=pack.surfaces * ring.area,
-        depth=wear_depth(body.wants, pair),
+        depth=wear_depth(body.wants, pair, pack),
         work=start.friction_work,
         text="Engagements until the linings are worn",
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from problems import cost, friction, practice, wear
 from problems.disc import body as disc_body
 from problems.disc import curves as disc_curves
+from problems.disc import facing_sets
 from problems.disc import pack as disc_pack
 from problems.friction import startup_curves
 from problems.mechanics import ring as ring_formulas
@@ -51,8 +52,15 @@ class DiscClutch(DesignProblem):
             wants = disc_body.declare_disc_requirements(d, body=body_wants)
         rules = d.block(disc_body.DiscRules) if scope.rules else None
         least, most = (0.17, 0.28) if scope.rules else (0.11, 0.13)
-        ring = friction.declare_ring(d, ratio_min=least, ratio_max=most)
-        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants)
+        facings = facing_sets.declare_facing_set(d)
+        ring = friction.declare_ring(
+            d,
+            ratio_min=least,
+            ratio_max=most,
+            diameters=None if facings is None else facing_sets.ring_diameters(facings),
+        )
+        facing = None if facings is None else facing_sets.facing_of(facings)
+        pack = disc_pack.declare_disc_pack(d, duty=duty, ring=ring, wants=wants, facing=facing)
         force = d.variable(
             "actuation_force",
             "N",
@@ -84,6 +92,8 @@ class DiscClutch(DesignProblem):
             pressure=force / ring.area,
             rubbing_radius=ring.outer_radius,
         )
+        if facings is not None:
+            facing_sets.declare_set_limits(d, facings, pair=pair, pressure=force / ring.area)
         pack_size = disc_pack.disc_size(duty, ring, pair, pack)
         size, mass_of = pack_size, "Pressure plates, linings and cores"
         along = "Length of the released discs and pressure plates"

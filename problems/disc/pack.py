@@ -79,16 +79,36 @@ class DiscRequirements(Block):
 
 
 @dataclass(frozen=True)
+class Facing:
+    """Facing of a list: its thickness on one side, and how deep it may wear [m]."""
+
+    thickness: Any
+    wearable_depth: Any
+
+
+@dataclass(frozen=True)
 class DiscPack:
-    """The discs and pressure plates."""
+    """The discs and pressure plates; ``facing`` is None where the lining is as its own row has it."""
 
     wants: DiscRequirements
     discs: Any
     surfaces: Any
     plate_thickness: Any
+    facing: Facing | None = None
+
+    def lining_thickness(self, pair: Pair) -> Any:
+        """Thickness of the lining on one side [m]."""
+        return pair.part.lining_thickness if self.facing is None else self.facing.thickness
 
 
-def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring, wants: DiscRequirements | None = None) -> DiscPack:
+def declare_disc_pack(
+    d: Declaration,
+    *,
+    duty: Duty,
+    ring: Ring,
+    wants: DiscRequirements | None = None,
+    facing: Facing | None = None,
+) -> DiscPack:
     """Declare requirements and unknowns of a disc pack, and the limit of its bore.
 
     Parameters
@@ -101,6 +121,8 @@ def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring, wants: DiscRequ
         Block ring.
     wants : DiscRequirements, optional
         Requirements that are declared already.
+    facing : Facing, optional
+        Facing of a list; without one it is as thick as the row of its lining says.
 
     Returns
     -------
@@ -150,7 +172,7 @@ def declare_disc_pack(d: Declaration, *, duty: Duty, ring: Ring, wants: DiscRequ
         "part drag after release, on a vertical shaft most of all",
         source=f"{S0}, release must separate the plates",
     )
-    return DiscPack(wants, discs, disc.surface_count(discs), plate_thickness)
+    return DiscPack(wants, discs, disc.surface_count(discs), plate_thickness, facing)
 
 
 def declare_worn_torque(
@@ -201,7 +223,7 @@ def declare_worn_torque(
 
 def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
     """Return mass and room of a disc pack."""
-    wants, lining = pack.wants, pair.part.lining_thickness
+    wants, lining = pack.wants, pack.lining_thickness(pair)
     core = plates.annulus_mass(
         duty.steel_density,
         pack.discs,
@@ -225,7 +247,7 @@ def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, 
         "kg*m2",
         disc.disc_inertia(
             pack.discs,
-            disc.lining_inertia(pair.part.density, pair.part.lining_thickness, ring.mean_diameter, ring.ratio),
+            disc.lining_inertia(pair.part.density, pack.lining_thickness(pair), ring.mean_diameter, ring.ratio),
             disc.core_inertia(
                 duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
             ),

@@ -278,7 +278,7 @@ class ElectromagneticClutch(DesignProblem):
             if rules is not None and coil_rules is not None:
                 disc_body.declare_rules(d, rules=rules, duty=duty, ring=ring, pair=pair, pack=pack)
                 habits = magnet_blocks.Practice(
-                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, pair), ramp_time=ramp_time
+                    rules=coil_rules, wear_depth=disc_body.wear_depth(body_wants, pair, pack), ramp_time=ramp_time
                 )
         built = magnet_blocks.declare_magnet_coil(
             d,

@@ -20,7 +20,7 @@ from synth.units import from_si, parse_unit
 FOLDER = Path(__file__).parents[2] / "catalogs"
 CATALOGUES = {
     "friction_materials": 48, "core_plates": 14, "lined_plates": 9, "strip_thicknesses": 34, "plate_rings": 80,
-    "plate_sets": 77,
+    "plate_sets": 77, "facing_sets": 12,
     "parallel_keys": 19, "splines": 93, "shaft_ends": 42, "preferred_numbers": 229, "hub_diameters": 51,
     "guide_rolling_bearings": 95, "spring_wire_round": 170, "spring_wire_flat": 46, "compression_springs": 168,
     "disc_springs_DIN2093": 87, "metals": 60, "float_materials": 25, "motors_iec": 22, "balls": 35, "powders": 3,
@@ -241,6 +241,16 @@ def test_plate_sets_follow_from_rings_cores_and_linings() -> None:
     np.testing.assert_allclose(sets.outer_spline_diameter, sets.ring_outer_diameter + 6)
     np.testing.assert_array_equal(sets.inner_teeth, sets.inner_spline_diameter // 3)
     np.testing.assert_array_equal(sets.outer_teeth, sets.outer_spline_diameter // 3)
+
+
+def test_facing_sets_are_usual_outsides_with_two_rings_each_that_practice_accepts() -> None:
+    d = view("facing_sets")
+    assert sorted(set(d.ring_outer_diameter)) == [180, 200, 215, 228, 240, 250]
+    ratio = (d.ring_outer_diameter - d.ring_inner_diameter) / (d.ring_outer_diameter + d.ring_inner_diameter)
+    assert ((ratio > 0.17) & (ratio < 0.28)).all()
+    np.testing.assert_allclose(ratio, np.tile([0.18, 0.24], 6), atol=0.011)
+    assert (d.rivet_depth < d.facing_thickness).all()
+    assert set(d.confidence) == {"computed"}
 
 
 # ---- rollers --------------------------------------------------------------------------------------------------------

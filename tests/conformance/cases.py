@@ -77,13 +77,14 @@ def sound_rings(rng: np.random.Generator, instance: Instance, count: int) -> np.
 
 
 def sound_discs(rng: np.random.Generator, instance: Instance, count: int) -> np.ndarray:
-    """Return variables with the narrow rings of disc clutches."""
+    """Return variables with the narrow rings of disc clutches; facings of a list have theirs."""
     low, high = instance.ranges.lower, instance.ranges.upper
     x = low * (high / low) ** rng.random((count, len(low)))
     names = [v.name for v in instance.model.variables]
-    outer = rng.uniform(0.15, 0.4, count)
-    x[:, names.index("ring_outer_diameter")] = outer
-    x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.76, 0.81, count)
+    if "ring_outer_diameter" in names:
+        outer = rng.uniform(0.15, 0.4, count)
+        x[:, names.index("ring_outer_diameter")] = outer
+        x[:, names.index("ring_inner_diameter")] = outer * rng.uniform(0.76, 0.81, count)
     x[:, names.index("actuation_force")] = rng.uniform(1e3, 1.5e4, count)
     x[:, names.index("ramp_time")] = rng.uniform(0.05, 1.5, count)
     return x
@@ -421,11 +422,19 @@ CASES: dict[str, Family] = {
             "worst_case": {**SOURCES, "friction_basis": "worst_case", "allow_obsolete": "yes"},
             "practice": {"practice": "on"},
             "practice_worst_case": {"practice": "on", "friction_basis": "worst_case", "mass_scope": "parts"},
+            "practice_standard": {"plates": "standard", "practice": "on"},
         },
         requirements=CAR,
         needed={"practice=on": {"wear_life_min": "10000", "top_speed": "6000 1/min"}},
         constants={"problems.mechanics.disc:COVER_LEAST": (0, 1, 0, 0, 0)},
-        designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC),
+        designs=dict.fromkeys(("practice", "practice_worst_case"), CAR_DISC)
+        | {
+            "practice_standard": Design(
+                {"pressure_plate_thickness": "11 mm", "actuation_force": "6.1 kN", "ramp_time": "0.5 s"},
+                {"discs": 1},
+                {"friction_pair": "sinter_bronze_dry", "facing_set": "facing 215x150"},
+            )
+        },
         optional={
             "startup_torque": "120 N*m",
             "overload_torque": "600 N*m",

@@ -1,0 +1,90 @@
+"""Facings of a list: each row is a ring of lining as it is bought, with its thickness and how deep it may wear."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from problems.disc.pack import Facing
+from problems.friction.engagement import Pair
+from synth.declaration import Declaration, Part
+
+TABLE = "facing_sets"
+NO_RIVETS = 0.05  # m, more than any facing is thick: what is glued wears by its thickness
+
+
+def declare_facing_set(d: Declaration) -> Part | None:
+    """Declare the option plates, and the slot facing_set where facings are those of a list.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+
+    Returns
+    -------
+    Part or None
+        The row of the list; None where facings are made to size.
+    """
+    plates = d.option(
+        "plates",
+        ("made", "standard"),
+        "made",
+        symbol="pls",
+        text="made: the friction ring to the sizes found; standard: a row of table facing_sets, your maker's list",
+        source=f"table {TABLE}",
+        group="model",
+    )
+    if plates == "made":
+        return None
+    return d.part(
+        "facing_set", TABLE, symbol="set", text="Facing on either side of a disc, as bought", source=f"table {TABLE}"
+    )
+
+
+def ring_diameters(row: Part) -> tuple[Any, Any]:
+    """Return outer and inner diameter [m] of the friction ring of a row."""
+    return row.ring_outer_diameter, row.ring_inner_diameter
+
+
+def facing_of(row: Part) -> Facing:
+    """Return thickness and wear of the facings of a row: down to the rivets, or all of what is glued."""
+    return Facing(row.facing_thickness, np.minimum(row.filled("rivet_depth", NO_RIVETS), row.facing_thickness))
+
+
+def declare_set_limits(d: Declaration, row: Part, *, pair: Pair, pressure: Any) -> None:
+    """Declare what a list says of its facings: of which lining they are, and how much pressure they stand.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    row : Part
+        Row of facing_sets.
+    pair : Pair
+        Slot friction_pair.
+    pressure : symbol
+        Pressure on the linings [Pa].
+    """
+    if d.has_column(TABLE, "lining"):
+        d.refuse(
+            "lining_of_facings",
+            np.logical_not(np.logical_or(row.says("lining", ""), row.code("lining") == pair.part.code("designation"))),
+            "facings of the lining that their list names",
+        )
+    d.at_most(
+        "set_pressure",
+        pressure,
+        row.optional("p_max"),
+        "N/mm2",
+        text="No more pressure than the list of the facings allows",
+        source=f"table {TABLE}",
+    )
+    if d.has_column(TABLE, "confidence"):
+        d.advise(
+            "computed_facings",
+            row.says("confidence", "computed"),
+            "these facings are of a computed series, no maker lists them: give a maker's list as table facing_sets",
+            source=f"table {TABLE}",
+        )
