@@ -31,7 +31,7 @@ from reports.sheet.blocks import (
     TableRow,
     said,
 )
-from reports.sheet.design_sheet import TIGHT, front_details, front_state, percent, program_name
+from reports.sheet.design_sheet import TIGHT, front_details, front_state, next_in_tables, percent, program_name
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation, NamedQuantity
 from synth.results.plain import finite
@@ -229,7 +229,7 @@ class _Report:
             blocks.append(
                 Paragraph(said("Calculation sheet: ", Link(self.request.sheets[rank], self.request.sheets[rank])))
             )
-        blocks.append(Bullets((*self._choices(design), *self._parts(design))))
+        blocks.append(Bullets((*self._choices(design), *self._parts(design), *next_in_tables(design))))
         blocks.append(TableBlock("Sizes and results", VALUE_COLUMNS, self._values(design)))
         blocks.append(TableBlock.of("Limits, the most used first", USED_COLUMNS, self._limits(design)))
         blocks += self._prices(design)

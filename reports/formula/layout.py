@@ -340,7 +340,7 @@ def _raised(base: Layout, power: int) -> Layout:
 
 # ---- numbers that are known ------------------------------------------------------------------------------------------
 
-DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 18, 24, 32, 36, 48, 64, 180)
+DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 18, 24, 32, 36, 45, 48, 64, 90, 180, 360)
 MOST_OVER = 36
 EXACT = 1e-14  # relative: as closely as a product of few factors is rounded
 

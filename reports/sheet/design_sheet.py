@@ -176,9 +176,10 @@ class _Sheet:
             ]
             table, _, designation = slot.partition(":")
             groups.append((f"{designation} ({table}; fixed by an option)", tuple(rows)))
-        if not groups:
-            return []
-        return [Heading("Parts", anchor="parts"), TableBlock("What tables say", PART_COLUMNS, tuple(groups))]
+        blocks: list[Block] = [TableBlock("What tables say", PART_COLUMNS, tuple(groups))] if groups else []
+        following = next_in_tables(self.design)
+        blocks += [Bullets(tuple(following))] if following else []
+        return [Heading("Parts", anchor="parts"), *blocks] if blocks else []
 
     # -- limits --------------------------------------------------------------------------------
 
@@ -217,7 +218,7 @@ class _Sheet:
         """Return how limits stand what scatters: each at its worst point."""
         rating = self.design.robust
         if not rating or not rating.limits:
-            return []
+            return self._at_corners()
         units = rating.units or {}
         rows = []
         for name, told in rating.limits.items():
@@ -236,6 +237,24 @@ class _Sheet:
             Heading("Limits over the range that scatters", level=2, anchor="range"),
             TableBlock.of("Each limit at its worst point", RANGE_COLUMNS, rows),
         ]
+
+    def _at_corners(self) -> list[Block]:
+        """Return the limits that were posed because something scatters, of a design that was not rated."""
+        own = {x.name for x in self.calculation.limits}
+        rows = []
+        for name in (n for n in self.design.limits if n not in own):
+            value, limit = self.design.limits[name]
+            used, unit = self.design.utilisation.get(name), self.design.frame.limit_units.get(name, "-")
+            bad = name in self.design.violated
+            words: Cell = Strong("VIOLATED") if bad else "not checked" if used is None else "holds"
+            sides = f"{printed(shown(value, unit))} / {printed(shown(limit, unit))}"
+            rows.append(
+                TableRow((Code(name), sides, "" if used is None else percent(used), words), "bad" if bad else "")
+            )
+        if not rows:
+            return []
+        heading = Heading("Limits at the corners of the range that scatters", level=2, anchor="range")
+        return [heading, TableBlock.of("Posed beside the limits above", CORNER_COLUMNS, rows)]
 
     # -- words ---------------------------------------------------------------------------------
 
@@ -290,6 +309,11 @@ class _Sheet:
             Paragraph("The design, as clutchsynth check reads it:"),
             Listing(self.design.yaml()),
         ]
+
+
+def next_in_tables(design: Design) -> list[Cell]:
+    """Return the rows of tables that come next to sizes which no table decides: a shaft end and its key."""
+    return [f"Next in the tables: {name.replace('_', ' ')} {row}" for name, row in design.next_rows.items()]
 
 
 def percent(share: float) -> str:
@@ -395,5 +419,11 @@ RANGE_COLUMNS = (
     Column("used", number=True, width=0.7),
     Column("verdict", width=0.9),
     Column("proof", width=0.8),
+)
+CORNER_COLUMNS = (
+    Column("limit", width=3),
+    Column("value / limit", width=2),
+    Column("used", number=True, width=0.7),
+    Column("verdict", width=0.9),
 )
 SYMBOL_COLUMNS = (Column("symbol"), Column("name", width=2), Column("meaning", width=4), Column("unit"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from reports.formula.layout import (
     Amount,
@@ -104,7 +105,7 @@ class Steps:
         assert q.expression is not None
         found = dimension_of(q.expression, self.quantities)
         declared = parse_unit(q.unit).dimension if q.unit else None
-        return found is not None and found == declared
+        return found is not None and declared is not None and found == tuple(map(Fraction, declared))
 
     def _inserted(self, shown_tree: Expression, exact: Expression, value: float, in_si: bool) -> Layout:
         """Return a formula with as many digits of its numbers as its result needs."""

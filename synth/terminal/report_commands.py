@@ -46,24 +46,19 @@ def report(
         "fonts": fonts or [],
         **_about(about),
     }
-    given = source.suffix in FILES and source.is_file() and source.name != "front.json"
-    target = folder or (source if source.is_dir() else source.parent)
-    check_output(target)
-    if given:
-        place, names, notes, status = _of_design(source, target, asked)
+    if folder is not None:
+        check_output(folder)
+    if source.suffix in FILES and source.is_file() and source.name != "front.json":
+        target = folder or source.parent
+        place, names, notes, feasible = _of_design(source, target, asked)
     else:
-        from synth.analysis.reporting import report as write
-        from synth.results.loading import load_front
-
-        chosen = [word.strip() for word in design.split(",")]
-        place, names, notes = write(load_front(source), target, design=chosen, full=full, **asked)
-        status = 0
+        place, target, names, notes, feasible = _of_front(source, folder, design, full, asked)
     for note in notes:
         typer.echo(f"clutchsynth: {note}", err=True)
     if not quiet:
         tell_written(place, target, names)
-    if status:
-        raise typer.Exit(status)
+    if not feasible:
+        raise typer.Exit(INFEASIBLE)
 
 
 def _about(file: Path | None) -> dict[str, Any]:
@@ -75,8 +70,22 @@ def _about(file: Path | None) -> dict[str, Any]:
     return {"about": read_content(file, "about"), "about_folder": file.parent}
 
 
-def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path, list[str], list[str], int]:
-    """Write the sheet of a design that stands in a file; where it is not feasible the exit code says so."""
+def _of_front(
+    source: Path, folder: Path | None, design: str, full: int, asked: dict[str, Any]
+) -> tuple[Path, Path, list[str], list[str], bool]:
+    """Write the report of a front; return place, folder, files, notes, and whether it has designs."""
+    from synth.analysis.reporting import report as write
+    from synth.results.loading import load_front
+
+    front = load_front(source)
+    target = folder or (source if source.is_dir() else source.parent)
+    chosen = [word.strip() for word in design.split(",")]
+    place, names, notes = write(front, target, design=chosen, full=full, **asked)
+    return place, target, names, notes, bool(front.designs)
+
+
+def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path, list[str], list[str], bool]:
+    """Write the sheet of a design that stands in a file; return place, files, notes, and whether it is feasible."""
     from synth.analysis.reporting import report_design
     from synth.feasibility import Status
     from synth.question.instance import Instance
@@ -89,4 +98,4 @@ def _of_design(source: Path, target: Path, asked: dict[str, Any]) -> tuple[Path,
     problem, catalogs, design = given_design(spec)
     instance = Instance(Request.of(problem, spec.requirements, catalogs, limits=spec.limits), restrict=False)
     place, names, notes = report_design(design, instance, target, name=source.stem, **asked)
-    return place, names, notes, INFEASIBLE if design.status is Status.INFEASIBLE else 0
+    return place, names, notes, design.status is not Status.INFEASIBLE
