@@ -233,7 +233,7 @@ def _of_rows(model: Model, catalogs: Catalogs, rows: Mapping[str, float]) -> lis
                 name=entry.label,
                 kind=entry.kind,
                 symbol=(column.symbol if column is not None else "") or names[0],
-                unit=(column.unit if column is not None else "") or "-",
+                unit=(column.unit or "-") if column is not None else "",
                 text=column.description
                 if column is not None
                 else f"{names[0]}, a column that this table does not have",

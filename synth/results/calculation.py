@@ -40,8 +40,8 @@ class NamedQuantity:
         What it comes from: ``requirement``, ``variable``, ``count``, ``choice``, ``part`` and ``row`` are inputs,
         ``constant`` is a number of nature or of a source; ``step``, ``derived`` and ``helper`` are computed.
     symbol, unit, text, source : str
-        As declared; of a part as its table says. A part of a long formula has no unit where those of the formula do not
-        close: it is a number in SI.
+        As declared; of a part as its table says, without a unit where the table does not have the column. A part of a
+        long formula has no unit where those of the formula do not close: it is a number in SI.
     expression : Expression, optional
         Of what is computed, and of a requirement whose default follows from others.
     value : float, optional

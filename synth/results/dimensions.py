@@ -1,9 +1,12 @@
-"""Dimensions of formulas: whether their units close, and what the unit of a part is."""
+"""Dimensions of formulas: whether their units close, what the unit of a part is, which constant a number holds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING, TypeAlias
 
 from synth.results.expression import Expression
@@ -15,7 +18,71 @@ if TYPE_CHECKING:
 Dimension: TypeAlias = tuple[Fraction, ...]  # exponents of kg, m, s, K, A
 
 NONE: Dimension = (Fraction(0),) * 5
+ANY: Dimension = ()  # of a column that a table does not have, in whose place a number stands
 SAME = ("min", "max", "hypot", "abs", "fmod", "copysign", "floor", "ceil")  # functions that keep the dimension
+
+
+DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 24, 32, 45, 64, 90, 180, 360)
+POWERS_OF_PI = (0, 1, -1, 2, -2, 3)
+LARGEST = 1000  # numerator: beyond it a fraction tells a reader no more than digits
+SHORT = 4  # digits of a number that somebody has written as it stands
+EXACT = 1e-14  # relative, of a product that was computed before the trace
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A number as it was written: ``over`` times pi to a power over ``under``, and a constant to a power (0: none)."""
+
+    over: int
+    pi: int
+    under: int
+    constant: str = ""
+    power: int = 0
+
+
+def fraction_of(number: float) -> Fold | None:
+    """Return a number as a fraction of whole numbers with a power of pi; None where it is none with small figures.
+
+    Examples
+    --------
+    >>> fraction_of(2 / 3), fraction_of(0.13962634015954636)
+    (Fold(over=2, pi=0, under=3, constant='', power=0), Fold(over=2, pi=1, under=45, constant='', power=0))
+    """
+    for pi in POWERS_OF_PI:
+        for under in DENOMINATORS:
+            over = abs(number) / math.pi**pi * under
+            if 0.5 < over < LARGEST and abs(over - round(over)) <= EXACT * over:
+                return Fold(round(over), pi, under)
+    return None
+
+
+def constant_in(number: float, constants: Iterable[NamedQuantity]) -> Fold | None:
+    """Return the constant that a number of a formula is, or from which it was computed before the trace.
+
+    Parameters
+    ----------
+    number : float
+        As it stands in a formula; its sign is no matter.
+    constants : list of NamedQuantity
+        Constants of the family.
+
+    Returns
+    -------
+    Fold or None
+        n pi**k/d times the constant or its inverse; None where the number is one of its own.
+    """
+    size, known = abs(number), [c for c in constants if c.value]
+    for c in known:
+        if c.value is not None and size == abs(c.value):
+            return Fold(1, 0, 1, c.name, 1)
+    if size == 0 or not math.isfinite(size) or float(f"{size:.{SHORT}g}") == size or fraction_of(size):
+        return None
+    for c, power in product(known, (1, -1)):
+        assert c.value is not None
+        found = fraction_of(size / abs(c.value) ** power)
+        if found:
+            return Fold(found.over, found.pi, found.under, c.name, power)
+    return None
 
 
 class _Open(Exception):
@@ -29,22 +96,22 @@ def dimension_of(tree: Expression, known: Mapping[str, NamedQuantity]) -> Dimens
     ----------
     tree : Expression
     known : mapping
-        The quantities in it, by name. A number has the dimension of a constant of the same value, otherwise any that
-        a sum asks for, and none in a product.
+        The quantities in it, by name. A number has the dimension of the constant in it (:func:`constant_in`), otherwise
+        any that a sum asks for, and none in a product.
     """
     try:
         found = _Dimensions(known).of(tree)
     except _Open:
         return None
-    return NONE if found is None else found
+    return found or NONE
 
 
 class _Dimensions:
-    """Dimensions of trees; None is that of a number, which may be any."""
+    """Dimensions of trees; None is that of a number, which may be any but is none in a product."""
 
     def __init__(self, known: Mapping[str, NamedQuantity]) -> None:
         self.known = known
-        self.constants = {q.value: q for q in known.values() if q.kind == "constant"}
+        self.constants = {q.name: q for q in known.values() if q.kind == "constant"}
 
     def of(self, tree: Expression) -> Dimension | None:
         """Return the dimension of a tree."""
@@ -52,8 +119,7 @@ class _Dimensions:
         if kind == "q":
             return self._unit(self.known[tree[1]])
         if kind == "n":
-            constant = self.constants.get(tree[1])
-            return None if constant is None else self._unit(constant)
+            return self._number(tree[1])
         if kind == "+":
             return self._common(tree[1])
         if kind == "*":
@@ -68,23 +134,34 @@ class _Dimensions:
             return self._function(tree[1], tree[2])
         return NONE  # a condition
 
+    def _number(self, number: float) -> Dimension | None:
+        fold = constant_in(number, self.constants.values())
+        if fold is None:
+            return None
+        return tuple(fold.power * x for x in self._unit(self.constants[fold.constant]))
+
     @staticmethod
     def _unit(q: NamedQuantity) -> Dimension:
+        if not q.unit and q.kind in ("part", "row"):
+            return ANY
         if not q.unit:
             raise _Open
         return tuple(map(Fraction, parse_unit(q.unit).dimension))
 
     def _common(self, trees: Sequence[Expression]) -> Dimension | None:
-        found = {x for x in map(self.of, trees) if x is not None}
-        if len(found) > 1:
+        found = set(map(self.of, trees)) - {None}
+        told = found - {ANY}
+        if len(told) > 1:
             raise _Open
-        return next(iter(found), None)
+        return next(iter(told or found), None)
 
     def _product(self, over: Sequence[Expression], under: Sequence[Expression]) -> Dimension | None:
         total, any_known = list(NONE), False
         for trees, sign in ((over, 1), (under, -1)):
             for tree in trees:
                 one = self.of(tree)
+                if one == ANY:
+                    return ANY
                 if one is not None:
                     any_known = True
                     total = [a + sign * b for a, b in zip(total, one, strict=True)]
@@ -92,7 +169,7 @@ class _Dimensions:
 
     def _power(self, base: Expression, exponent: Expression) -> Dimension | None:
         own = self.of(base)
-        if own is None or own == NONE:
+        if not own or own == NONE:
             if (self.of(exponent) or NONE) != NONE:
                 raise _Open
             return own
@@ -104,12 +181,12 @@ class _Dimensions:
     def _function(self, name: str, arguments: Sequence[Expression]) -> Dimension | None:
         if name == "sqrt":
             own = self.of(arguments[0])
-            return None if own is None else tuple(x / 2 for x in own)
+            return tuple(x / 2 for x in own) if own else own
         if name in SAME:
             return self._common(arguments)
         if name == "sign":
             return NONE
         own = self._common(arguments)
-        if name != "atan2" and own is not None and own != NONE:
+        if name != "atan2" and own and own != NONE:
             raise _Open
         return NONE
