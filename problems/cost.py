@@ -63,6 +63,8 @@ class Special:
 
     Attributes
     ----------
+    name : str
+        What it is, one word.
     part : Part or None
         Row whose table may give ``unit_cost``; None for what is of no table.
     amount : symbol
@@ -77,6 +79,7 @@ class Special:
         Cost of one of its pieces over a part that is turned.
     """
 
+    name: str
     part: Part | None
     amount: Any
     mass: Any = 0.0
@@ -112,10 +115,20 @@ def declare_cost(
     cost = weights.cost_per_mass * mass + weights.cost_per_part * parts
     if lining is not None and isinstance(weights, LiningCostWeights):
         part, area = lining
+        square = d.constant(
+            "lining_unit_area",
+            "m2",
+            SQUARE_DECIMETRE,
+            symbol="A_1",
+            text="Square decimetre, for which unit_cost of a lining is given",
+            source="definition",
+        )
         class_of = part.filled("relative_cost", NONE)
         known = np.where(class_of > NONE, class_of, 1.0)
         own = part.filled(UNIT_COST, NONE)
-        cost = cost + np.where(own > NONE, own * area / SQUARE_DECIMETRE, weights.cost_per_lining * known * area)
+        own_cost = np.where(own > NONE, own * area / square, weights.cost_per_lining * known * area)
+        d.step("lining_cost", "-", own_cost, symbol="C_lin", text="Relative cost of the linings", source=UNSOURCED)
+        cost = cost + own_cost
         d.advise(
             "cost_class_unknown",
             np.logical_and(class_of <= NONE, own <= NONE),
@@ -130,6 +143,14 @@ def declare_cost(
         if one.part is not None:
             own = one.part.filled(UNIT_COST, NONE)
             added = np.where(own > NONE, own * one.amount - plain, added)
+        d.step(
+            f"{one.name}_cost",
+            "-",
+            added,
+            symbol=f"C_{one.name}",
+            text=f"What is added for {one.name}, which cost other than plain steel",
+            source=UNSOURCED,
+        )
         cost = cost + added
     d.derive(
         "cost",

@@ -255,6 +255,7 @@ def _declare_cost(
 ) -> None:
     special = [
         cost.Special(
+            one.part.slot + "s",
             one.part,
             amount=one.count,
             mass=one.mass,
@@ -265,7 +266,7 @@ def _declare_cost(
     ]
     if around.ball is not None:
         special.append(
-            cost.Special(around.ball, amount=flyweights.count, mass=flyweights.mass, pieces=flyweights.count)
+            cost.Special("balls", around.ball, amount=flyweights.count, mass=flyweights.mass, pieces=flyweights.count)
         )
     pieces: Any = sum(one.count for one in springs)
     cost.declare_cost(

@@ -187,6 +187,9 @@ class ConeBody:
     wants: ConeBodyRequirements
     stroke: Any
     size: Size
+    webs: Any
+    bosses: Any
+    spring: Any
 
 
 def declare_body_requirements(d: Declaration, *, required: Any) -> ConeBodyRequirements:
@@ -235,15 +238,17 @@ def complete_body(*, duty: Duty, wants: ConeBodyRequirements, shape: Cone, pair:
     """
     rho, wall = duty.steel_density, shape.shell_thickness
     across, bore = shape.mean_diameter / 2, wants.shaft_diameter / 2
-    added = (
-        plates.annulus_mass(rho, 2, wall, across + bore, across - bore)
-        + 2 * wants.boss_mass(rho)
-        + cone.spring_mass(shape.force, wants.spring_deflection, wants.spring_energy)
-    )
+    webs = plates.annulus_mass(rho, 2, wall, across + bore, across - bore)
+    bosses = 2 * wants.boss_mass(rho)
+    spring = cone.spring_mass(shape.force, wants.spring_deflection, wants.spring_energy)
+    added = webs + bosses + spring
     return ConeBody(
         wants=wants,
         stroke=cone.axial_stroke(wants.gap_normal, wear_depth(wants, pair), shape.angle),
         size=Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=pack_size.length + 2 * wall),
+        webs=webs,
+        bosses=bosses,
+        spring=spring,
     )
 
 
@@ -270,6 +275,12 @@ def declare_body(
         Peripheral force of the clutch that has just engaged, with the friction counted on [N].
     """
     d.derive("part_mass", "kg", pack_size.mass, symbol="m_part", text="Both shells and the lining", source="geometry")
+    for name, value, symbol, text in (
+        ("web_mass", body.webs, "m_web", "Webs that carry both cones"),
+        ("boss_mass", body.bosses, "m_boss", "Both bosses on the shafts"),
+        ("spring_mass", body.spring, "m_sp", "Spring that engages the cones"),
+    ):
+        d.step(name, "kg", value, symbol=symbol, text=text, source="geometry")
     d.derive(
         "pack_length",
         "mm",

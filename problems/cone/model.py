@@ -152,6 +152,7 @@ class ConeClutch(DesignProblem):
         grip_high = grip_low if high is low else shape.force * cone.grip_factor(shape.angle, high)
         seated_force = cone.seated_force(shape.force, shape.angle)
         seated_torque = torque(high * seated_force)
+        self._name_wedge(d, shape=shape, low=low, high=high, grip=grip_low)
         torques = friction.declare_torque(
             d,
             duty=duty,
@@ -356,6 +357,33 @@ class ConeClutch(DesignProblem):
             area=area,
             largest_diameter=cone.largest_diameter(mean_diameter, length, angle),
         )
+
+    def _name_wedge(self, d: Declaration, *, shape: Cone, low: Any, high: Any, grip: Any) -> None:
+        """Name what torques and forces of cones are made of."""
+        across = 2 * shape.mean_diameter - shape.largest_diameter
+        for name, unit, value, symbol, text in (
+            ("wedge_factor", "-", cone.wedge_factor(shape.angle, low), "k_w", "Axial over normal force, engaging"),
+            ("peripheral_force", "N", grip, "F_u", "Friction force of a clutch that has just engaged"),
+            (
+                "mean_radius_factor",
+                "-",
+                cone.mean_radius_factor(shape.ratio, shape.angle),
+                "k_r",
+                "Friction radius at uniform pressure over dm/2, 1 + c**2 sin(alpha)**2/3",
+            ),
+            ("wide_end_diameter", "mm", shape.largest_diameter, "d_wide", "Friction face at its wide end"),
+            ("narrow_end_diameter", "mm", across, "d_narrow", "Friction face at its narrow end"),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source=DERIVED)
+        if high is not low:
+            d.step(
+                "greatest_wedge_factor",
+                "-",
+                cone.wedge_factor(shape.angle, high),
+                symbol="k_w_max",
+                text="Axial over normal force, engaging, with mu_max",
+                source=DERIVED,
+            )
 
     def _declare_seating(
         self,

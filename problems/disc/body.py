@@ -106,6 +106,9 @@ class DiscBody:
 
     wants: DiscBodyRequirements
     size: Size
+    hub: Any
+    cover: Any
+    spring: Any = None
 
 
 def declare_body_requirements(d: Declaration, *, required: Any, wear_depth_limit: float = 1.0) -> DiscBodyRequirements:
@@ -157,13 +160,13 @@ def complete_body(*, duty: Duty, wants: DiscBodyRequirements, ring: Ring, pack: 
         The whole size.
     """
     rho, shaft = duty.steel_density, wants.shaft_diameter
-    added = (
-        disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, shaft)
-        + disc.cover_mass(rho, pack_size.diameter, pack_size.length)
-        + disc.diaphragm_spring_mass(rho, ring.outer_radius)
-    )
+    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, shaft)
+    cover = disc.cover_mass(rho, pack_size.diameter, pack_size.length)
+    spring = disc.diaphragm_spring_mass(rho, ring.outer_radius)
+    added = hub + cover + spring
     length = pack_size.length + disc.cover_thickness(pack_size.diameter) + disc.SPRING_ROOM * 2 * ring.outer_radius
-    return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
+    size = Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length)
+    return DiscBody(wants, size, hub, cover, spring)
 
 
 def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, pack_size: Size) -> DiscBody:
@@ -186,11 +189,11 @@ def body_at_magnet(*, duty: Duty, wants: DiscBodyRequirements, pack: DiscPack, p
         The whole size, without the magnet.
     """
     rho = duty.steel_density
-    added = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter) + disc.cover_mass(
-        rho, pack_size.diameter, pack_size.length
-    )
+    hub = disc.hub_mass(rho, pack.discs, pack.wants.disc_hub_radius, wants.shaft_diameter)
+    cover = disc.cover_mass(rho, pack_size.diameter, pack_size.length)
     length = pack_size.length + disc.cover_thickness(pack_size.diameter)
-    return DiscBody(wants, Size(mass=pack_size.mass + added, diameter=pack_size.diameter, length=length))
+    size = Size(mass=pack_size.mass + (hub + cover), diameter=pack_size.diameter, length=length)
+    return DiscBody(wants, size, hub, cover)
 
 
 def wear_depth(wants: DiscBodyRequirements, pair: Pair, pack: DiscPack) -> Any:
@@ -232,6 +235,33 @@ def declare_body(
         text="Released discs and pressure plates",
         source="geometry",
     )
+    d.constant(
+        "cover_thickness_least",
+        "mm",
+        1000 * disc.COVER_LEAST,
+        symbol="t_cover_min",
+        text="Least thickness of a cover",
+        source=UNSOURCED,
+    )
+    d.step(
+        "cover_thickness",
+        "mm",
+        disc.cover_thickness(pack_size.diameter),
+        symbol="t_cover",
+        text="Thickness of the pressed cover",
+        source=UNSOURCED,
+    )
+    d.step("hub_mass", "kg", body.hub, symbol="m_hub", text="Hubs of the discs", source="geometry")
+    d.step("cover_mass", "kg", body.cover, symbol="m_cover", text="Face and shell of the cover", source="geometry")
+    if body.spring is not None:
+        d.step(
+            "diaphragm_spring_mass",
+            "kg",
+            body.spring,
+            symbol="m_sp",
+            text="Diaphragm spring, three quarters of a disc of 0.9 r_out",
+            source=UNSOURCED,
+        )
     life = wear.declare_wear_life(
         d,
         pair.part,

@@ -95,7 +95,8 @@ class DiscClutch(DesignProblem):
         if facings is not None:
             facing_sets.declare_set_limits(d, facings, pair=pair, pressure=force / ring.area)
         pack_size = disc_pack.disc_size(duty, ring, pair, pack)
-        size, mass_of = pack_size, "Pressure plates, linings and cores"
+        size: friction.Size = pack_size
+        mass_of = "Pressure plates, linings and cores"
         along = "Length of the released discs and pressure plates"
         body = None
         if body_wants is not None:

@@ -87,6 +87,15 @@ class Facing:
 
 
 @dataclass(frozen=True)
+class DiscSize(Size):
+    """Mass and room of a disc pack; one pressure plate, and all linings and cores."""
+
+    plate_mass: Any
+    lining_mass: Any
+    core_mass: Any
+
+
+@dataclass(frozen=True)
 class DiscPack:
     """The discs and pressure plates; ``facing`` is None where the lining is as its own row has it."""
 
@@ -221,7 +230,7 @@ def declare_worn_torque(
     )
 
 
-def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
+def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> DiscSize:
     """Return mass and room of a disc pack."""
     wants, lining = pack.wants, pack.lining_thickness(pair)
     core = plates.annulus_mass(
@@ -231,10 +240,13 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
         ring.outer_radius + wants.disc_hub_radius,
         ring.outer_radius - wants.disc_hub_radius,
     )
-    return Size(
-        mass=pack.discs * disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
-        + plates.lining_mass(pair.part.density, lining, pack.surfaces * ring.area)
-        + core,
+    plate = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
+    linings = plates.lining_mass(pair.part.density, lining, pack.surfaces * ring.area)
+    return DiscSize(
+        mass=pack.discs * plate + linings + core,
+        plate_mass=plate,
+        lining_mass=linings,
+        core_mass=core,
         diameter=2 * (ring.outer_radius + wants.cover_gap),
         length=disc.clutch_length(pack.discs, lining, wants.core_thickness, pack.plate_thickness, duty.plate_gap),
     )
@@ -242,16 +254,17 @@ def disc_size(duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> Size:
 
 def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, pack: DiscPack) -> None:
     """Declare the inertia of the discs, which the gearbox has to synchronise."""
+    lining = disc.lining_inertia(pair.part.density, pack.lining_thickness(pair), ring.mean_diameter, ring.ratio)
+    core = disc.core_inertia(
+        duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
+    )
+    text = "Both linings of a disc, rho t pi (r2**4 - r1**4)"
+    d.step("lining_inertia", "kg*m2", lining, symbol="J_lin", text=text, source="geometry")
+    d.step("core_inertia", "kg*m2", core, symbol="J_core", text="Core of a disc", source="geometry")
     d.derive(
         "disc_inertia",
         "kg*m2",
-        disc.disc_inertia(
-            pack.discs,
-            disc.lining_inertia(pair.part.density, pack.lining_thickness(pair), ring.mean_diameter, ring.ratio),
-            disc.core_inertia(
-                duty.steel_density, pack.wants.core_thickness, ring.outer_radius, pack.wants.disc_hub_radius
-            ),
-        ),
+        disc.disc_inertia(pack.discs, lining, core),
         symbol="J_disc",
         text="Inertia of the discs, cores with linings",
         source="geometry",
@@ -259,7 +272,7 @@ def declare_disc_inertia(d: Declaration, *, duty: Duty, ring: Ring, pair: Pair, 
 
 
 def declare_disc_temperature(
-    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: Size
+    d: Declaration, *, duty: Duty, pair: Pair, start: Startup, ring: Ring, pack: DiscPack, size: DiscSize
 ) -> None:
     """Declare the temperatures of a disc pack and their limits.
 
@@ -283,6 +296,12 @@ def declare_disc_temperature(
     wants = pack.wants
     plate_mass = disc.pressure_plate_mass(wants.pressure_plate_density, pack.plate_thickness, ring.area)
     specific_heat = wants.pressure_plate_specific_heat
+    for name, value, symbol, text in (
+        ("pressure_plate_mass", size.plate_mass, "m_p", "A pressure plate"),
+        ("lining_mass", size.lining_mass, "m_lin", "All linings"),
+        ("core_mass", size.core_mass, "m_core", "Cores of all discs"),
+    ):
+        d.step(name, "kg", value, symbol=symbol, text=text, source="geometry")
     rise = d.derive(
         "temperature_rise",
         "K",

@@ -335,7 +335,7 @@ class ElectromagneticClutch(DesignProblem):
         area: Any,
     ) -> None:
         wire = magnet.unknowns.winding_wire
-        coil = cost.Special(wire, amount=built.copper, mass=built.copper, pieces=1, factor=cost.COPPER)
+        coil = cost.Special("copper", wire, amount=built.copper, mass=built.copper, pieces=1, factor=cost.COPPER)
         cost.declare_cost(
             d, mass=mass + built.mass, parts=parts + MAGNET_PARTS, lining=(pair.part, area), special=[coil]
         )

@@ -153,6 +153,15 @@ def declare_torque(
         text="Built capacity with new lining (worst_case: with mu_min)",
         source=f"{S0}, eq. (5); {S1}, sizing",
     )
+    if duty.friction_basis == "worst_case":
+        d.step(
+            "greatest_torque",
+            "N*m",
+            torque_high,
+            symbol="M_k_max",
+            text="Built capacity with the friction that is feared",
+            source=f"{S0}, eq. (5); {S1}, sizing",
+        )
     given = duty.startup_torque
     torques = Torques(
         required=required,
@@ -274,6 +283,7 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
         text="Greatest friction power (worst_case: with mu_max)",
         source=f"{S1}, start-up; closed form",
     )
+    _name_startup(d, duty=duty, torques=torques, ramp_time=ramp_time)
     jerk = d.derive(
         "jerk",
         "rad/s3",
@@ -333,6 +343,47 @@ def declare_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: 
         source=f"{S1}, omega2C <= omega1",
     )
     return Startup(work, slip_time, power)
+
+
+def _name_startup(d: Declaration, *, duty: Duty, torques: Torques, ramp_time: Any) -> None:
+    """Name what friction work, slip time and slip power are made of; T_k is M_k_max where worst_case asks for it."""
+    load, inertia, speed = duty.load_torque, duty.driven_inertia, duty.driver_speed
+    low, high = torques.ramp_low, torques.ramp_high
+    source = f"{S1}, start-up; closed form"
+
+    def name(name: str, unit: str, value: Any, symbol: str, text: str) -> None:
+        d.step(name, unit, value, symbol=symbol, text=text, source=source)
+
+    name("excess_torque", "N*m", low - load, "M_ex", "Torque that the load leaves for acceleration, T_k - M_load")
+    energy = startup.kinetic_energy(inertia, speed)
+    name("kinetic_energy", "J", energy, "E_kin", "Energy of the driven side after lock-up, J2 omega1**2/2")
+    waiting = startup.ramp_work(load, speed, ramp_time)
+    name("ramp_work", "J", waiting, "W_ramp", "Work against the load in half the ramp, M_load omega1 t_r/2")
+    slip_speed = speed
+    if duty.load_kind == "reactive":
+        share = startup.excess_share(low, load)
+        name("excess_share", "-", share, "x_ex", "Share of the torque that accelerates, (T_k - M_load)/T_k")
+        work = startup.run_up_work(low, load, energy)
+        name("run_up_work", "J", work, "W_run", "Friction work of a step of torque, E_kin T_k/(T_k - M_load)")
+        relief = startup.ramp_relief(low, load, inertia, ramp_time)
+        text = "Work that the load, moved in the ramp, takes over, M_load (T_k - M_load)**3 t_r**2/(24 J2 T_k**2)"
+        name("ramp_relief", "J", relief, "W_rel", text)
+        length = startup.catch_up_time(low, inertia, speed, ramp_time)
+        name("catch_up_time", "s", length, "t_up", "Time from the start of the load to lock-up, if inside the ramp")
+    else:
+        bend = startup.driven_back_work(low, load, inertia, ramp_time)
+        text = "Work that the load, moved in the ramp, adds, M_load (4 M_load - T_k) t_r**2/(24 J2)"
+        name("driven_back_work", "J", bend, "W_back", text)
+        locked = startup.active_lock_in_ramp(low, load, inertia * speed, ramp_time)
+        name("ramp_lock_time", "s", locked, "t_lock", "Time until lock-up, if inside the ramp")
+        slip_speed = speed - startup.lowest_driven_speed(high, load, inertia, ramp_time)
+        name("greatest_slip_speed", "rad/s", slip_speed, "omega_slip", "Slip speed when the load begins to be lifted")
+    if duty.friction_basis == "worst_case" and duty.startup_torque is None:
+        text = "Torque that the load leaves for acceleration with the friction that is feared"
+        name("greatest_excess_torque", "N*m", high - load, "M_ex_max", text)
+    root = startup.peak_power_root(high, load, inertia, slip_speed, ramp_time)
+    text = "Root of the greatest friction power inside the ramp, M_load + sqrt(M_load**2 + 6 T_k J2 omega/t_r)"
+    name("peak_power_root", "N*m", root, "M_root", text)
 
 
 def declare_surface_loads(

@@ -412,8 +412,8 @@ class MagneticPowderClutch(DesignProblem):
                 mass=sized.mass + _around(wants, bore, layout),
                 parts=PARTS,
                 special=[
-                    cost.Special(wire, amount=sized.copper, mass=sized.copper, pieces=1, factor=cost.COPPER),
-                    cost.Special(part, amount=sized.powder, mass=sized.powder, factor=cost.POWDER),
+                    cost.Special("copper", wire, amount=sized.copper, mass=sized.copper, pieces=1, factor=cost.COPPER),
+                    cost.Special("powder", part, amount=sized.powder, mass=sized.powder, factor=cost.POWDER),
                 ],
             )
 

@@ -130,6 +130,31 @@ def damped_guide_number(guide_number: Quantity) -> Quantity:
     return guide_number / (1 + guide_number)
 
 
+def guarded_damping(guide_number: Quantity) -> Quantity:
+    """Constant of the continuous pack as the series use it, K of S + 1e-12, so that S may be 0.
+
+    Parameters
+    ----------
+    guide_number : scalar, array or symbol
+        S [-].
+
+    Returns
+    -------
+    scalar, array or symbol
+        K [-].
+
+    References
+    ----------
+    S0 (Szoke 1966), eq. (10).
+
+    Examples
+    --------
+    >>> guarded_damping(0.25)
+    0.2
+    """
+    return damped_guide_number(guide_number + _TINY_GUIDE_NUMBER)
+
+
 @special((0.0, 1.0), (-1.0, 0.0), curvature="log-concave")
 def sum_geometric(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     """Sum factor of the geometric series, E = (1 - (1+S)**-z)/S; z for S = 0.
@@ -218,7 +243,7 @@ def sum_exponential_k(surfaces: Quantity, guide_number: Quantity) -> Quantity:
     >>> float(sum_exponential_k(24, 0.0642))
     12.6796
     """
-    damped = damped_guide_number(guide_number + _TINY_GUIDE_NUMBER)
+    damped = guarded_damping(guide_number)
     return -np.expm1(-surfaces * damped) / damped
 
 
@@ -347,7 +372,7 @@ def contact_force(
     if series == "lipka":
         return force * np.exp(-(surface - 1) * guide) * -np.expm1(-guide) / guide
     if series == "exponential_K":
-        damped = damped_guide_number(guide)
+        damped = guarded_damping(inner_ratio + outer_ratio)
         return force * np.exp(-(surface - 1) * damped) * -np.expm1(-damped) / damped
     if series == "exact":
         inner_passed, outer_passed = np.floor((surface - 1) / 2), np.floor(surface / 2)

@@ -147,7 +147,8 @@ def locks_after_ramp(
     """
     if _is_active(load_kind):
         return ramp_time * (torque - 2 * load_torque) <= 2 * driven_inertia * driver_speed
-    return ramp_time * (torque - load_torque) * (1 - load_torque / torque) < 2 * driven_inertia * driver_speed
+    share = excess_share(torque, load_torque)
+    return ramp_time * (torque - load_torque) * share < 2 * driven_inertia * driver_speed
 
 
 def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity) -> Quantity:
@@ -175,6 +176,181 @@ def load_start_time(torque: Quantity, load_torque: Quantity, ramp_time: Quantity
     1.11111
     """
     return load_torque * ramp_time / torque
+
+
+def excess_share(torque: Quantity, load_torque: Quantity) -> Quantity:
+    """Share of the clutch torque that the load leaves for acceleration, 1 - L/T.
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Share [-].
+
+    References
+    ----------
+    S1 (lecture), start-up.
+
+    Examples
+    --------
+    >>> excess_share(1080, 600)
+    0.444444
+    """
+    return 1 - load_torque / torque
+
+
+def kinetic_energy(driven_inertia: Quantity, driver_speed: Quantity) -> Quantity:
+    """Energy of the driven side after lock-up, E = J omega1**2/2.
+
+    Parameters
+    ----------
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        E [J].
+
+    References
+    ----------
+    S1 (lecture), start-up.
+
+    Examples
+    --------
+    >>> kinetic_energy(30, 26.6)
+    10613.4
+    """
+    return driven_inertia * driver_speed * driver_speed / 2
+
+
+def ramp_work(load_torque: Quantity, driver_speed: Quantity, ramp_time: Quantity) -> Quantity:
+    """Work that the load torque would take of the driver in half the ramp, L omega1 t_r/2.
+
+    Parameters
+    ----------
+    load_torque : scalar, array or symbol
+        L [N m].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Work [J].
+
+    References
+    ----------
+    S1 (lecture), start-up; a term of :func:`friction_work`.
+
+    Examples
+    --------
+    >>> ramp_work(600, 26.6, 2)
+    15960.0
+    """
+    return load_torque * driver_speed * ramp_time / 2
+
+
+def run_up_work(torque: Quantity, load_torque: Quantity, energy: Quantity) -> Quantity:
+    """Friction work of a step of torque, E T/(T-L), arranged as E (1 + L/(T-L)).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m], T > L.
+    energy : scalar, array or symbol
+        E [J].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Work [J].
+
+    References
+    ----------
+    S1 (lecture), start-up.
+
+    Examples
+    --------
+    By hand, 10613.4 1080/480:
+
+    >>> run_up_work(1080, 600, 10613.4)
+    23880.15
+    """
+    return energy * (1 + load_torque / (torque - load_torque))
+
+
+def ramp_relief(torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity) -> Quantity:
+    """Work that a load moved during the ramp takes over, L (T-L)**3 t_r**2/(24 J T**2).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Work [J].
+
+    References
+    ----------
+    S1 (lecture), start-up; a term of :func:`friction_work`.
+
+    Examples
+    --------
+    By hand, 600 480**3 2**2/(24 30 1080**2):
+
+    >>> ramp_relief(1080, 600, 30, 2)
+    316.049
+    """
+    excess = torque - load_torque
+    return load_torque * excess * excess_share(torque, load_torque) ** 2 * ramp_time**2 / (24 * driven_inertia)
+
+
+def catch_up_time(torque: Quantity, driven_inertia: Quantity, driver_speed: Quantity, ramp_time: Quantity) -> Quantity:
+    """Time from the start of a reactive load to lock-up inside the ramp, sqrt(2 J omega1 t_r/T).
+
+    Parameters
+    ----------
+    torque : scalar, array or symbol
+        T [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    driver_speed : scalar, array or symbol
+        omega1 [rad/s].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Time [s].
+
+    References
+    ----------
+    S1 (lecture), equation of motion.
+
+    Examples
+    --------
+    By hand, sqrt(2 5 26.6 2/1080):
+
+    >>> float(catch_up_time(1080, 5, 26.6, 2))
+    0.701850
+    """
+    return np.sqrt(2 * (driven_inertia * driver_speed) * ramp_time / torque)
 
 
 def slip_time(
@@ -232,7 +408,7 @@ def slip_time(
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     momentum = driven_inertia * driver_speed
     after = momentum / excess + ramp_time / 2 * (1 + load_torque / excess)
-    inside = _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+    inside = active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
     return np.where(after_ramp, after, inside)
 
 
@@ -274,14 +450,73 @@ def reactive_slip_time(
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time)
     momentum = driven_inertia * driver_speed
     after = momentum / (torque - load_torque) + ramp_time / 2 * (1 + load_torque / torque)
-    inside = load_torque * ramp_time / torque + np.sqrt(2 * momentum * ramp_time / torque)
+    inside = load_torque * ramp_time / torque + catch_up_time(torque, driven_inertia, driver_speed, ramp_time)
     return np.where(after_ramp, after, inside)
 
 
-def _active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quantity, ramp_time: Quantity) -> Quantity:
-    """Time of lock inside the ramp under an active load: T t**2/(2 t_r) - L t = J omega1."""
-    time_b = load_torque * ramp_time / torque
+def active_lock_in_ramp(torque: Quantity, load_torque: Quantity, momentum: Quantity, ramp_time: Quantity) -> Quantity:
+    """Time of lock-up inside the ramp under an active load, t_B + sqrt(t_B**2 + 2 J omega1 t_r/T).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    momentum : scalar, array or symbol
+        J omega1 [N m s].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Time [s].
+
+    References
+    ----------
+    Root of T t**2/(2 t_r) - L t = J omega1.
+
+    Examples
+    --------
+    By hand, 1080 3**2/4 - 600 3 = 630:
+
+    >>> float(active_lock_in_ramp(1080, 600, 630, 2))
+    3.0
+    """
+    time_b = load_start_time(torque, load_torque, ramp_time)
     return time_b + np.sqrt(time_b**2 + 2 * momentum * ramp_time / torque)
+
+
+def driven_back_work(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Work by which the motion of an active load during the ramp adds, L (4L-T) t_r**2/(24 J).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    ramp_time : scalar, array or symbol
+        t_r [s].
+
+    Returns
+    -------
+    scalar, array or symbol
+        Work [J], before the factor T/(T-L).
+
+    References
+    ----------
+    S1 (lecture), equations of motion; a term of :func:`friction_work`.
+
+    Examples
+    --------
+    By hand, 600 1320 2**2/(24 30):
+
+    >>> driven_back_work(1080, 600, 30, 2)
+    4400.0
+    """
+    return load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
 
 
 def friction_work(
@@ -338,11 +573,11 @@ def friction_work(
         return reactive_friction_work(torque, load_torque, driven_inertia, driver_speed, ramp_time)
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time, load_kind)
     momentum = driven_inertia * driver_speed
-    energy = momentum * driver_speed / 2
-    ramp_work = load_torque * driver_speed * ramp_time / 2
-    bend = load_torque * (4 * load_torque - torque) * ramp_time**2 / (24 * driven_inertia)
-    after = (1 + load_torque / (torque - load_torque)) * (energy + ramp_work + bend)
-    impulse = load_torque * _active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
+    energy = kinetic_energy(driven_inertia, driver_speed)
+    bend = driven_back_work(torque, load_torque, driven_inertia, ramp_time)
+    waiting = ramp_work(load_torque, driver_speed, ramp_time)
+    after = (1 + load_torque / (torque - load_torque)) * (energy + waiting + bend)
+    impulse = load_torque * active_lock_in_ramp(torque, load_torque, momentum, ramp_time)
     inside = (momentum + impulse) * (driver_speed / 2 + impulse / (6 * driven_inertia))
     return np.where(after_ramp, after, inside)
 
@@ -382,15 +617,13 @@ def reactive_friction_work(
     >>> float(reactive_friction_work(1080, 600, 30, 26.6, 2))
     39524.1
     """
-    excess = torque - load_torque
     after_ramp = locks_after_ramp(torque, load_torque, driven_inertia, driver_speed, ramp_time)
-    momentum = driven_inertia * driver_speed
-    energy = momentum * driver_speed / 2
-    ramp_work = load_torque * driver_speed * ramp_time / 2
-    bend = load_torque * excess * (1 - load_torque / torque) ** 2 * ramp_time**2 / (24 * driven_inertia)
-    after = energy * (1 + load_torque / excess) + ramp_work - bend
-    length = np.sqrt(2 * momentum * ramp_time / torque)
-    inside = energy + ramp_work * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
+    energy = kinetic_energy(driven_inertia, driver_speed)
+    waiting = ramp_work(load_torque, driver_speed, ramp_time)
+    relief = ramp_relief(torque, load_torque, driven_inertia, ramp_time)
+    after = run_up_work(torque, load_torque, energy) + waiting - relief
+    length = catch_up_time(torque, driven_inertia, driver_speed, ramp_time)
+    inside = energy + waiting * load_torque / torque + 2 / 3 * load_torque * driver_speed * length
     return np.where(after_ramp, after, inside)
 
 
@@ -526,6 +759,41 @@ def reactive_peak_slip_power(
     return _peak_slip_power(torque, load_torque, driven_inertia, driver_speed, ramp_time)
 
 
+def peak_power_root(
+    torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, slip_speed: Quantity, ramp_time: Quantity
+) -> Quantity:
+    """Root of the greatest friction power inside the ramp, L + sqrt(L**2 + 6 T J omega/t_r).
+
+    Parameters
+    ----------
+    torque, load_torque : scalar, array or symbol
+        T, L [N m].
+    driven_inertia : scalar, array or symbol
+        J [kg m2].
+    slip_speed : scalar, array or symbol
+        omega [rad/s], when the clutch torque reaches the load torque.
+    ramp_time : scalar, array or symbol
+        t_r [s], above 0.
+
+    Returns
+    -------
+    scalar, array or symbol
+        Root [N m].
+
+    References
+    ----------
+    S1 (lecture), equations of motion; see :func:`peak_slip_power`.
+
+    Examples
+    --------
+    By hand, 3 + sqrt(9 + 6 2 4 1/3):
+
+    >>> float(peak_power_root(2, 3, 4, 1, 3))
+    8.0
+    """
+    return load_torque + np.sqrt(load_torque**2 + 6 * torque * driven_inertia * slip_speed / ramp_time)
+
+
 def _peak_slip_power(
     torque: Quantity, load_torque: Quantity, driven_inertia: Quantity, slip_speed: Quantity, ramp_time: Quantity
 ) -> Quantity:
@@ -534,7 +802,7 @@ def _peak_slip_power(
     interior = 2 * driven_inertia * slip_speed < ramp_time * excess * (3 - load_torque / torque)
     # With x* = 2 J omega/(L + root), which does not cancel when the load is large, (L + s x*)**2 x*/J is
     # 2 omega/9 (2 L + root)**2/(L + root); the division is carried out.
-    sum_with_root = load_torque + np.sqrt(load_torque**2 + 6 * torque * driven_inertia * slip_speed / ramp_time)
+    sum_with_root = peak_power_root(torque, load_torque, driven_inertia, slip_speed, ramp_time)
     power_inside = 2 / 9 * slip_speed * (sum_with_root + 2 * load_torque + load_torque**2 / sum_with_root)
     power_at_end = torque * slip_speed - excess**2 * ramp_time / (2 * driven_inertia)
     return np.where(interior, power_inside, power_at_end)

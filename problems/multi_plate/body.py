@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -26,6 +29,15 @@ from problems.practice import UNSOURCED, name_shaft_end, shaft_for
 from problems.sources import DRIVE
 from synth.declaration import Declaration
 
+PARTS = {  # symbol and meaning of the masses around a pack
+    "end_plate_mass": ("m_end", "What the end plates are thicker than the cores"),
+    "drum_shell_mass": ("m_shell", "Shell of the drum"),
+    "hub_rim_mass": ("m_rim", "Rim of the hub, which carries the inner plates"),
+    "hub_web_mass": ("m_web", "Web of the hub"),
+    "boss_mass": ("m_boss", "Both bosses on the shaft"),
+    "drum_bottom_mass": ("m_bot", "Bottom of the drum"),
+    "piston_mass": ("m_pis", "Piston of the actuator"),
+}
 FILM_BREAKS = 8.0  # m/s: beyond this sliding speed an oil film takes in air, and its drag is overestimated
 INERTIA_COUNTS = 0.05  # of driven_inertia: what turns with the inner plates is told from here on
 
@@ -34,13 +46,15 @@ INERTIA_COUNTS = 0.05  # of driven_inertia: what turns with the inner plates is 
 class Body:
     """What is around a pack: its end plates that are thicker, way and piston of its actuator, and the whole size.
 
-    ``stroke`` is None where a magnet presses, ``piston_area`` also where something outside does.
+    ``stroke`` is None where a magnet presses, ``piston_area`` also where something outside does. ``parts`` are the
+    masses of what is around the pack, in order, the two bosses as one.
     """
 
     wants: PackBodyRequirements
     end_plates: int
     end_thickness: Any
     size: Size
+    parts: Mapping[str, Any]
     stroke: Any = None
     piston_area: Any = None
 
@@ -145,17 +159,19 @@ def complete_body(
     piston = force / wants.actuator_pressure
     actuator = 0.0 if wants.actuator == "external" else way + end
     length = along + end + actuator
-    mass = (
-        pack_size.mass
-        + _mass_around(duty, wants, pack_wants, pack, end=end, end_plates=2, along=along, drum_length=length)
-        + plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)  # bottom of the drum
-        + rho * piston * actuator
-    )
+    parts = _masses_around(duty, wants, pack_wants, pack, end=end, end_plates=2, along=along, drum_length=length)
+    bottom = plates.annulus_mass(rho, 1, end, b + shaft, b - shaft)
+    pressing = rho * piston * actuator
+    mass = pack_size.mass + _together(parts) + bottom + pressing
+    parts["drum_bottom_mass"] = bottom
+    if wants.actuator != "external":
+        parts["piston_mass"] = pressing
     return Body(
         wants=wants,
         end_plates=2,
         end_thickness=end,
         size=Size(mass=mass, diameter=plates.drum_diameter(b, wall), length=length),
+        parts=parts,
         stroke=way,
         piston_area=None if wants.actuator == "external" else piston,
     )
@@ -194,12 +210,12 @@ def body_at_magnet(
     """
     end = 2 * ring.outer_radius / wants.end_plate_ratio
     along = pack_size.length + (end - pack.inner_thickness)
-    around = _mass_around(duty, wants, pack_wants, pack, end=end, end_plates=1, along=along, drum_length=along)
-    size = Size(mass=pack_size.mass + around, diameter=pack_size.diameter, length=along)
-    return Body(wants=wants, end_plates=1, end_thickness=end, size=size)
+    parts = _masses_around(duty, wants, pack_wants, pack, end=end, end_plates=1, along=along, drum_length=along)
+    size = Size(mass=pack_size.mass + _together(parts), diameter=pack_size.diameter, length=along)
+    return Body(wants=wants, end_plates=1, end_thickness=end, size=size, parts=parts)
 
 
-def _mass_around(
+def _masses_around(
     duty: Duty,
     wants: PackBodyRequirements,
     pack_wants: PackRequirements,
@@ -209,18 +225,24 @@ def _mass_around(
     end_plates: int,
     along: Any,
     drum_length: Any,
-) -> Any:
-    """Return the mass of what every pack has around it [kg]: end plates over cores, drum shell, hub and bosses."""
+) -> dict[str, Any]:
+    """Return the masses of what every pack has around it [kg]: end plates over cores, drum shell, hub and bosses."""
     rho, wall, shaft = duty.steel_density, pack_wants.drum_wall, wants.shaft_diameter / 2
     a, b = pack.inner_spline_radius, pack.outer_spline_radius
     thicker = end - pack.inner_thickness
-    return (
-        plates.annulus_mass(rho, end_plates, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width)
-        + plates.annulus_mass(rho, 1, drum_length, 2 * b + wall, wall)  # shell of the drum
-        + plates.annulus_mass(rho, 1, along, 2 * a - wall, wall)  # rim of the hub
-        + plates.annulus_mass(rho, 1, end, a - wall + shaft, a - wall - shaft)  # its web
-        + 2 * wants.boss_mass(rho)
-    )
+    return {
+        "end_plate_mass": plates.annulus_mass(
+            rho, end_plates, thicker, pack.plates.inner_mean_diameter, pack.plates.inner_width
+        ),
+        "drum_shell_mass": plates.annulus_mass(rho, 1, drum_length, 2 * b + wall, wall),
+        "hub_rim_mass": plates.annulus_mass(rho, 1, along, 2 * a - wall, wall),
+        "hub_web_mass": plates.annulus_mass(rho, 1, end, a - wall + shaft, a - wall - shaft),
+        "boss_mass": 2 * wants.boss_mass(rho),
+    }
+
+
+def _together(parts: Mapping[str, Any]) -> Any:
+    return reduce(add, parts.values())
 
 
 def declare_body(
@@ -269,6 +291,9 @@ def declare_body(
     d.derive(
         "pack_length", "mm", pack_size.length, symbol="L_pk", text="Released pack without end stops", source="geometry"
     )
+    for name, mass in body.parts.items():
+        symbol, text = PARTS[name]
+        d.step(name, "kg", mass, symbol=symbol, text=text, source="geometry")
     if body.stroke is not None:
         d.derive(
             "stroke", "mm", body.stroke, symbol="s_st", text="Way of the actuator with worn linings", source="geometry"
@@ -283,6 +308,13 @@ def declare_body(
     )
     inner = ring_formulas.inner_plate_count(pack.surfaces) * pack.inner_thickness
     thicker = body.end_plates * (body.end_thickness - pack.inner_thickness)
+    for name, value, symbol, text in (
+        ("end_plate_thickness", body.end_thickness, "t_end", "An end plate, and the web of the hub"),
+        ("inner_stack", inner + thicker, "t_stack", "All inner plates on each other, end plates included"),
+        ("hub_length", pack_size.length + thicker, "L_hub", "Rim of the hub: the pack with its end plates"),
+        ("rim_radius", pack.inner_spline_radius - pack_wants.drum_wall, "r_rim", "Inside of the rim of the hub"),
+    ):
+        d.step(name, "mm", value, symbol=symbol, text=text, source="geometry")
     inertia = d.derive(
         "inner_inertia",
         "kg*m2",

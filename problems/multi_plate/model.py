@@ -211,7 +211,7 @@ class MultiPlateClutch(DesignProblem):
             cost.declare_cost(d, mass=mass, parts=plates, lining=(pair.part, area))
             return
         bought = plate_set.filled(cost.UNIT_COST, cost.NONE) > cost.NONE  # with their lining
-        listed = cost.Special(plate_set, amount=plates, mass=pack_size.mass, pieces=plates)
+        listed = cost.Special("plates", plate_set, amount=plates, mass=pack_size.mass, pieces=plates)
         cost.declare_cost(d, mass=mass, parts=plates, lining=(pair.part, np.where(bought, 0.0, area)), special=[listed])
 
     def _declare_objectives(self, d: Declaration, *, scope: practice.Scope) -> None:

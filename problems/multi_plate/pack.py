@@ -86,10 +86,13 @@ class PackTorque:
 
 @dataclass(frozen=True)
 class PackSize(Size):
-    """Mass, size and heat capacity of a pack."""
+    """Mass, size and heat capacity of a pack; the masses of all plates of a kind and of all linings."""
 
     heat_capacity: Any
     cooled_area: Any
+    inner_mass: Any
+    outer_mass: Any
+    lining_mass: Any
 
 
 def declare_lubrication(d: Declaration) -> str:
@@ -505,7 +508,12 @@ def declare_pack_torque(
             "guide_model series computes the loss for any number",
             source=f"{S1}, c_z",
         )
-    _declare_lugs(d, wants=wants, pack=pack, moment=moment_high, shares=[share(j, pair.mu_high) for j in (1, 2, 3)])
+    shares = [share(j, pair.mu_high) for j in (1, 2, 3)]
+    if pair.mu_high is not pair.mu_low:
+        _name_greatest(d, guides=sum(ratios(pair.mu_high)), moment=moment_high)
+    if series:
+        _name_shares(d, options=options, guides=inner + outer, shares=shares)
+    _declare_lugs(d, wants=wants, pack=pack, moment=moment_high, shares=shares)
     return PackTorque(
         low=moment_low * factor,
         high=moment_high * factor_high,
@@ -544,6 +552,48 @@ def _name_guides(d: Declaration, *, inner: Any, outer: Any, net_force: Any, mome
         text="Friction surfaces that are still worth while by (15)",
         source=f"{S0}, eq. (15)",
     )
+
+
+def _name_greatest(d: Declaration, *, guides: Any, moment: Any) -> None:
+    """Name what loads the lugs where the friction that is feared is another than the one that is counted on."""
+    d.step(
+        "greatest_guide_number",
+        "-",
+        guides,
+        symbol="S_max",
+        text="Friction in the guides, with mu_max",
+        source=f"{S0}, eq. (2)",
+    )
+    d.step(
+        "greatest_surface_moment",
+        "N*m",
+        moment,
+        symbol="M_0_max",
+        text="Torque mu F0 r of one surface without guide friction, with mu_max",
+        source=f"{S0}, M0",
+    )
+
+
+def _name_shares(d: Declaration, *, options: PackOptions, guides: Any, shares: Sequence[Any]) -> None:
+    """Name the shares of the actuation force that reach the first surfaces, with the sum S of the guides."""
+    if options.guide_series == "exponential_K":
+        d.step(
+            "damped_guide_number",
+            "-",
+            guide_friction.guarded_damping(guides),
+            symbol="K",
+            text="Constant of the continuous pack, S/(1 + S)",
+            source=f"{S0}, eq. (10)",
+        )
+    for surface, part in enumerate(shares, start=1):
+        d.step(
+            f"force_share_{surface}",
+            "-",
+            part,
+            symbol=f"f_{surface}",
+            text=f"Share of the actuation force that reaches surface {surface} (worst_case: with mu_max)",
+            source=f"{S0}, F_j = F0 (E(j) - E(j-1))",
+        )
 
 
 def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment: Any, shares: Sequence[Any]) -> None:
@@ -636,27 +686,33 @@ def pack_size(duty: Duty, wants: PackRequirements, ring: Ring, pair: Pair, pack:
     """Return mass, size and heat capacity of a pack."""
     z, plates = pack.surfaces, pack.plates
     lining = pair.part.lining_thickness if plates.lining_thickness is None else plates.lining_thickness
-    steel = plate_formulas.annulus_mass(
+    inner = plate_formulas.annulus_mass(
         duty.steel_density,
         ring_formulas.inner_plate_count(z),
         pack.inner_thickness,
         plates.inner_mean_diameter,
         plates.inner_width,
-    ) + plate_formulas.annulus_mass(
+    )
+    outer = plate_formulas.annulus_mass(
         duty.steel_density,
         ring_formulas.outer_plate_count(z),
         pack.outer_thickness,
         plates.outer_mean_diameter,
         plates.outer_width,
     )
+    steel = inner + outer
+    linings = plate_formulas.lining_mass(pair.part.density, lining, z * ring.area)
     diameter = plate_formulas.drum_diameter(pack.outer_spline_radius, wants.drum_wall)
     length = plate_formulas.pack_length(z, pack.inner_thickness, pack.outer_thickness, lining, pack.gap)
     return PackSize(
-        mass=steel + plate_formulas.lining_mass(pair.part.density, lining, z * ring.area),
+        mass=steel + linings,
         diameter=diameter,
         length=length,
         heat_capacity=steel * duty.steel_specific_heat,
         cooled_area=plate_formulas.cylinder_surface(diameter, length),
+        inner_mass=inner,
+        outer_mass=outer,
+        lining_mass=linings,
     )
 
 
@@ -664,6 +720,12 @@ def declare_pack_temperature(
     d: Declaration, *, duty: Duty, pair: Pair, start: Startup, size: PackSize, rules: bool = False
 ) -> None:
     """Declare the peak temperature of a pack and its limit; a remark on the mean one where it is no rule."""
+    for name, value, symbol, text in (
+        ("inner_plate_mass", size.inner_mass, "m_ip", "All inner plates"),
+        ("outer_plate_mass", size.outer_mass, "m_op", "Cores of all outer plates"),
+        ("lining_mass", size.lining_mass, "m_lin", "All linings"),
+    ):
+        d.step(name, "kg", value, symbol=symbol, text=text, source="geometry")
     declare_heated_body(d, heat_capacity=size.heat_capacity, cooled_area=size.cooled_area, body="The steel plates")
     rise = d.derive(
         "peak_temperature_rise",

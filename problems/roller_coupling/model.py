@@ -774,12 +774,13 @@ class RollerCoupling(DesignProblem):
         parts = 2 + 4 + floats  # arms, rollers with their pins, float and counter float
         special = [
             cost.Special(
+                "floats",
                 unknowns.material,
                 amount=float_mass,
                 mass=float_mass,
                 factor=unknowns.material.filled("relative_cost_per_kg", 1.0),
             ),
-            cost.Special(unknowns.roller, amount=4, mass=roller_mass, pieces=4, piece_factor=cost.ROLLER),
+            cost.Special("rollers", unknowns.roller, amount=4, mass=roller_mass, pieces=4, piece_factor=cost.ROLLER),
         ]
         cost.declare_cost(d, mass=mass, parts=parts, special=special)
 

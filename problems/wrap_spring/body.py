@@ -112,7 +112,7 @@ def declare_cost(d: Declaration, *, wire: Wire, spring: Size, mass: Any, parts: 
         Parts: hubs, spring, and a collar.
     """
     coiled = cost.Special(
-        wire.row, amount=spring.spring_mass, mass=spring.spring_mass, pieces=1, factor=cost.SPRING_WIRE
+        "spring", wire.row, amount=spring.spring_mass, mass=spring.spring_mass, pieces=1, factor=cost.SPRING_WIRE
     )
     cost.declare_cost(d, mass=mass, parts=parts, special=[coiled])
 
