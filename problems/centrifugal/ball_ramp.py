@@ -66,6 +66,11 @@ class CentrifugalBallRamp(DesignProblem):
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)
         at_contact = springs.force(deflection + gap)
+        gain = centrifugal.axial_gain(balls.mass, end, balls.push)
+        text = "Force of the return springs at contact"
+        d.step("contact_force", "N", at_contact, symbol="F_R1", text=text, source=f"{S4}, F_R1")
+        text = "Axial force of the balls over the square of the speed"
+        d.step("axial_gain", "kg*m", gain, symbol="g_ax", text=text, source=f"{S4}, analysis 1")
         speed = centrifugal.speed_for_force(at_contact, balls.mass, end, balls.push)
         # The same force at the same radius: written with the contact speed, the two speeds bound each other.
         release = speed * balls.release_ratio
@@ -77,9 +82,10 @@ class CentrifugalBallRamp(DesignProblem):
             text="Speed at which required_torque with its reserve is reached, over the contact speed",
         )
         # The two clamp forces share their terms, so that a bound of one bounds the other.
-        gain = centrifugal.axial_gain(balls.mass, end, balls.push)
         at_full_speed = ball_ramp.clamp_force(gain, duty.full_torque_speed, speed)
         clamp = ball_ramp.faster_clamp_force(at_full_speed, gain, duty.full_torque_speed, duty.top_speed)
+        text = "Clamp force at full_torque_speed"
+        d.step("full_speed_force", "N", at_full_speed, symbol="F_full", text=text, source=f"{S4}, analysis 1")
         full = d.derive(
             "full_speed_torque",
             "N*m",

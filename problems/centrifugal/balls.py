@@ -182,6 +182,11 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
         source="geometry",
     )
     release_ratio = centrifugal.release_ratio(loss)
+    push = centrifugal.ramp_gain(ratio, friction)
+    text = "Share of the force that friction at the balls takes, mu_b (i + sqrt(1 + i**2))"
+    d.step("contact_loss", "-", loss, symbol="c_b", text=text, source=NOT_IN_S4)
+    text = "Axial over centrifugal force of balls that move out, i/(1 + c_b)"
+    d.step("ramp_gain", "-", push, symbol="k_out", text=text, source=NOT_IN_S4)
     d.advise(
         "hysteresis",
         release_ratio < HYSTERESIS_RATIO,
@@ -202,7 +207,7 @@ def declare_balls(d: Declaration, *, duty: Duty, rest_radius: Any) -> Balls:
         ratio=ratio,
         mass=mass,
         pressure_limit=pressure_limit,
-        push=centrifugal.ramp_gain(ratio, friction),
+        push=push,
         release_ratio=release_ratio,
     )
 
@@ -224,17 +229,19 @@ def declare_ball_pressure(d: Declaration, *, duty: Duty, balls: Balls, end_radiu
     ball = balls.part
     one = centrifugal.ball_set_mass(1, ball.density, ball.diameter)
     pull = centrifugal.centrifugal_force(one, end_radius, duty.top_speed)
+    normal = centrifugal.ramp_normal_force(pull, balls.ratio)
+    modulus = contact_modulus(ball.E, ball.nu, ball.E, ball.nu)
+    source = "K. L. Johnson, Contact Mechanics (1985), eq. (4.24)"
+    d.step("ball_mass", "kg", one, symbol="m_b", text="One ball", source="geometry")
+    d.step("ramp_force", "N", normal, symbol="Q_b", text="Force of a ball across its ramp at top_speed", source=source)
+    d.step("contact_modulus", "GPa", modulus, symbol="E_c", text="Modulus of the contact E*", source=source)
     pressure = d.derive(
         "hertz_pressure",
         "GPa",
-        centrifugal.ball_pressure(
-            centrifugal.ramp_normal_force(pull, balls.ratio),
-            ball.diameter,
-            contact_modulus(ball.E, ball.nu, ball.E, ball.nu),
-        ),
+        centrifugal.ball_pressure(normal, ball.diameter, modulus),
         symbol="p_h",
         text="Pressure of a ball on a flat ramp of the same steel, at top_speed",
-        source="K. L. Johnson, Contact Mechanics (1985), eq. (4.24)",
+        source=source,
     )
     d.at_most(
         "ball_hertz",

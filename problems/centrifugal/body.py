@@ -199,7 +199,24 @@ def declare_body(
         pair.density,
         pair.lining_thickness,
     )
-    whole = part_mass + discs + 2 * duty.boss_mass(rho)
+    bosses = 2 * duty.boss_mass(rho)
+    whole = part_mass + discs + bosses
+    for name, value, symbol, text in (
+        ("further_plate", centrifugal.FURTHER_PLATE, "t_fp", "Plate between two friction discs"),
+        ("further_core", centrifugal.FURTHER_CORE, "t_fc", "Core of a friction disc"),
+        (
+            "further_disc",
+            centrifugal.FURTHER_PLATE + centrifugal.FURTHER_CORE,
+            "t_fd",
+            "Core of a friction disc with the plate beside it",
+        ),
+        ("cover_thickness", centrifugal.COVER, "t_cover", "Cover over the flyweights"),
+    ):
+        d.constant(name, "mm", 1000 * value, symbol=symbol, text=text, source=UNSOURCED)
+    d.constant("least_work", "J", LEAST_WORK, symbol="Q_min", text="Heat that wear is computed with at least")
+    text = "Friction discs beyond the first, with a plate for each"
+    d.step("further_discs_mass", "kg", discs, symbol="m_fd", text=text, source="geometry")
+    d.step("boss_mass", "kg", bosses, symbol="m_boss", text="A boss on either shaft", source="geometry")
     d.derive("part_mass", "kg", part_mass, symbol="m_part", text=counted, source="geometry")
     d.derive(
         "mass",

@@ -177,6 +177,7 @@ class CentrifugalLever(LeverClutch):
             rods.ratio,
         )
         contact, stop, band = lever.speeds(formulas.clamp_flyweight_force(full, rods.spring_arm, arm), band_squared)
+        self._name_engagement(d, lever=lever, rods=rods, contact_angle=contact_angle, squared=band_squared)
         worn = full - springs.rate * lever.wear
         blocks.declare_contact(d, duty=duty, contact=contact, needs=GUARDS)
         blocks.declare_full_clamp(
@@ -203,6 +204,32 @@ class CentrifugalLever(LeverClutch):
             "radius below which it would jump",
             source=NOT_IN_S4,
         )
+
+    def _name_engagement(
+        self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, contact_angle: Any, squared: Any
+    ) -> None:
+        """Name what the speeds are made of: deflection at contact, growth of force and radius up to the stop."""
+        after = lever.stop_angle - contact_angle
+        deflection = lever.deflection + rods.lead * contact_angle
+        lever_blocks.name_contact(d, lever=lever, angle=contact_angle)
+        for name, unit, value, symbol, text in (
+            ("contact_deflection", "mm", deflection, "delta_c", "Deflection of the clamp springs at contact"),
+            (
+                "force_growth",
+                "-",
+                formulas.growth(deflection, rods.spring_arm, after),
+                "k_F",
+                "Force of the clamp springs at the stop over that at contact",
+            ),
+            (
+                "band_squared",
+                "-",
+                squared,
+                "k_band",
+                "Square of the stop speed over the contact speed, (F2/F1)/((r2/r1)(1 - l_r/l_s))",
+            ),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source=RECONSTRUCTED)
 
     def _declare_retraction(
         self, d: Declaration, *, lever: lever_blocks.Lever, rods: Rods, springs: blocks.SpringSet

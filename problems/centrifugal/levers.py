@@ -167,6 +167,29 @@ def limit_contact(d: Declaration, *, lever: Lever, plate_arm: Any, longest: floa
     )
 
 
+def name_contact(d: Declaration, *, lever: Lever, angle: Any) -> None:
+    """Name angle and radius at contact, and by how much the radius grows up to the stop.
+
+    Parameters
+    ----------
+    d : Declaration
+        Takes the declarations.
+    lever : Lever
+        Lever.
+    angle : symbol
+        Of the lever at contact [rad].
+    """
+    radius = lever.radius(angle)
+    growth = formulas.growth(radius, lever.weights.arm, lever.stop_angle - angle)
+    for name, unit, value, symbol, text in (
+        ("contact_angle", "rad", angle, "phi_c", "Angle of the lever at contact"),
+        ("remaining_angle", "rad", lever.stop_angle - angle, "phi_r", "Angle of the lever from contact to its stop"),
+        ("contact_radius", "mm", radius, "r_c", "Radius of the flyweights at contact"),
+        ("radius_growth", "-", growth, "k_radius", "Radius of the flyweights at the stop over that at contact"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=RECONSTRUCTED)
+
+
 def require_loaded_springs(d: Declaration, *, lever: Lever, squeeze: Any) -> None:
     """Declare the guard that the clamp springs are under load at the stop.
 

@@ -123,6 +123,12 @@ def declare_lining(d: Declaration, *, family: str, duty: Duty, rules: Rules | No
         source="practice",
     )
     lining = Lining(inner, outer, ratio, surfaces, pair)
+    for name, unit, value, symbol, text in (
+        ("lining_area", "cm2", lining.area, "A_l", "All linings"),
+        ("friction_radius", "mm", lining.friction_radius, "r_f", "Friction radius of the worn-in lining"),
+        ("engagement_energy", "J", duty.engagement_energy, "Q_e", "Heat of one engagement, J_load omega_full**2/2"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source="geometry" if unit != "J" else "energy balance")
     allowed = duty.engagement_heat_limit
     d.at_most(
         "engagement_heat",

@@ -172,6 +172,13 @@ class CentrifugalReversed(LeverClutch):
         )
         contact = lever.speed(formulas.clamp_flyweight_force(back, leg.arm, arm), contact_angle)
         stop = lever.speed(formulas.clamp_flyweight_force(push, leg.arm, arm), lever.stop_angle)
+        lever_blocks.name_contact(d, lever=lever, angle=contact_angle)
+        text = "Force of the clamp springs at the stop"
+        d.step("stop_spring_force", "N", push, symbol="F_2", text=text, source=RECONSTRUCTED)
+        text = "Force of the return springs at contact"
+        d.step("contact_force", "N", back, symbol="F_1", text=text, source=RECONSTRUCTED)
+        text = "Square of the stop speed over the contact speed, (F_2/F_1)/k_radius"
+        d.step("band_squared", "-", band_squared, symbol="k_band", text=text, source=RECONSTRUCTED)
         worn = push - back - (springs.rate + leg.springs.rate) * lever.wear
         blocks.declare_contact(d, duty=duty, contact=contact)
         blocks.declare_full_clamp(

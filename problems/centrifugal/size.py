@@ -67,6 +67,10 @@ def declare_size(
     spring_mass: Any = sum(spring_set.mass for spring_set in springs)
     plates = centrifugal.plates_mass(duty.steel_density, diameter, duty.hub_radius, duty.equivalent_plate_thickness)
     mass = plates + flyweights.mass + spring_mass
+    end_text = "Radius of the flyweights at the end of their way"
+    d.step("end_radius", "mm", flyweights.end_radius, symbol="r_end", text=end_text, source="geometry")
+    d.step("plates_mass", "kg", plates, symbol="m_d", text="All plates as one steel ring", source="geometry")
+    d.step("spring_mass", "kg", spring_mass, symbol="m_s", text="All springs", source="geometry")
     counted = "Plates (as a steel ring of equivalent_plate_thickness), flyweights and springs"
     if isinstance(duty, WholeDuty):
         declare_body(

@@ -113,6 +113,7 @@ class CentrifugalTwoSpring(DesignProblem):
         end, at_contact = radius(way.stop_travel), radius(way.contact_travel)
         contact = centrifugal.speed_for_force(way.contact_force, drive.mass, at_contact, drive.push)
         stop = centrifugal.speed_for_force(way.stop_force, drive.mass, end, drive.push)
+        self._name_way(d, way=way, at_contact=at_contact, at_start=radius(way.start_travel))
         blocks.declare_contact(d, duty=duty, contact=contact, release=contact * drive.release_ratio, needs=drive.needs)
         band = centrifugal.speed_ratio(way.stop_force, end, way.contact_force, at_contact)
         blocks.declare_band(d, band=band, text="Speed at which the clamp force is complete, over the contact speed")
@@ -283,6 +284,34 @@ class CentrifugalTwoSpring(DesignProblem):
             return_deflection=return_deflection,
             clamp_deflection=clamp_deflection,
         )
+
+    def _name_way(self, d: Declaration, *, way: Way, at_contact: Any, at_start: Any) -> None:
+        """Name the forces, travels and radii at the borders of the regimes."""
+        for name, unit, value, symbol, text in (
+            ("return_preload", "N", way.return_preload, "F_10", "Force of the return springs at rest"),
+            ("clamp_preload", "N", way.clamp_preload, "F_20", "Force of the clamp springs at rest"),
+            ("contact_force", "N", way.contact_force, "F_a", "Force of the return springs at contact, F_10 + s_1 a"),
+            (
+                "stop_spring_force",
+                "N",
+                way.stop_force,
+                "F_b",
+                "Force of the clamp springs at the stop, F_20 + s_2 (b - a)",
+            ),
+            ("start_travel", "mm", way.start_travel, "x_s", "Travel of the tension disc until the plate moves"),
+            (
+                "disc_contact_travel",
+                "mm",
+                way.contact_travel,
+                "x_c",
+                "Travel of the tension disc at contact, a + (F_a - F_20)/s_2",
+            ),
+            ("return_rate", "N/mm", way.return_rate, "s_1", "Rate of the return springs"),
+            ("clamp_rate", "N/mm", way.clamp_rate, "s_2", "Rate of the clamp springs"),
+            ("start_radius", "mm", at_start, "r_s", "Radius of the flyweights when the plate begins to move"),
+            ("contact_radius", "mm", at_contact, "r_c", "Radius of the flyweights at contact"),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source=ANALYSIS)
 
     def _declare_balls(self, d: Declaration, *, duty: blocks.Duty, rest: Any) -> Drive:
         balls = ball_blocks.declare_balls(d, duty=duty, rest_radius=rest)
