@@ -204,7 +204,9 @@ class ActuatedWrapSpringClutch(DesignProblem):
             return blocks.fitted_moment(wire, coils, -fit, free)
 
         loose, tight = moment(widest), moment(narrowest)
-        effective = loose - blocks.centrifugal_moment(options, duty, wire, coils)
+        spinning = blocks.centrifugal_moment(options, duty, wire, coils)
+        effective = loose - spinning
+        self._name_fit(d, options=options, wire=wire, coils=coils, widest=widest, loose=loose, spinning=spinning)
         d.at_least(
             "grip",
             actuator,
@@ -289,6 +291,37 @@ class ActuatedWrapSpringClutch(DesignProblem):
         if design is None:
             return {"over_belt_exponent": curves.actuator_over_belt_exponent(spec)}
         return curves.clearance_curves(curves.fitted(self, spec, design), spec, design.values)
+
+    def _name_fit(
+        self,
+        d: Declaration,
+        *,
+        options: blocks.Options,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        widest: Any,
+        loose: Any,
+        spinning: Any,
+    ) -> None:
+        """Name what the moment of the widest clearance is made of."""
+        named = [
+            ("greatest_clearance", "mm", widest, "c_hi", "Clearance at its widest, c + tol"),
+            (
+                "closing_moment",
+                "N*m",
+                -loose,
+                "M_close",
+                "Bending moment that closes the widest clearance, E I_w kappa",
+            ),
+        ]
+        if options.model != "seed":
+            free = formulas.free_radius(-widest, coils.mean_radius, options.model)
+            named += [
+                ("greatest_free_radius", "mm", free, "r_free_hi", "Mean radius of the free spring, widest clearance"),
+                ("centrifugal_moment", "N*m", spinning, "M_cf", "What the spinning wire adds to that moment"),
+            ]
+        for name, unit, value, symbol, text in named:
+            d.step(name, unit, value, symbol=symbol, text=text, source=NOT_IN_S2)
 
     def _declare_tang(
         self, d: Declaration, *, rules: Rules, wire: blocks.Wire, coils: blocks.Coils, actuator: Any

@@ -517,6 +517,8 @@ def declare_friction(d: Declaration, *, family: str, duty: Duty, coils: Coils, l
         "at the highest friction the clutch is locked; the belt exponent counts up to 50 only",
         source=NOT_IN_S2,
     )
+    text = "Belt exponent of one hub at the least friction, mu_min 2 pi n r_h/r_m"
+    d.step("belt_exponent_low", "-", low, symbol="beta_lo", text=text, source=f"{S2}, mu alpha in eq. (18)")
     return Friction(part, low, high)
 
 
@@ -637,6 +639,13 @@ def declare_load(
         text="Wire and hub stand the pressure",
         source=f"{S2}, eq. (22), corrected",
     )
+    tension = formulas.wire_tension(moment + load, coils.mean_radius)
+    for name, unit, value, symbol, text in (
+        ("second_moment", "mm4", formulas.second_moment(wire.width, wire.thickness), "I_w", "Of the wire, b a**3/12"),
+        ("bending_stress", "N/mm2", bending_stress, "sigma_b", "Largest bending stress of the fitted wire"),
+        ("wire_tension", "N", tension, "N_w", "Tension of the loaded wire, (M_b + T_load)/r_m"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=f"{S2}, eq. (4) and (8)")
     return stress, pressure
 
 
@@ -685,6 +694,8 @@ def spring_size(d: Declaration, *, duty: Duty, wire: Wire, coils: Coils, fixed_c
     length = formulas.spring_length(total, wire.width, duty.coil_gap)
     spring = formulas.spring_mass(wire.density, wire.width, wire.thickness, coils.mean_radius, total)
     hubs = formulas.hub_mass(duty.hub_density, coils.hub_diameter, duty.bore_diameter, length)
+    d.step("spring_mass", "kg", spring, symbol="m_sp", text="Spring", source="geometry")
+    d.step("hub_mass", "kg", hubs, symbol="m_hub", text="Both hubs under the spring", source="geometry")
     return Size(
         mass=spring + hubs,
         length=length,

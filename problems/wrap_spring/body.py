@@ -87,6 +87,8 @@ def declare_parts(d: Declaration, *, duty: Duty, wants: BodyRequirements, spring
     d.derive("part_mass", "kg", spring.mass, symbol="m_part", text="Spring and both hubs under it", source="geometry")
     d.derive("spring_length", "mm", spring.length, symbol="L_sp", text="Length of the spring", source="geometry")
     name_shaft_end(d, duty.bore_diameter)
+    bosses = 2 * shaft_formulas.boss_mass(duty.hub_density, duty.bore_diameter, wants.hub_factor)
+    d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Both bosses beyond the spring", source="geometry")
     d.advise(
         "thin_shaft",
         duty.bore_diameter < THIN * wants.bore(duty),

@@ -235,6 +235,9 @@ class WrapSpringClutch(DesignProblem):
 
         self._declare_fit(d, duty=duty, wants=wants, coils=coils, interference=interference)
         low, high = self._fitted_moments(options, duty, wire, coils, interference)
+        self._name_fit(d, options=options, duty=duty, wire=wire, coils=coils, interference=interference)
+        text = "Bending moment of the loosest fit, E I_w kappa; M_b is E I_w (dr + tol)/(r_m r_free_lo) in the same way"
+        d.step("least_moment", "N*m", low, symbol="M_lo", text=text, source=f"{S2}, eq. (4)")
         effective = low - blocks.centrifugal_moment(options, duty, wire, coils)
         guards = self._declare_grip(d, options=options, duty=duty, wire=wire, coils=coils, low=low)
         blocks.declare_closing(
@@ -326,6 +329,43 @@ class WrapSpringClutch(DesignProblem):
         large = small if options.model == "seed" else small + 2 * tolerance
         low = blocks.fitted_moment(wire, coils, loosest, large)
         return low, formulas.tightened_moment(low, loosest, 2 * tolerance, large, small)
+
+    def _name_fit(
+        self,
+        d: Declaration,
+        *,
+        options: blocks.Options,
+        duty: blocks.Duty,
+        wire: blocks.Wire,
+        coils: blocks.Coils,
+        interference: Any,
+    ) -> None:
+        """Name what the moments of the loosest and the tightest fit are made of."""
+        tolerance, mean = duty.interference_tolerance, coils.mean_radius
+        small = formulas.free_radius(interference + tolerance, mean, options.model)
+        large = small if options.model == "seed" else small + 2 * tolerance
+        loosest = interference - tolerance
+        inside = coils.hub_diameter - 2 * interference
+        curvature = formulas.curvature_change(loosest, mean, large)
+        named = [
+            ("least_interference", "mm", loosest, "dr_lo", "Interference of the loosest fit, dr - tol"),
+            ("curvature_change", "1/m", curvature, "kappa", "Curvature change of the wire, 1/r_free - 1/r_m, loosest"),
+            ("free_inside_diameter", "mm", inside, "d_free", "Inside of the free spring"),
+        ]
+        if options.model != "seed":
+            named += [
+                ("least_free_radius", "mm", small, "r_free_lo", "Mean radius of the free spring, tightest fit"),
+                ("greatest_free_radius", "mm", large, "r_free_hi", "Mean radius of the free spring, loosest fit"),
+                (
+                    "centrifugal_moment",
+                    "N*m",
+                    blocks.centrifugal_moment(options, duty, wire, coils),
+                    "M_cf",
+                    "What the spinning wire carries of its bending moment itself",
+                ),
+            ]
+        for name, unit, value, symbol, text in named:
+            d.step(name, unit, value, symbol=symbol, text=text, source=f"{S2}, Delta r; {NOT_IN_S2}")
 
     def _declare_fit(
         self, d: Declaration, *, duty: blocks.Duty, wants: Wants, coils: blocks.Coils, interference: Any
@@ -449,13 +489,18 @@ class WrapSpringClutch(DesignProblem):
             tension = formulas.wire_tension(high + torque, coils.mean_radius)
             return formulas.wire_stress(bending, tension, wire.width, wire.thickness)
 
+        least, largest = stress(0.0), stress(wants.service_factor * duty.required_torque)
+        text = "Stress of the wire without a torque"
+        d.step("least_stress", "N/mm2", least, symbol="sigma_lo", text=text, source=f"{S2}, eq. (8)")
+        text = "Stress of the wire under service_factor required_torque"
+        d.step("fatigue_stress", "N/mm2", largest, symbol="sigma_hi", text=text, source=f"{S2}, eq. (8)")
         used = d.derive(
             "fatigue_utilisation",
             "-",
             formulas.goodman_utilisation(
                 wants.fatigue_safety,
-                stress(0.0),
-                stress(wants.service_factor * duty.required_torque),
+                least,
+                largest,
                 wire.endurance_amplitude,
                 wire.tensile_strength,
             ),
@@ -621,14 +666,20 @@ class WrapSpringClutch(DesignProblem):
         friction: blocks.Friction,
         low: Any,
     ) -> None:
-        angle = formulas.windup_angle(
-            duty.required_torque,
-            low,
-            friction.part.mu_min * coils.radius_ratio,
-            coils.mean_radius,
-            wire.modulus * wire.thickness * wire.width,
-            duty.gap_coils,
-        )
+        slope = friction.part.mu_min * coils.radius_ratio
+        stiffness = wire.modulus * wire.thickness * wire.width
+        angle = formulas.windup_angle(duty.required_torque, low, slope, coils.mean_radius, stiffness, duty.gap_coils)
+        for name, unit, value, symbol, text in (
+            ("excess_tension", "N", duty.required_torque / coils.mean_radius, "N_T", "Tension that carries the torque"),
+            (
+                "slip_arc",
+                "rad",
+                formulas.slip_arc(duty.required_torque, low, slope),
+                "alpha_s",
+                "Arc over which the loaded wire slips, ln(1 + T_req/M_lo)/mu' with mu' = mu_min r_h/r_m",
+            ),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source=NOT_IN_S2)
         d.derive(
             "windup_angle",
             "deg",
