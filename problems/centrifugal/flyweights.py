@@ -166,6 +166,8 @@ def advise_gravity(d: Declaration, *, rest_radius: Any, start_speed: Any) -> Non
     start_speed : symbol
         Speed at which they leave their rest [rad/s].
     """
+    gravity = centrifugal.STANDARD_GRAVITY
+    d.constant("gravity", "m/s2", gravity, symbol="g_n", text="Standard gravity", source="CGPM 1901")
     d.advise(
         "gravity_at_start",
         centrifugal.gravity_ratio(rest_radius, start_speed) < 10,

@@ -174,6 +174,9 @@ def advise_release_gap(d: Declaration, *, gap: Any, lining: Lining) -> None:
     lining : Lining
         Lining.
     """
+    text = "Clearance that a released friction surface wants"
+    least = 1000 * RELEASE_GAP_MIN
+    d.constant("surface_gap_least", "mm", least, symbol="gap_1", text=text, source="practice, 0.3 to 0.5 mm")
     d.advise(
         "drags_when_released",
         gap < RELEASE_GAP_MIN * lining.surfaces,

@@ -104,6 +104,15 @@ def declare_size(
             text="The clutch fits the room across",
             source=DRIVE,
         )
+    text = "Hoop stress of the rim above which its bursting is worth a calculation"
+    d.constant(
+        "rim_stress_max",
+        "N/mm2",
+        RIM_STRESS_MAX / 1e6,
+        symbol="sigma_rim",
+        text=text,
+        source="hoop stress of a thin ring",
+    )
     d.advise(
         "fast_rim",
         centrifugal.rim_stress(duty.steel_density, diameter / 2, duty.top_speed) > RIM_STRESS_MAX,

@@ -150,6 +150,15 @@ def advise_springs(
         "outwards and rub unless they sit in pockets or on guides",
         source=NOT_IN_S4,
     )
+    if "spring_amplitude" not in d.constants:  # one for all sets
+        d.constant(
+            "spring_amplitude",
+            "N/mm2",
+            ZIMMERLI_AMPLITUDE / 1e6,
+            symbol="tau_Z",
+            text="Amplitude of the shear stress that unpeened spring wire lasts at",
+            source="Zimmerli",
+        )
     amplitude = part.optional("tau_k_n_corrected") * part.rate_R * travel / (2 * part.max_force_Fn)
     d.advise(
         f"{part.slot}_tires",

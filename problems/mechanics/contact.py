@@ -149,13 +149,35 @@ def point_contact_half_length(
     """
     share = roller_radius / crown_radius
     reduced_radius = roller_radius / (1 + share)
-    flatness = _ellipticity(share) ** 2 * (1.0003 + 0.5968 * share)
+    flatness = ellipticity(share) ** 2 * (1.0003 + 0.5968 * share)
     return (3 / math.pi * flatness * normal_force * reduced_radius / contact_modulus) ** (1 / 3)
 
 
-def _ellipticity(share: Quantity) -> Quantity:
-    """Long over short axis of the contact ellipse, from R_x/R_y."""
-    return 1.0339 * share**-0.6360
+def ellipticity(radius_share: Quantity) -> Quantity:
+    """Long over short axis of the contact ellipse, k = 1.0339 (R_x/R_y)**-0.636.
+
+    Parameters
+    ----------
+    radius_share : scalar, array or symbol
+        Radius of the roller over that of its crown R_x/R_y [-], at most 1.
+
+    Returns
+    -------
+    scalar, array or symbol
+        k [-].
+
+    References
+    ----------
+    Hamrock and Brewe (1983), as point_contact_half_length.
+
+    Examples
+    --------
+    By hand, 1.0339 x 10**0.636:
+
+    >>> ellipticity(0.1)
+    4.4718
+    """
+    return 1.0339 * radius_share**-0.6360
 
 
 def point_contact_pressure(
@@ -190,8 +212,8 @@ def point_contact_pressure(
     993.7
     """
     half_length = point_contact_half_length(normal_force, contact_modulus, roller_radius, crown_radius)
-    ellipticity = _ellipticity(roller_radius / crown_radius)
-    return 3 * normal_force * ellipticity / (2 * math.pi * half_length**2)
+    ratio = ellipticity(roller_radius / crown_radius)
+    return 3 * normal_force * ratio / (2 * math.pi * half_length**2)
 
 
 def barrel_contact_pressure(

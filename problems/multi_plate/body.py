@@ -454,6 +454,8 @@ def declare_rules(
         text="Power of the drag of the released clutch",
         source="definition",
     )
+    text = "Sliding speed above which an oil film takes in air"
+    d.constant("film_speed", "m/s", FILM_BREAKS, symbol="v_film", text=text, source=UNSOURCED)
     d.advise(
         "film_breaks",
         pack_wants.released_speed(duty) * ring.mean_diameter / 2 > FILM_BREAKS,

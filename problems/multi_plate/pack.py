@@ -649,9 +649,17 @@ def _declare_lugs(d: Declaration, *, wants: PackRequirements, pack: Pack, moment
         text="The lugs of the inner plates do not bite into the hub",
         source=rule,
     )
+    hard = d.constant(
+        "lug_pressure_hard",
+        "N/mm2",
+        25,
+        symbol="p_hard",
+        text="Pressure of lugs above which the groove flanks must be hardened",
+        source=f"{S0}, thin plates need hard grooves",
+    )
     d.advise(
         "thin_plates",
-        np.logical_or(outer > 25e6, inner > 25e6),
+        np.logical_or(outer > hard, inner > hard),
         "thin plates load the spline flanks above 25 N/mm2: the groove flanks must be hardened",
         source=f"{S0}, thin plates need hard grooves",
     )

@@ -36,7 +36,8 @@ def pin_force(spec: Mapping[str, Any], design: Any) -> pd.DataFrame:
     )
     marks = [{"x": 1000 * chosen, "label": "design"}]
     if speed > 0:
-        best = design.steps["least_force_radius"]
+        # Newton's steps to a root, which no calculation tells: it is asked for here alone.
+        best = float(formulas.optimum_arm_radius_with_float(torque, roller_mass, speed, centrifugal))
         if radius[0] <= best <= radius[-1]:
             marks.append({"x": 1000 * best, "label": "least pin force"})
     frame.attrs = {

@@ -618,6 +618,16 @@ class RollerCoupling(DesignProblem):
             source=f"{S3}, chapter XII",
         )
         section = formulas.float_section(unknowns.guide_half_length, diameter, unknowns.rim, wants.guide_angle)
+        d.step(
+            "float_section",
+            "cm2",
+            section,
+            symbol="A_f",
+            text="Float without its guides, pi R_f**2 - (4 K D - D**2/sin(chi)); D: of the roller; a completed square",
+            source="geometry",
+        )
+        ends = formulas.float_radius(unknowns.guide_half_length, diameter, 0.0)
+        d.step("guide_end_radius", "mm", ends, symbol="r_K", text="Corners of the guide ends", source="geometry")
         float_mass = d.derive(
             "float_mass",
             "kg",
@@ -650,15 +660,8 @@ class RollerCoupling(DesignProblem):
             text="Mass of a roller with its pin",
             source="geometry",
         )
-        d.step(
-            "least_force_radius",
-            "mm",
-            formulas.optimum_arm_radius_with_float(wants.required_torque, roller_mass, wants.driver_speed, centrifugal),
-            symbol="r_best",
-            text="Arm radius of the least pin force with this float",
-            source=f"{S3}, eq. (15); {EXTENDS_S3}",
-        )
         normal = tangential + centrifugal
+        d.step("normal_force", "N", normal, symbol="F_n", text="Greatest force of a roller on its guide", source=S3)
         pin = d.derive(
             "pin_force",
             "N",
@@ -670,6 +673,8 @@ class RollerCoupling(DesignProblem):
             source=f"{S3}, E",
         )
         counter = unknowns.balance.select({"no": 0.0, "yes": 1.0})
+        text = "Counter floats: one with balance"
+        d.step("counter_floats", "-", counter, symbol="n_c", text=text, source=f"{S3}, XIV.1")
         d.derive(
             "steady_force",
             "N",
@@ -712,6 +717,9 @@ class RollerCoupling(DesignProblem):
             source="geometry, 2 (R_f + e_eff/sin(chi))",
         )
         arms = formulas.arms_mass(wants.steel_density, radius, roller.bore)
+        d.step("float_radius", "mm", float_radius, symbol="R_f", text="Outside of the float", source="geometry")
+        text = "Both arms, bars of 2 r + 2 d by 2 d by 1.2 d over a bore d"
+        d.step("arms_mass", "kg", arms, symbol="m_arm", text=text, source="geometry")
         part_mass = float_mass * (1 + counter) + 4 * roller_mass + arms
         bosses = 0.0
         if body_wants is not None:
@@ -727,6 +735,7 @@ class RollerCoupling(DesignProblem):
                 source="geometry",
             )
             bosses = 2 * body_wants.boss_mass(wants.steel_density)
+            d.step("boss_mass", "kg", bosses, symbol="m_boss", text="Bosses of both arms", source="geometry")
             self._declare_cost(
                 d,
                 unknowns=unknowns,
@@ -837,6 +846,13 @@ class RollerCoupling(DesignProblem):
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
         pressure, source = None, ""
         if contact != "crowned":
+        text = "Inverse of the modulus of the contact E*, (1 - nu1**2)/E1 + (1 - nu2**2)/E2"
+        d.step("contact_compliance", "mm2/N", 1 / modulus, symbol="s_c", text=text, source="Johnson, Contact Mechanics")
+        if contact == "crowned":
+            self._name_ellipse(d, wants=wants, loads=loads, modulus=modulus, radius=radius)
+            pressure = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
+            source = "Hamrock and Brewe (1983)"
+        else:
             pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
             source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
         if contact != "line":
@@ -894,6 +910,10 @@ class RollerCoupling(DesignProblem):
             text="The pins stand the shear",
             source=f"{S3}, eq. (16)",
         )
+        bending = formulas.pin_bending_stress(loads.pin, roller.width, wants.pin_gap, roller.bore)
+        shear = formulas.pin_shear_stress(loads.pin, roller.bore)
+        d.step("pin_bending", "N/mm2", bending, symbol="sigma_b", text="Bending of a pin", source=EXTENDS_S3)
+        d.step("pin_shear_stress", "N/mm2", shear, symbol="tau_p", text="Shear of a pin", source=EXTENDS_S3)
         stress = d.derive(
             "pin_stress",
             "N/mm2",
@@ -932,8 +952,27 @@ class RollerCoupling(DesignProblem):
             source=EXTENDS_S3,
         )
 
+    def _name_ellipse(self, d: Declaration, *, wants: Wants, loads: Loads, modulus: Any, radius: Any) -> None:
+        """Name what the contact of a crowned roller is computed with."""
+        share = radius / wants.crown_radius
+        half = hertz.point_contact_half_length(loads.normal, modulus, radius, wants.crown_radius)
+        for name, unit, value, symbol, text in (
+            ("crown_share", "-", share, "rho_crown", "Radius of the roller over that of its crown"),
+            ("ellipticity", "-", hertz.ellipticity(share), "k_e", "Long over short axis of the contact ellipse"),
+            ("contact_half_length", "mm", half, "a_y", "Half length of the contact ellipse along the roller"),
+        ):
+            d.step(name, unit, value, symbol=symbol, text=text, source="Hamrock and Brewe (1983)")
+
     def _declare_remarks(self, d: Declaration, *, wants: Wants, unknowns: Unknowns, guide: str) -> None:
         offset, material = wants.effective_offset, unknowns.material
+        for name, unit, value, symbol, text in (
+            ("plastic_modulus", "GPa", PLASTIC_MODULUS / 1e9, "E_plastic", "Modulus below which a float is of plastic"),
+            ("plastic_pressure", "N/mm2", PLASTIC_PRESSURE / 1e6, "p_plastic", "Pressure above which plastics creep"),
+        ):
+            d.constant(name, unit, value, symbol=symbol, text=text, source=TYPICAL)
+        text = "Static limit of a line contact"
+        static = formulas.STATIC_CONTACT_LIMIT / 1e6
+        d.constant("static_contact_limit", "N/mm2", static, symbol="p_static", text=text, source="ISO 76")
         if guide != "roller":
             d.advise(f"{guide}_guide", True, GUIDES[guide], source=f"{S3}, chapter X")
         d.advise(

@@ -40,6 +40,7 @@ WEDGE = {"half_angle": "-", "mu": "-"}
 COOLING = {"heat_transfer": "W/(m2 K)", "cooled_area": "m2"}
 
 
+DRIVEN = {"torque": "N m", "load_torque": "N m", "driven_inertia": "kg m2", "ramp_time": "s"}
 CASES = [
     (ring.mean_diameter, {"outer_diameter": "m", "inner_diameter": "m"}, "m"),
     (ring.ring_ratio, {"outer_diameter": "m", "inner_diameter": "m"}, "-"),
@@ -77,6 +78,7 @@ CASES = [
     ),
     (guide_friction.guide_number, {"mu": "-", "mu_guide": "-", **SPLINES}, "-"),
     (guide_friction.damped_guide_number, {"guide_number": "-"}, "-"),
+    (guide_friction.guarded_damping, {"guide_number": "-"}, "-"),
     (positional(guide_friction.sum_geometric), {"surfaces": "-", "guide_number": "-"}, "-"),
     (positional(guide_friction.sum_lipka), {"surfaces": "-", "guide_number": "-"}, "-"),
     (guide_friction.sum_exponential_k, {"surfaces": "-", "guide_number": "-"}, "-"),
@@ -118,6 +120,23 @@ CASES = [
         "s",
     ),
     (startup.load_start_time, {"torque": "N m", "load_torque": "N m", "ramp_time": "s"}, "s"),
+    (startup.excess_share, {"torque": "N m", "load_torque": "N m"}, "-"),
+    (startup.kinetic_energy, {"driven_inertia": "kg m2", "driver_speed": "1/s"}, "J"),
+    (startup.ramp_work, {"load_torque": "N m", "driver_speed": "1/s", "ramp_time": "s"}, "J"),
+    (startup.run_up_work, {"torque": "N m", "load_torque": "N m", "energy": "J"}, "J"),
+    (startup.ramp_relief, DRIVEN, "J"),
+    (startup.driven_back_work, DRIVEN, "J"),
+    (
+        startup.catch_up_time,
+        {"torque": "N m", "driven_inertia": "kg m2", "driver_speed": "1/s", "ramp_time": "s"},
+        "s",
+    ),
+    (
+        startup.active_lock_in_ramp,
+        {"torque": "N m", "load_torque": "N m", "momentum": "kg m2/s", "ramp_time": "s"},
+        "s",
+    ),
+    (startup.peak_power_root, {**DRIVEN, "slip_speed": "1/s"}, "N m"),
     (
         startup.lowest_driven_speed,
         {"torque": "N m", "load_torque": "N m", "driven_inertia": "kg m2", "ramp_time": "s"},

@@ -73,6 +73,8 @@ CASES = [
     (rc.optimum_arm_radius_with_float, {**TURN, "pin_centrifugal_force": "N"}, "m"),
     (rc.rolling_efficiency, {"rolling_friction": "-", **ARM}, "-"),
     (rc.pin_shear_measure, {"torque": "N m", "arm_radius": "m", "bore": "m"}, "Pa"),
+    (rc.pin_bending_stress, {"pin_force": "N", "width": "m", "pin_gap": "m", "bore": "m"}, "Pa"),
+    (rc.pin_shear_stress, {"pin_force": "N", "bore": "m"}, "Pa"),
     (rc.pin_equivalent_stress, {"pin_force": "N", "width": "m", "pin_gap": "m", "bore": "m"}, "Pa"),
     (
         rc.pin_diameter_of_shaft,
@@ -86,6 +88,7 @@ CASES = [
     ),
     (hertz.line_contact_pressure, LINE, "Pa"),
     (hertz.line_contact_half_width, LINE, "m"),
+    (hertz.ellipticity, {"radius_share": "-"}, "-"),
     (hertz.point_contact_half_length, POINT, "m"),
     (hertz.point_contact_pressure, POINT, "Pa"),
     (
