@@ -71,29 +71,30 @@ class PotMagnet:
         return self.inner_pole_radius + self.coil_height
 
     @property
-    def _pole_section(self) -> Quantity:
+    def pole_section(self) -> Quantity:
+        """Area of one pole over pi, r_2**2 - r_1**2 [m2]."""
         return self.pole_width * (2 * self.bore + self.pole_width)
 
     @property
     def pole_area(self) -> Quantity:
         """Area of one pole A_p = pi (r_2**2 - r_1**2) [m2]."""
-        return np.pi * self._pole_section
+        return np.pi * self.pole_section
 
     @property
     def outer_radius(self) -> Quantity:
         """Outside r_4 of the outer pole of the same area [m]."""
-        return np.sqrt(self.coil_outer_radius**2 + self._pole_section)
+        return np.sqrt(self.coil_outer_radius**2 + self.pole_section)
 
     @property
     def disc_section(self) -> Quantity:
         """Section of yoke and of armature over pi, r_4**2 - r_1**2 as a sum, of which bounds are tight [m2]."""
         inside = self.pole_width + self.coil_height
-        return inside * (2 * self.bore + inside) + self._pole_section
+        return inside * (2 * self.bore + inside) + self.pole_section
 
     @property
     def outer_pole_width(self) -> Quantity:
         """Width r_4 - r_3 of the outer pole [m]."""
-        return self._pole_section / (self.coil_outer_radius + self.outer_radius)
+        return self.pole_section / (self.coil_outer_radius + self.outer_radius)
 
     @property
     def yoke_width(self) -> Quantity:

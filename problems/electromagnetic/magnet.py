@@ -335,7 +335,37 @@ def declare_magnet_coil(
             worn_pull=pot_magnet.pull_in_force(ampere_turns, worn, shape.pole_area),
         )
     copper = magnetics.copper_mass(shape.inner_pole_radius + unknowns.coil_height / 2, winding.copper_section)
-    return MagnetSize(mass=pot_magnet.magnet_mass(duty.steel_density, shape, copper), copper=copper)
+    _name_shape(d, shape=shape, circuit=circuit, flux_density=flux_density)
+    mass = pot_magnet.magnet_mass(duty.steel_density, shape, copper)
+    d.step("copper_mass", "kg", copper, symbol="m_cu", text="Copper of the coil", source="geometry")
+    d.step("magnet_mass", "kg", mass, symbol="m_mag", text="Pot, armature and coil", source="geometry")
+    return MagnetSize(mass=mass, copper=copper)
+
+
+def _name_shape(d: Declaration, *, shape: pot_magnet.PotMagnet, circuit: pot_magnet.Circuit, flux_density: Any) -> None:
+    """Name radii, poles and the field of the iron of the magnet."""
+    densest = circuit.densest(flux_density)
+    field = magnetics.froehlich_field(densest, circuit.iron_reluctance, circuit.iron_saturation)
+    for name, unit, value, symbol, text in (
+        ("inner_pole_radius", "mm", shape.inner_pole_radius, "r_2", "Outside of the inner pole, inside of the coil"),
+        ("coil_outer_radius", "mm", shape.coil_outer_radius, "r_3", "Outside of the coil"),
+        (
+            "magnet_radius",
+            "mm",
+            shape.outer_radius,
+            "r_4",
+            "Outside of the outer pole, whose area is that of the inner",
+        ),
+        ("outer_pole_width", "mm", shape.outer_pole_width, "w_o", "Radial width r_4 - r_3 of the outer pole"),
+        ("pole_section", "cm2", shape.pole_section, "q_p", "Area A_p of one pole over pi, r_2**2 - r_b**2"),
+        ("pole_area", "cm2", shape.pole_area, "A_p", "Area of one pole; F_m is B**2 A_p/mu_0"),
+        ("disc_section", "cm2", shape.disc_section, "q_d", "Section of yoke and of armature over pi, r_4**2 - r_b**2"),
+        ("iron_path", "mm", shape.iron_path, "l_fe", "Mean length of the flux in iron"),
+        ("yoke_ratio", "-", pot_magnet.yoke_flux_ratio(shape), "k_y", "Flux density of the yoke over that of the pole"),
+        ("iron_flux_density", "T", densest, "B_fe", "Flux density of the iron that has most"),
+        ("iron_field", "A/m", field, "H_fe", "Field of the iron after Froehlich"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4}, section 6.6")
 
 
 def _limit_magnet(

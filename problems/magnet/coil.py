@@ -299,6 +299,10 @@ def declare_winding(
     brushes = around.brush_drop * current
     heat = around.other_heat + brushes
     _name_heat(d, wants=wants, unknowns=unknowns, turns=turns, bore_radius=bore_radius, around=around)
+    if not isinstance(around.brush_drop, float):
+        d.step("brush_loss", "W", brushes, symbol="P_br", text="Loss of both brushes", source=f"{S4} [P8]")
+        text = "What heats the body beside its copper"
+        d.step("body_heat", "W", heat, symbol="Q_body", text=text, source=f"{S4} [P7]")
     d.at_most(
         "thermal_stability",
         cold / runaway,
@@ -309,6 +313,17 @@ def declare_winding(
         source=f"{S4} [P7]",
     )
     resistance_rise = magnetics.resistance_rise(cold, runaway, ratio, heat)
+    section = copper_share * window
+    for name, unit, value, symbol, text in (
+        ("copper_share", "-", copper_share, "k_cu", "Copper over the area of the window, k_wind a_w/d_o**2"),
+        ("copper_section", "mm2", section, "A_cu", "Copper of all turns"),
+        ("cold_copper_loss", "W", cold, "P_20", "Copper loss at 20 degC, rho_e 2 pi r_c NI**2/(k_cu h_c l_m)"),
+        ("runaway_loss", "W", runaway, "P_run", "Copper loss at 20 degC at which the coil heats up without end"),
+        ("ambient_ratio", "-", ratio, "k_amb", "Resistance at ambient temperature over that at 20 degC"),
+        ("resistance_rise", "-", resistance_rise, "k_rise", "Rise of the resistance by heating, over that at 20 degC"),
+        ("hot_ratio", "-", ratio + resistance_rise, "k_hot", "Resistance of the hot coil over that at 20 degC"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4} [P6], [P7]")
     rise = d.derive(
         "coil_temperature_rise",
         "K",
@@ -391,7 +406,7 @@ def declare_winding(
     unit_loss = magnetics.cold_copper_loss(
         1.0, bore_radius, unknowns.coil_height, unknowns.coil_length, copper_share
     ) * (ratio + resistance_rise)
-    return Winding(copper_section=copper_share * window, unit_loss=unit_loss)
+    return Winding(copper_section=section, unit_loss=unit_loss)
 
 
 def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, linkage: Any) -> Any:
@@ -413,6 +428,10 @@ def declare_rise_time(d: Declaration, *, rules: CoilRules, winding: Winding, lin
     symbol
         Rise time [s].
     """
+    text = "Loss of the hot copper over the square of the ampere-turns"
+    d.step("unit_loss", "W/A2", winding.unit_loss, symbol="p_NI", text=text, source=f"{S4} [P7]")
+    text = "Flux of the coil over its ampere-turns"
+    d.step("linkage", "V*s/A", linkage, symbol="Phi_NI", text=text, source="L of the circuit over N**2; derived")
     rise = d.derive(
         "rise_time",
         "s",
@@ -476,7 +495,19 @@ def _name_heat(
     bore_radius: Any,
     around: Surroundings,
 ) -> None:
-    """Name what heats and cools the body of the coil, for curves over current and temperature."""
+    """Name what heats and cools the body of the coil, and constants; curves over current and temperature read them."""
+    for name, unit, number, symbol, text, source in (
+        ("magnetic_constant", "T*m/A", magnetics.MU_0, "mu_0", "Magnetic constant", "4 pi 1e-7"),
+        ("copper_resistivity", "ohm*m", magnetics.COPPER_RESISTIVITY, "rho_e", "Copper at 20 degC", f"{S4} [P6]"),
+        ("copper_coefficient", "1/K", magnetics.COPPER_COEFFICIENT, "alpha_cu", "Of its resistance", f"{S4} [P6]"),
+        ("copper_density", "kg/m3", magnetics.COPPER_DENSITY, "rho_cu", "Density of copper", "material constant"),
+    ):
+        d.constant(name, unit, number, symbol=symbol, text=text, source=source)
+    text = "Temperature of the figures for copper"
+    cold = magnetics.COPPER_REFERENCE - 273.15
+    d.constant("copper_reference", "degC", cold, symbol="T_20", text=text, source=f"{S4} [P6]")
+    text = "Outside that gives off the heat of the body"
+    d.step("coil_surface", "cm2", around.surface, symbol="S_c", text=text, source=f"{S4} [P7]")
     d.step(
         "coil_conductance",
         "W/K",
@@ -518,6 +549,7 @@ def _name_heat(
         source=f"{S4}, section 6.1",
     )
     mean_radius = bore_radius + unknowns.coil_height / 2
+    d.step("coil_radius", "mm", mean_radius, symbol="r_c", text="Mean radius of the coil", source="geometry")
     d.step(
         "coil_resistance",
         "ohm",

@@ -539,6 +539,38 @@ class Layout:
         return 1 / (1 + (self.gap + self.drum + self.air_gap / 2) / self.gap_radius)
 
 
+def gap_ampere_turns(relative_permeability: Quantity, layout: Layout) -> tuple[Quantity, Quantity]:
+    """Ampere-turns per tesla in the powder of twice the powder and of twice the air gap, 2 g/(mu0 mu_r), 2 g_a k_a/mu0.
+
+    Parameters
+    ----------
+    relative_permeability : scalar, array or symbol
+        mu_r [-] of the powder.
+    layout : Layout
+        Dimensions.
+
+    Returns
+    -------
+    tuple
+        Both [A/T].
+
+    References
+    ----------
+    S4 [P4].
+
+    Examples
+    --------
+    By hand, 2 x 1.25 mm/(mu0 4.26):
+
+    >>> layout = Layout(0.05, 0.02, 1.25e-3, 0.03, 0.02, 0.01, drum=0.0, air_gap=0.0)
+    >>> float(gap_ampere_turns(4.26, layout)[0])
+    467.0
+    """
+    powder = 2 * layout.gap * gap_field(1.0, relative_permeability)
+    air = 2 * layout.air_gap * layout.air_flux_share * gap_field(1.0)
+    return powder, air
+
+
 def ampere_turns(
     flux_density: Quantity, relative_permeability: Quantity, layout: Layout, iron_field: Quantity
 ) -> Quantity:
@@ -572,8 +604,7 @@ def ampere_turns(
     >>> round(float(ampere_turns(0.6, 4.26, thin, 0.0)) - 280.2)
     382
     """
-    powder = 2 * layout.gap * gap_field(1.0, relative_permeability)
-    air = 2 * layout.air_gap * layout.air_flux_share * gap_field(1.0)
+    powder, air = gap_ampere_turns(relative_permeability, layout)
     return flux_density * (powder + air) + iron_field * layout.iron_path
 
 

@@ -350,6 +350,7 @@ class MagneticPowderClutch(DesignProblem):
             iron_reluctance=iron.iron_reluctance,
             iron_saturation=iron.iron_saturation,
         )
+        _name_layout(d, layout=layout, rim=rim)
         ampere_turns = _declare_circuit(
             d, bore=bore, iron=iron, circuit=circuit, flux_density=unknowns.flux_density, layout=layout
         )
@@ -364,10 +365,15 @@ class MagneticPowderClutch(DesignProblem):
         moving = magnetics.heat_transfer_in_motion(
             iron.still_heat_transfer, wants.rotating_heat_transfer, wants.driver_speed, layout.outer_radius
         )
+        transfer = coil.select({"stationary": iron.still_heat_transfer, "rotating": moving})
+        text = "Surface coefficient of a turning body, h_still + h_rot (omega R_out)**0.8 with the speed in m/s"
+        d.step("moving_heat_transfer", "W/(m2*K)", moving, symbol="h_mov", text=text, source=f"{S4} [P7]")
+        text = "Surface coefficient of the body"
+        d.step("coil_heat_transfer", "W/(m2*K)", transfer, symbol="h_c_body", text=text, source=f"{S4} [P7]")
         around = coil_blocks.Surroundings(
             ambient_temperature=wants.ambient_temperature,
             temperature_limit=np.minimum(unknowns.winding_wire.insulation_temperature, part.temp_max),
-            heat_transfer=coil.select({"stationary": iron.still_heat_transfer, "rotating": moving}),
+            heat_transfer=transfer,
             surface=magnetics.cylinder_surface(layout.outer_radius, layout.length),
             other_heat=slip_heat,
             brush_drop=coil.select({"stationary": 0.0, "rotating": 2 * wants.brush_voltage}),
@@ -444,6 +450,8 @@ class MagneticPowderClutch(DesignProblem):
 
 def _declare_torque(d: Declaration, *, wants: Wants, part: Part, flux_density: Any, layout: powder.Layout) -> None:
     stress = powder.shear_stress(flux_density, part.tau_sat, part.half_flux_density)
+    text = "Shear stress of the powder, tau_sat/(1 + (B_h/B)**2)"
+    d.step("shear_stress", "N/mm2", stress, symbol="tau_p", text=text, source=f"{S4} [P1]")
     torque = d.derive(
         "torque",
         "N*m",
@@ -506,13 +514,60 @@ def _declare_circuit(
         text="The shaft fits inside the rim of the rotor",
         source="geometry",
     )
+    area = powder.pole_area(layout.gap_radius, layout.pole_length)
+    turns, air = powder.gap_ampere_turns(circuit.permeability, layout)
+    field = magnetics.froehlich_field(found.densest, circuit.iron_reluctance, circuit.iron_saturation)
+    for name, unit, value, symbol, text in (
+        ("pole_area", "cm2", area, "A_p", "Area of one pole face"),
+        ("powder_excitation", "A/T", turns, "theta_p", "Ampere-turns of twice the powder over B, 2 g/(mu_0 mu_r)"),
+        ("air_excitation", "A/T", air, "theta_a", "Ampere-turns of twice the air gap over B, 2 g_a k_a/mu_0"),
+        ("yoke_flux", "T", found.yoke, "B_y", "Flux density of the yoke outside the coil, leak B A_p/(2 pi r t_y)"),
+        ("rotor_flux", "T", found.rotor, "B_r", "Flux density in the rim of the rotor"),
+        ("iron_flux_density", "T", found.densest, "B_fe", "Flux density of the iron that has most"),
+        ("iron_flux_ratio", "-", circuit.iron(1.0).densest, "k_fe", "Flux density of that iron over B"),
+        ("iron_field", "A/m", field, "H_fe", "Field of the iron after Froehlich"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=f"{S4} [P3], [P4]")
     return circuit.ampere_turns(flux_density, found.densest)
+
+
+def _name_layout(d: Declaration, *, layout: powder.Layout, rim: Any) -> None:
+    """Name lengths and radii; the rotor has no drum and one gap less."""
+    for name, unit, value, symbol, text in (
+        ("built_drum", "mm", layout.drum, "t_d", "Drum of a stationary coil, 0 of a rotating one"),
+        ("built_air_gap", "mm", layout.air_gap, "g_a", "Air gap of a stationary coil, 0 of a rotating one"),
+        ("drum_radius", "mm", layout.drum_radius, "r_d", "Outside of the drum"),
+        ("body_bore", "mm", layout.bore, "r_b", "Bore of the body around the coil"),
+        ("outer_radius", "mm", layout.outer_radius, "R_out", "Outside of the yoke"),
+        ("face_length", "mm", layout.face_length, "l_f", "Length of rotor and powder gap, 2 l_p + l_m"),
+        ("rim_width", "mm", rim, "w_rim", "Section of the rim of the rotor over its circumference, t (1 - t/(2 r_g))"),
+        ("yoke_ratio", "-", layout.yoke_ratio, "k_y", "Mean radius of the yoke over that of the powder gap"),
+        ("air_flux_share", "-", layout.air_flux_share, "k_a", "Flux density in the air gap over that in the powder"),
+        ("iron_path", "mm", layout.iron_path, "l_fe", "Mean length of the flux in iron"),
+    ):
+        d.step(name, unit, value, symbol=symbol, text=text, source=f"geometry; {S4} [P4]")
 
 
 def _around(wants: Wants, bore: Bore, layout: powder.Layout) -> Any:
     """Return the mass of shields and shaft [kg]."""
     shields = powder.shields_mass(layout.outer_radius)
     return shields + powder.shaft_mass(wants.steel_density, bore.shaft_radius, layout.length)
+
+
+def _name_around(d: Declaration, *, scope: practice.Scope, wants: Wants, bore: Bore, layout: powder.Layout) -> None:
+    """Name shields and shaft, and the proportions that they go by."""
+    shields = powder.shields_mass(layout.outer_radius)
+    shaft = powder.shaft_mass(wants.steel_density, bore.shaft_radius, layout.length)
+    d.step("shields_mass", "kg", shields, symbol="m_sh", text="Both bearing shields", source=UNSOURCED)
+    d.step("shaft_mass", "kg", shaft, symbol="m_shaft", text="Shaft with its ends", source=UNSOURCED)
+    load = 2 * powder.SHIELD_DENSITY * powder.SHIELD_THICKNESS
+    text = "Both shields over their area: light metal of 8 mm each"
+    d.constant("shields_area_mass", "kg/m2", load, symbol="q_sh", text=text, source=UNSOURCED)
+    text = "What the shaft is longer than the body"
+    d.constant("shaft_ends", "mm", 1000 * powder.SHAFT_ENDS, symbol="l_ends", text=text, source=UNSOURCED)
+    if scope.complete:
+        both = 1000 * 2 * powder.SHIELD_THICKNESS
+        d.constant("shields_length", "mm", both, symbol="l_sh", text="Both shields along the shaft", source=UNSOURCED)
 
 
 def _declare_size(
@@ -551,6 +606,15 @@ def _declare_size(
     )
     copper = magnetics.copper_mass(layout.coil_radius, copper_section)
     rotor = powder.rotor_mass(density, layout.gap_radius, rim, layout.face_length, wants.rotor_web_thickness)
+    for name, value, symbol, text in (
+        ("rotor_mass", rotor, "m_rot", "Rotor, a rim with a web inside, without hub and shaft"),
+        ("drum_mass", drum, "m_drum", "Drum of a stationary coil"),
+        ("body_mass", body, "m_body", "Iron around the coil: a yoke tube, two pole rings with their flanges"),
+        ("copper_mass", copper, "m_cu", "Copper of the coil"),
+    ):
+        d.step(name, "kg", value, symbol=symbol, text=text, source=f"{S4} [P10]")
+    inertia = powder.ring_inertia(drum, layout.drum_radius, inner)
+    d.step("drum_inertia", "kg*m2", inertia, symbol="J_drum", text="Inertia of the drum", source=f"{S4} [P10]")
     d.derive(
         "input_inertia",
         "kg*m2",
@@ -574,6 +638,8 @@ def _declare_size(
         source="geometry",
     )
     parts = rotor + drum + body + copper + filling
+    if scope.rules or scope.complete:
+        _name_around(d, scope=scope, wants=wants, bore=bore, layout=layout)
     if scope.rules or scope.complete:
         d.derive(
             "part_mass",
@@ -703,6 +769,10 @@ def _declare_remarks(d: Declaration, *, wants: Wants, coil: Choice, part: Part, 
         "the powder gap is outside what is usual for this powder",
         source=f"{S4}, section 9",
     )
+    warning = SURFACE_WARNING - 273.15
+    text = "Surface temperature that one maker names as the limit of powder clutches"
+    d.constant("surface_warning", "degC", warning, symbol="T_warn", text=text, source=f"{S4} [P9]")
+    d.constant("gravity", "m/s2", GRAVITY, symbol="g_n", text="Standard gravity", source="CGPM 1901")
     d.advise(
         "hot_surface",
         rise + wants.ambient_temperature > SURFACE_WARNING,

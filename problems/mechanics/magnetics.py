@@ -59,6 +59,37 @@ def gap_field(flux_density: Quantity, relative_permeability: Quantity = 1.0) -> 
     return flux_density / (MU_0 * relative_permeability)
 
 
+def froehlich_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
+    """Magnetic field in iron after Froehlich, the formula of :func:`iron_field`, which a step names.
+
+    Parameters
+    ----------
+    flux_density : scalar, array or symbol
+        B [T], below B_s.
+    iron_reluctance : scalar, array or symbol
+        a_fe [A/(m T)].
+    iron_saturation : scalar, array or symbol
+        B_s [T].
+
+    Returns
+    -------
+    scalar, array or symbol
+        H [A/m].
+
+    References
+    ----------
+    Froehlich (1881).
+
+    Examples
+    --------
+    By hand, 160 x 1.5/0.25:
+
+    >>> froehlich_field(1.5, 160.0, 2.0)
+    960.0
+    """
+    return iron_reluctance * flux_density / (1 - flux_density / iron_saturation)
+
+
 @special((1.0, np.inf), (1.0, 1.0), (-np.inf, 0.0), curvature="log-convex", above=(2, 0))
 def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:
     """Magnetic field in iron after Froehlich, a_fe B/(1 - B/B_s).
@@ -88,7 +119,7 @@ def iron_field(flux_density: Quantity, iron_reluctance: Quantity, iron_saturatio
     >>> float(iron_field(1.5, 160.0, 2.0))
     960.0
     """
-    return iron_reluctance * flux_density / (1 - flux_density / iron_saturation)
+    return froehlich_field(flux_density, iron_reluctance, iron_saturation)
 
 
 def iron_reluctivity(flux_density: Quantity, iron_reluctance: Quantity, iron_saturation: Quantity) -> Quantity:

@@ -25,6 +25,7 @@ SAME = ("min", "max", "hypot", "abs", "fmod", "copysign", "floor", "ceil")  # fu
 DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 24, 32, 45, 64, 90, 180, 360)
 POWERS_OF_PI = (0, 1, -1, 2, -2, 3)
 LARGEST = 1000  # numerator: beyond it a fraction tells a reader no more than digits
+SIMPLE = 100  # numerator times denominator, of what somebody multiplies a constant by
 SHORT = 4  # digits of a number that somebody has written as it stands
 EXACT = 1e-14  # relative, of a product that was computed before the trace
 
@@ -77,12 +78,14 @@ def constant_in(number: float, constants: Iterable[NamedQuantity]) -> Fold | Non
             return Fold(1, 0, 1, c.name, 1)
     if size == 0 or not math.isfinite(size) or float(f"{size:.{SHORT}g}") == size or fraction_of(size):
         return None
+    folds = []
     for c, power in product(known, (1, -1)):
         assert c.value is not None
         found = fraction_of(size / abs(c.value) ** power)
-        if found:
-            return Fold(found.over, found.pi, found.under, c.name, power)
-    return None
+        if found and found.over * found.under <= SIMPLE:
+            folds.append(Fold(found.over, found.pi, found.under, c.name, power))
+    # A round constant is found in many a number: what is simplest was written.
+    return min(folds, key=lambda f: (f.over * f.under, abs(f.pi), f.power < 0), default=None)
 
 
 class _Open(Exception):

@@ -16,6 +16,7 @@ CONSTANTS = {
         NamedQuantity(name="mu0", kind="constant", symbol="mu_0", unit="T*m/A", value=MU_0),
         NamedQuantity(name="gravity", kind="constant", symbol="g_n", unit="m/s2", value=9.80665),
         NamedQuantity(name="step", kind="constant", symbol="s_1", unit="mm", value=0.008),
+        NamedQuantity(name="hard", kind="constant", symbol="p_1", unit="N/mm2", value=25e6),
     )
 }
 MASS = NamedQuantity(name="mass", kind="requirement", symbol="m", unit="kg")
@@ -29,6 +30,7 @@ ABSENT = NamedQuantity(name="slot.column", kind="part", symbol="c", unit="")
         (10 * 9.80665, Fold(10, 0, 1, "gravity", 1)),
         (math.pi * MU_0, Fold(1, 1, 1, "mu0", 1)),
         (1 / MU_0, Fold(1, 0, 1, "mu0", -1)),
+        (2 / MU_0, Fold(2, 0, 1, "mu0", -1)),  # also 9/45 of a round constant over pi
         (2 / (math.pi * MU_0), Fold(2, -1, 1, "mu0", -1)),
         (-0.008, Fold(1, 0, 1, "step", 1)),
         (0.016, None),  # short: somebody wrote it

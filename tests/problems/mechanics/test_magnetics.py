@@ -40,6 +40,11 @@ CASES = [
         "A/m",
     ),
     (
+        magnetics.froehlich_field,
+        {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
+        "A/m",
+    ),
+    (
         magnetics.iron_reluctivity,
         {"flux_density": "T", "iron_reluctance": "A/(m T)", "iron_saturation": "T"},
         "A/(m T)",
@@ -164,7 +169,7 @@ def test_floats_arrays_and_symbols_agree(function, units, result_unit):
 
 def test_no_formula_is_left_out():
     covered = {*NAMES, "coil_resistance", "yoke_flux_density", "rotor_flux_density", "ampere_turns"}
-    covered |= {"flux_density_at", "time_constant"}
+    covered |= {"flux_density_at", "time_constant", "gap_ampere_turns"}
     for module in (magnetics, powder):
         public = {
             name
