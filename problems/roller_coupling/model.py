@@ -844,18 +844,14 @@ class RollerCoupling(DesignProblem):
         roller, material = unknowns.roller, unknowns.material
         length, radius = unknowns.contact_length, roller.outer_diameter / 2
         modulus = hertz.contact_modulus(wants.roller_modulus, wants.roller_poisson, material.E, material.nu)
-        pressure, source = None, ""
-        if contact != "crowned":
         text = "Inverse of the modulus of the contact E*, (1 - nu1**2)/E1 + (1 - nu2**2)/E2"
         d.step("contact_compliance", "mm2/N", 1 / modulus, symbol="s_c", text=text, source="Johnson, Contact Mechanics")
-        if contact == "crowned":
-            self._name_ellipse(d, wants=wants, loads=loads, modulus=modulus, radius=radius)
-            pressure = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
-            source = "Hamrock and Brewe (1983)"
-        else:
+        pressure, source = None, ""
+        if contact != "crowned":
             pressure = hertz.line_contact_pressure(loads.normal, modulus, length, radius)
             source = f"{S3}, chapter XI; Johnson, Contact Mechanics"
         if contact != "line":
+            self._name_ellipse(d, wants=wants, loads=loads, modulus=modulus, radius=radius)
             point = hertz.point_contact_pressure(loads.normal, modulus, radius, wants.crown_radius)
             pressure = point if contact == "crowned" else np.where(roller.crowned, point, pressure)
             source = "; ".join(x for x in (source, "Hamrock and Brewe (1983)") if x)
