@@ -10,10 +10,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from reports.numbers import Shown, UnitIn, shown_number
+from reports.numbers import Shown, UnitIn, shown, shown_number
 from synth.results.calculation import NamedQuantity
+from synth.results.dimensions import EXACT, SAME, Fold, constant_in, dimension_of, fraction_of, unit_for
 from synth.results.expression import Expression, parts_of, with_parts
 
+NUMBER_DIGITS = 6  # of a number without a name
+MOST_OVER = 36  # numerator of a fraction that is shown as one
+SHORT_DECIMAL = 4  # digits of a number that is shown as a decimal though it is a fraction
 NEGLIGIBLE = 1e-9  # an added number that keeps formulas away from dividing by zero; left out for readers
 
 
@@ -187,7 +191,7 @@ class Typesetter:
 
     def __init__(self, quantities: Mapping[str, NamedQuantity], leaf: Leaf, numeric: bool) -> None:
         self.quantities, self.leaf, self.numeric = quantities, leaf, numeric
-        self.constants = [q for q in quantities.values() if q.kind == "constant"]
+        self.constants = {name: q for name, q in quantities.items() if q.kind == "constant"}
 
     def lay(self, tree: Expression, around: int = SUM) -> Layout:
         """Return the layout of a tree; ``around`` tells how strongly what stands around it holds together."""
@@ -220,26 +224,26 @@ class Typesetter:
                 return Fence(found)
         return found
 
-    def _number(self, number: float, around: int) -> Layout:
-        size: Layout = self._size(abs(number), around)
+    def _number(self, number: float, around: int, unit: str = "") -> Layout:
+        size: Layout = self._size(abs(number), around, unit)
         if number >= 0 or math.isnan(number):
             return size
         signed = Row((MINUS, size))
         return Fence(signed) if around > SUM else signed
 
-    def _size(self, number: float, around: int) -> Layout:
+    def _size(self, number: float, around: int, unit: str = "") -> Layout:
         square = round(number**2) if 1 < number < 10 else 0
         if square and abs(number**2 - square) <= EXACT * square and not number.is_integer():
             return Root(_whole(square))
-        named = named_constant(number, self.constants)
-        if named is None:
-            return Amount(shown_number(number, 6))
-        top: list[Layout] = [] if named.over == 1 and (named.pi > 0 or named.power > 0) else [_whole(named.over)]
-        bottom: list[Layout] = [] if named.under == 1 else [_whole(named.under)]
-        if named.pi:
-            (top if named.pi > 0 else bottom).append(_raised(Letter("pi"), abs(named.pi)))
-        if named.constant is not None:
-            (top if named.power > 0 else bottom).append(self.leaf(named.constant))
+        fold = constant_in(number, self.constants.values()) or _told_fraction(number)
+        if fold is None:
+            return Amount(_in_unit(number, unit))
+        top: list[Layout] = [] if fold.over == 1 and (fold.pi > 0 or fold.power > 0) else [_whole(fold.over)]
+        bottom: list[Layout] = [] if fold.under == 1 else [_whole(fold.under)]
+        if fold.pi:
+            (top if fold.pi > 0 else bottom).append(_raised(Letter("pi"), abs(fold.pi)))
+        if fold.constant:
+            (top if fold.power > 0 else bottom).append(self.leaf(self.constants[fold.constant]))
         over = self._beside(top or [_whole(1)])
         if not bottom:
             return over
@@ -254,13 +258,24 @@ class Typesetter:
             row += [TIMES if self.numeric or isinstance(item, Amount) else BESIDE, item] if row else [item]
         return Row(tuple(row))
 
+    def _common_unit(self, trees: Sequence[Expression]) -> str:
+        """Return the unit that bare numbers beside quantities are meant in; nothing where they are bare indeed."""
+        numbers = any(t[0] == "n" and t[1] != 0 for t in trees)
+        others = [t for t in trees if t[0] != "n"]
+        if not numbers or not others:
+            return ""
+        dimension = dimension_of(["+", others], self.quantities)
+        return "" if dimension is None or not any(dimension) else unit_for(dimension)
+
     def _sum(self, tree: Expression, around: int) -> Layout:
         row: list[Layout] = []
+        unit = self._common_unit(tree[1])
         for term in tree[1]:
             if term[0] == "neg":
                 row += [MINUS, self.lay(term[1], TERM)]
-            elif term[0] == "n" and term[1] < 0:
-                row += [MINUS, self.lay(["n", -term[1]], TERM)]
+            elif term[0] == "n":
+                sign = [MINUS] if term[1] < 0 else [PLUS] if row else []
+                row += [*sign, self._number(abs(term[1]), TERM, unit)]
             else:
                 row += [PLUS, self.lay(term, TERM)] if row else [self.lay(term, SUM)]
         found = Row(tuple(row))
@@ -294,8 +309,13 @@ class Typesetter:
             laid = Fence(laid)
         return Power(laid, self.lay(exponent))
 
+    def _alike(self, trees: Sequence[Expression]) -> list[Layout]:
+        """Return trees that are compared, bare numbers among them in the unit of the others."""
+        unit = self._common_unit(trees)
+        return [self._number(float(t[1]), SUM, unit) if t[0] == "n" else self.lay(t) for t in trees]
+
     def _function(self, name: str, arguments: Sequence[Expression]) -> Layout:
-        laid = tuple(self.lay(a) for a in arguments)
+        laid = tuple(self._alike(arguments) if name in SAME else map(self.lay, arguments))
         if name == "sqrt":
             return Root(laid[0])
         if name == "abs":
@@ -330,70 +350,30 @@ class Typesetter:
         return self.quantities[quantity[1]].word(number[1])
 
 
+def _told_fraction(number: float) -> Fold | None:
+    """Return a number as a fraction, or with a power of pi, where that tells more than its digits."""
+    fold = fraction_of(number) if math.isfinite(number) and number > 0 else None
+    if fold is None or (fold.pi == 0 and (fold.under == 1 or _is_short(number))) or fold.over > MOST_OVER:
+        return None
+    return fold
+
+
+def _is_short(number: float) -> bool:
+    """Tell whether a number is best written as a decimal."""
+    return len(f"{number:.15g}".replace(".", "").strip("0")) <= SHORT_DECIMAL
+
+
+def _in_unit(number: float, unit: str) -> Shown:
+    """Return a number that stands beside quantities with a unit, in that unit."""
+    return shown_number(number, NUMBER_DIGITS) if not unit else shown(number, unit, NUMBER_DIGITS)
+
+
 def _whole(number: int) -> Layout:
     return Amount(Shown(str(number)))
 
 
 def _raised(base: Layout, power: int) -> Layout:
     return base if power == 1 else Power(base, _whole(power))
-
-
-# ---- numbers that are known ------------------------------------------------------------------------------------------
-
-DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 18, 24, 32, 36, 45, 48, 64, 90, 180, 360)
-MOST_OVER = 36
-EXACT = 1e-14  # relative: as closely as a product of few factors is rounded
-
-
-@dataclass(frozen=True)
-class KnownNumber:
-    """A number that is over/under pi^pi constant^power."""
-
-    over: int
-    under: int
-    pi: int
-    constant: NamedQuantity | None = None
-    power: int = 0
-
-
-def named_constant(number: float, constants: Sequence[NamedQuantity]) -> KnownNumber | None:
-    """Return what a positive number is made of, if that is a fraction, a power of pi, or a declared constant.
-
-    Parameters
-    ----------
-    number : float
-        SI.
-    constants : list of NamedQuantity
-        Those that the family declares.
-    """
-    if not math.isfinite(number) or number <= 0:
-        return None
-    bare = _fraction(number, (0, 1, 2, 3, -1))
-    if bare is not None and not (bare.pi == 0 and bare.under == 1 and any(c.value == number for c in constants)):
-        short = bare.pi == 0 and _is_short(number)
-        return None if short else bare
-    for c in constants:
-        assert c.value is not None
-        for power in (1, -1):
-            found = _fraction(number / c.value**power, (0, 1, 2, -1))
-            if found is not None:
-                return KnownNumber(found.over, found.under, found.pi, c, power)
-    return None
-
-
-def _is_short(number: float) -> bool:
-    """Tell whether a number is best written as a decimal."""
-    return len(f"{number:.15g}".replace(".", "").strip("0")) <= 4
-
-
-def _fraction(number: float, powers: Sequence[int]) -> KnownNumber | None:
-    for pi in powers:
-        rest = number / math.pi**pi
-        for under in DENOMINATORS:
-            over = round(rest * under)
-            if 1 <= over <= MOST_OVER and abs(rest * under - over) <= EXACT * over and math.gcd(over, under) == 1:
-                return KnownNumber(over, under, pi)
-    return None
 
 
 # ---- leaves ----------------------------------------------------------------------------------------------------------

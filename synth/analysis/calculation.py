@@ -25,13 +25,12 @@ from synth.question.instance import Instance
 from synth.question.request import Request
 from synth.results import ParetoFront
 from synth.results.calculation import Calculation, LimitRule, NamedQuantity, RemarkRule, load_calculation
-from synth.results.dimensions import dimension_of
+from synth.results.dimensions import dimension_of, unit_for
 from synth.results.expression import Expression, names_in, simplified_product, simplified_sum
 from synth.robust.counterpart import nominal
 from synth.row_cells import CODE_OF, named_column
 from synth.special import expanded
 from synth.tables.catalogs import Catalogs
-from synth.units import parse_unit, si_text
 
 LONGEST = 26  # quantities and numbers in one formula: what fits a line of a page
 SHORTEST = 5  # in a part of a formula that is told alone
@@ -158,21 +157,13 @@ def _of_user(x: Constraint) -> LimitRule:
     )
 
 
-# Units in which parts of formulas are shown; torque and energy are one dimension, and so is one of them.
-SHOWN_IN = ("mm", "mm2", "mm3", "mm4", "N", "N*m", "N/mm2", "N/mm", "W", "W/K", "J/K", "kg*m2", "kg", "s", "K", "m/s")
-UNIT_OF: dict[tuple[int, ...], str] = {parse_unit(unit).dimension: unit for unit in SHOWN_IN}
-
-
 def _with_unit(q: NamedQuantity, known: Mapping[str, NamedQuantity]) -> NamedQuantity:
     """Return a part of a formula with a unit, as far as that follows from what it is made of."""
     assert q.expression is not None
     dimension = dimension_of(q.expression, known)
     if dimension is None or any(x.denominator > 1 for x in dimension):
         return replace(q, unit="")
-    if not any(dimension):
-        return q
-    whole = tuple(int(x) for x in dimension)
-    return replace(q, unit=UNIT_OF.get(whole, "") or si_text(whole))
+    return replace(q, unit=unit_for(dimension)) if any(dimension) else q
 
 
 # ---- inputs ---------------------------------------------------------------------------------------------------------

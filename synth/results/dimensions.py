@@ -10,7 +10,7 @@ from itertools import product
 from typing import TYPE_CHECKING, TypeAlias
 
 from synth.results.expression import Expression
-from synth.units import parse_unit
+from synth.units import parse_unit, si_text
 
 if TYPE_CHECKING:
     from synth.results.calculation import NamedQuantity
@@ -86,6 +86,19 @@ def constant_in(number: float, constants: Iterable[NamedQuantity]) -> Fold | Non
             folds.append(Fold(found.over, found.pi, found.under, c.name, power))
     # A round constant is found in many a number: what is simplest was written.
     return min(folds, key=lambda f: (f.over * f.under, abs(f.pi), f.power < 0), default=None)
+
+
+# Units in which numbers without a unit of their own are shown; torque and energy are one dimension and have one.
+SHOWN_IN = ("mm", "mm2", "mm3", "mm4", "N", "N*m", "N/mm2", "N/mm", "W", "W/K", "J/K", "kg*m2", "kg", "s", "K", "m/s")
+UNIT_OF: dict[tuple[int, ...], str] = {parse_unit(unit).dimension: unit for unit in SHOWN_IN}
+
+
+def unit_for(dimension: Dimension) -> str:
+    """Return a unit of a dimension, as people read it where there is one, otherwise in SI; nothing for odd powers."""
+    if any(x.denominator > 1 for x in dimension):
+        return ""
+    whole = tuple(int(x) for x in dimension)
+    return UNIT_OF.get(whole, "") or si_text(whole)
 
 
 class _Open(Exception):

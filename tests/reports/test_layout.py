@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from reports.formula.layout import Typesetter, by_symbol, named_constant, textbook
+from reports.formula.layout import Typesetter, by_symbol, textbook
 from reports.formula.lines import WIDEST, broken, width
 from reports.formula.mathml import mathml
 from reports.formula.plain import plain
@@ -71,23 +71,30 @@ def test_formulas_read_like_a_textbook(tree, line):
 
 
 @pytest.mark.parametrize(
-    ("number", "found"),
+    ("number", "line"),
     [
-        (math.pi / 4, (1, 4, 1)),
-        (2 / math.pi, (2, 1, -1)),
-        (math.pi**2, (1, 1, 2)),
-        (1 / 7, (1, 7, 0)),
-        (8 * math.pi / 180, (2, 45, 1)),
+        (math.pi / 4, "pi / 4"),
+        (2 / math.pi, "2 / pi"),
+        (math.pi**2, "pi ^ 2"),
+        (1 / 7, "1 / 7"),
+        (8 * math.pi / 180, "(2 * pi) / 45"),
+        (0.85, "0.85"),
+        (0.125, "0.125"),
+        (12.5, "12.5"),
+        (1e-7, "1e-7"),
+        (3.14159, "3.14159"),
     ],
 )
-def test_fractions_and_powers_of_pi_are_recognised(number, found):
-    known = named_constant(number, [])
-    assert (known.over, known.under, known.pi) == found
+def test_fractions_and_powers_of_pi_are_told_others_are_not(number, line):
+    assert text(["n", number]) == line
 
 
-@pytest.mark.parametrize("number", [0.85, 0.1, 12.5, 1e-7, 3.14159])
-def test_other_numbers_are_not(number):
-    assert named_constant(number, []) is None
+def test_numbers_beside_quantities_carry_their_unit():
+    known = {"l": NamedQuantity(name="l", kind="derived", symbol="l", unit="mm")}
+    setter = Typesetter(known, by_symbol, numeric=False)
+    assert plain(setter.lay(["f", "max", [["q", "l"], ["n", 0.003]]])) == "max(l; 3 mm)"
+    assert plain(setter.lay(["+", [["q", "l"], ["n", -0.5]]])) == "l - 500 mm"
+    assert plain(setter.lay(["<", ["q", "l"], ["n", 0.0]])) == "l < 0"
 
 
 def test_a_declared_constant_is_found_in_its_multiples():
