@@ -10,6 +10,7 @@ from synth.errors import InputError
 from synth.feasibility import Status
 from synth.files import yaml_text
 from synth.results.next_row import NextRow
+from synth.results.notebook import notebook_html
 from synth.results.ratings import DesignRating
 from synth.units import finite_from_si, format_quantity, header
 
@@ -120,6 +121,21 @@ class Design:
         spec["values"] = values
         spec["parts"] = {slot: str(row) for slot, row in self.parts.items()}
         return spec
+
+    def _repr_html_(self) -> str:
+        """Show the design in a notebook: whether it is feasible, its sizes, parts and results."""
+        frame = self.frame
+        violated = f"NOT FEASIBLE: {', '.join(self.violated)} violated"
+        state = violated if self.violated else "feasible: all limits that apply hold"
+        columns = design_columns(frame, self.choices, self.parts)
+        rows = [
+            [name, value]
+            for name, value in zip(columns, design_row(frame, self), strict=True)
+            if not name.startswith("utilisation: ")
+        ]
+        title = f"{frame.title}: design" + (f" #{self.rank}" if self.rank else "")
+        level = "bad" if self.violated else "good"
+        return notebook_html(title, [state, *self.advice], ["quantity", "value"], rows, level)
 
     def yaml(self) -> str:
         """Return the text of a DESIGN.yaml."""

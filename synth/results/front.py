@@ -13,8 +13,10 @@ from synth.output_folder import FRONT, save_result
 from synth.results.calculation import CALCULATION
 from synth.results.certificate import Certificate
 from synth.results.design import Design, Frame, design_columns, design_row
+from synth.results.drawings import report
 from synth.results.front_record import FRONT_FILE, FRONT_FORMAT, design_record, record_text
 from synth.results.least_infeasible import LeastInfeasible
+from synth.results.notebook import notebook_html
 from synth.results.plain import digest_of, finite, plain
 from synth.results.provenance import installed_versions
 from synth.results.rating_tables import COLUMNS, limits_table, rating_row
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from synth.results.verification import Verification
+
+
+LEADING = 6  # columns of the table before those that say what a design is
 
 
 @dataclass(frozen=True)
@@ -226,6 +231,25 @@ class ParetoFront:
             columns += COLUMNS
             rows = [[*row, *rating_row(d)] for row, d in zip(rows, self.designs, strict=True)]
         return columns, rows
+
+    def _repr_html_(self) -> str:
+        """Show the front in a notebook: how far it is proven, its drawing, and the ranked designs."""
+        draw = report("plot")
+        columns, rows = self.table()
+        shown = len(design_columns(self.frame, (), ())) - len(self.frame.limit_units)
+        derived = sum(kind == "derived" and n not in self.frame.objectives for n, kind in self.frame.kinds.items())
+        parts = len(self.designs[0].choices) + len(self.designs[0].parts) if self.designs else 0
+        keep = [0, 1, *range(LEADING, LEADING + shown - derived + parts)]
+        level = "bad" if not self.designs else "good" if self.certificate.kind == "global" else "open"
+        count = "1 design" if len(self.designs) == 1 else f"{len(self.designs)} designs"
+        return notebook_html(
+            f"{self.frame.title}: {count}",
+            [self.certificate.sentence(), self.interrupted and f"stopped: {self.interrupted}"],
+            [columns[k] for k in keep],
+            [[row[k] for k in keep] for row in rows],
+            level,
+            draw(self, (), False) if draw is not None else "",
+        )
 
     def _csv(self) -> str:
         return csv_text(*self.table())

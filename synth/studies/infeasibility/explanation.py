@@ -15,6 +15,7 @@ from synth.files import frame_csv
 from synth.output_folder import EXPLANATION, save_result
 from synth.question.spec_patch import patched
 from synth.results import Design
+from synth.results.notebook import notebook_html
 from synth.units import from_si, outward, parse_unit
 
 if TYPE_CHECKING:
@@ -162,6 +163,13 @@ class Explanation:
                 }
             )
         return pd.DataFrame(rows)
+
+    def _repr_html_(self) -> str:
+        """Show the explanation in a notebook: the conflict in words, and the ways out."""
+        rows = [[way.sentence, "yes" if way.proven else "no"] for way in self.ways]
+        columns = ["way out", "nothing less would do (proven)"]
+        level = "good" if self.feasible else "bad"
+        return notebook_html("Why nothing is feasible", [self.message, *self.not_settled], columns, rows, level)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.csv and explanation.json; return the files.

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from synth.files import csv_text
 from synth.output_folder import STUDY, claimed, loses_nothing, save_files, save_result
 from synth.results.drawings import report
+from synth.results.notebook import notebook_html
 from synth.studies.study_store import STEPS, StudyStore
 from synth.studies.whatif.study_answers import NOT_REACHED, StudyAnswers
 from synth.studies.whatif.study_curves import curves_of
@@ -57,6 +58,17 @@ class Study(StudyAnswers):
     def curves(self) -> dict[str, pd.DataFrame]:
         """Return what is drawn, by file name, as the hooks of families do: objectives over what is varied, fronts."""
         return curves_of(self)
+
+    def _repr_html_(self) -> str:
+        """Show the study in a notebook: its steps, and where other parts become best."""
+        columns, rows = steps_table(self)
+        heads, breaks = breaks_table(self)
+        told = [
+            f"{len(self.steps)} steps, {len(breaks)} break points",
+            self.interrupted and f"stopped: {self.interrupted}",
+        ]
+        steps = notebook_html("What-if study", told, columns, rows, "open" if self.interrupted else "")
+        return steps + (notebook_html("Break points", (), heads, breaks) if breaks else "")
 
     # -- files ---------------------------------------------------------------------------------
 
