@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from reports.about import About
+from reports.comparison_report import comparison_report
 from reports.front_report import FrontReportRequest, front_report
 from reports.sheet.blocks import Document
 from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
@@ -92,6 +93,35 @@ def report_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list
     return _Files(request).all()
 
 
+def comparison_files(asked: Mapping[str, Any]) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return the files of the report of several families, and what else is to be told.
+
+    Parameters
+    ----------
+    asked : mapping
+        ``content`` of comparison.json, ``fronts`` and ``links`` by family, ``formats``, ``about``, ``about_folder``,
+        ``fonts``.
+    """
+    about = About.of(asked.get("about"), asked.get("about_folder"))
+    document = comparison_report(asked["content"], asked["fronts"], asked["links"], about)
+    return documents({"report": document}, asked["formats"], asked["fonts"])
+
+
+def documents(
+    made: Mapping[str, Document], formats: Sequence[str], fonts: Sequence[Path]
+) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return documents as files of the formats asked for, by name without ending, and what else is to be told."""
+    files: dict[str, str | bytes] = {}
+    notes: list[str] = []
+    for name, document in made.items():
+        if "html" in formats:
+            files[f"{name}.html"] = html(document)
+        if "pdf" in formats:
+            files[f"{name}.pdf"], told = import_module("reports.sheet.pdf").pdf_with_notes(document, fonts)
+            notes += [note for note in told if note not in notes]
+    return files, notes
+
+
 class _Files:
     def __init__(self, request: ReportRequest) -> None:
         self.request = request
@@ -131,12 +161,9 @@ class _Files:
         return self.files, self.notes
 
     def _document(self, document: Document, name: str) -> None:
-        if "html" in self.request.formats:
-            self.files[f"{name}.html"] = html(document)
-        if "pdf" in self.request.formats:
-            content, notes = import_module("reports.sheet.pdf").pdf_with_notes(document, self.request.fonts)
-            self.files[f"{name}.pdf"] = content
-            self.notes += [note for note in notes if note not in self.notes]
+        files, notes = documents({name: document}, self.request.formats, self.request.fonts)
+        self.files |= files
+        self.notes += [note for note in notes if note not in self.notes]
 
     def _sheet(self, design: Design, name: str) -> None:
         request = self.request

@@ -17,6 +17,7 @@ from synth.plain_text import csv_cell
 from synth.question.instance import Instance
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.results.drawings import report as report_named
+from synth.results.loading import COMPARISON, load_front
 
 FORMATS = ("html", "pdf", "xlsx", "json")
 CURVES = ("*.svg",)
@@ -103,6 +104,46 @@ def report_design(
     if "xlsx" in formats:
         asked["rows"] = _rows(instance)
     return _written(asked, Path(folder), formats, about, length, fonts, about_folder, replaces=False)
+
+
+def report_comparison(
+    source: Path, folder: Path, *, formats: Sequence[str] = ("html",), about: Any = None, **how: Any
+) -> tuple[Path, list[str], list[str], bool]:
+    """Write the report of several families that were asked the same, and that of each family in a folder of its name.
+
+    Arguments as for :func:`report`, of which ``design`` and ``full`` are meant of each family. Returns folder, files,
+    what else is to be told, and whether there are designs.
+
+    Raises
+    ------
+    InputError
+        As for :func:`report`, or the comparison cannot be read.
+    """
+    right = "a comparison.json as clutchsynth has written it"
+    content = read_json(source / COMPARISON, "comparison", right)
+    try:
+        names = [(str(x["family"]), str(x["folder"])) for x in content["families"] if x["folder"]]
+        feasible = bool(content["designs"])
+    except (KeyError, TypeError) as error:
+        raise InputError(
+            f"comparison {source / COMPARISON}", str(error), f"{right}; this one is not complete"
+        ) from error
+    fronts = {family: load_front(source / place) for family, place in names}
+    written, notes, links = list[str](), list[str](), dict[str, str]()
+    for family, place in names:
+        _, files, told = report(fronts[family], folder / place, formats=formats, about=about, **how)
+        written += [f"{place}/{name}" for name in files]
+        notes += [note for note in told if note not in notes]
+        first = next(name for name in files if name.startswith("report."))
+        links[family] = f"{place}/{first}"
+    make = report_named("comparison")
+    assert make is not None
+    asked = {"content": content, "fronts": fronts, "links": links, "formats": list(formats), "about": about}
+    fonts = [Path(x) for x in how.get("fonts", ())]
+    files, told = make({**asked, "about_folder": how.get("about_folder"), "fonts": fonts})
+    save_files(folder, files)
+    notes += [note for note in told if note not in notes]
+    return folder, [*files, *written], notes, feasible
 
 
 def _written(

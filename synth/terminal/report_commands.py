@@ -75,11 +75,15 @@ def _of_front(
 ) -> tuple[Path, Path, list[str], list[str], bool]:
     """Write the report of a front; return place, folder, files, notes, and whether it has designs."""
     from synth.analysis.reporting import report as write
-    from synth.results.loading import load_front
+    from synth.analysis.reporting import report_comparison
+    from synth.results.loading import COMPARISON, load_front
 
-    front = load_front(source)
-    target = folder or (source if source.is_dir() else source.parent)
     chosen = [word.strip() for word in design.split(",")]
+    target = folder or (source if source.is_dir() else source.parent)
+    if (source / COMPARISON).is_file():
+        place, names, notes, feasible = report_comparison(source, target, design=chosen, full=full, **asked)
+        return place, target, names, notes, feasible
+    front = load_front(source)
     place, names, notes = write(front, target, design=chosen, full=full, **asked)
     return place, target, names, notes, bool(front.designs)
 

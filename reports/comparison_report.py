@@ -1,0 +1,106 @@
+"""The report of several families that were asked the same: which serves best, and why others lost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from reports.about import About
+from reports.numbers import printed, shown
+from reports.reasons import significant
+from reports.sheet.blocks import Block, Column, Document, Heading, Link, Paragraph, State, TableBlock, TableRow
+from reports.sheet.design_sheet import program_name
+from synth.results import ParetoFront
+
+LEVELS = {"global": "good", "exhaustive": "open", "heuristic": "open"}
+FAMILY_COLUMNS = (Column("family", width=1.6), Column("outcome", width=0.9), Column("why", width=3.6))
+
+
+def comparison_report(
+    content: Mapping[str, Any], fronts: Mapping[str, ParetoFront], links: Mapping[str, str], about: About
+) -> Document:
+    """Return the report of a comparison.
+
+    Parameters
+    ----------
+    content : mapping
+        Of comparison.json.
+    fronts : mapping
+        Family -> its own front.
+    links : mapping
+        Family -> file of its report.
+    about : About
+    """
+    designs: Sequence[Mapping[str, Any]] = content["designs"]
+    told = str(content["sentence"])
+    sentence = told[:1].upper() + told[1:] + "."
+    blocks: list[Block] = [_state(content, sentence)]
+    if designs:
+        blocks += [Heading("The common front", anchor="designs"), _ranked(content, designs, fronts, links)]
+    rows = [
+        TableRow(
+            (
+                Link(str(x["title"]), links[x["family"]]) if x["family"] in links else str(x["title"]),
+                str(x["outcome"]),
+                str(x["why"]),
+            )
+        )
+        for x in content["families"]
+    ]
+    blocks += [Heading("The families", anchor="families"), TableBlock.of("What became of each", FAMILY_COLUMNS, rows)]
+    if fronts:
+        blocks.append(
+            Paragraph(
+                "Each family has a report of its own with task, designs, limits and certificate; objectives are "
+                "measured as each family defines them.",
+                small=True,
+            )
+        )
+    first = next(iter(fronts.values()), None)
+    count = f"{len(designs)} designs" if len(designs) != 1 else "one design"
+    return Document(
+        kind="Comparison of families",
+        title=about.title or f"{len(content['families'])} families: {count}",
+        facts=about.facts(),
+        blocks=tuple(blocks),
+        program=program_name(first),
+        logo=about.logo,
+    )
+
+
+def _state(content: Mapping[str, Any], sentence: str) -> State:
+    kind = content["certificate"]["kind"]
+    if not content["designs"]:
+        proven = "NOT FEASIBLE, proven: no family meets the task" if kind == "global" else "NO DESIGN FOUND, not proven"
+        return State("bad", proven, (sentence,))
+    if content["interrupted"]:
+        return State(
+            "open", "The search was stopped: NOT PROVEN to the end", (sentence, f"Stopped: {content['interrupted']}.")
+        )
+    head = "Proven over all families searched" if kind == "global" else "NOT PROVEN: better designs may exist"
+    return State(LEVELS[kind], head, (sentence,))
+
+
+def _ranked(
+    content: Mapping[str, Any],
+    designs: Sequence[Mapping[str, Any]],
+    fronts: Mapping[str, ParetoFront],
+    links: Mapping[str, str],
+) -> TableBlock:
+    units = {name: unit for front in fronts.values() for name, unit in front.frame.units.items()}
+    titles = {x["family"]: str(x["title"]) for x in content["families"]}
+    columns = [
+        Column("rank", number=True, width=0.5),
+        Column("score", number=True, width=0.7),
+        Column("family", width=2),
+    ]
+    columns += [Column(name.replace("_", " "), number=True, width=1.2) for name in content["objectives"]]
+    columns.append(Column("note", width=0.8))
+    rows = []
+    for x in designs:
+        family = x["family"]
+        named = Link(titles[family], links[family]) if family in links else titles[family]
+        score = "" if x["score"] is None else significant(float(x["score"]), 4)
+        values = [printed(shown(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
+        rows.append(TableRow((f"#{x['rank']}", score, named, *values, str(x.get("note") or ""))))
+    return TableBlock.of("Designs of all families that no other one beats, the best rank first", columns, rows)
