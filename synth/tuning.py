@@ -114,6 +114,9 @@ class LevelLimits:
         For each level that is open, in the first turn of a way of bounding; each turn that closes something doubles it.
     first_of_one : int
         The same for the best in one objective.
+    before_looking : int
+        For all levels at which designs are to be looked for, before combinations are solved at them: a looking round
+        takes as long as some millions.
     picture : int
         Levels of a rough picture of the front, beside so many as designs are asked for.
     rounds : int
@@ -124,6 +127,7 @@ class LevelLimits:
     stays_open: float = 0.5
     first: int = 5_000
     first_of_one: int = 5_000
+    before_looking: int = 500_000
     picture: int = 8
     rounds: int = 8
 

@@ -19,6 +19,7 @@ import synth
 from synth.bounds.log_relaxation import LogRelaxation
 from synth.parametric.joint_fronts import JointFrontSearch
 from synth.parametric.joint_groups import joint_key
+from synth.search.joint.joint_heuristics import JointHeuristics
 from synth.search.joint.levels import LevelProof
 from synth.search.stages import choosing
 from synth.tables.catalogs import Catalogs
@@ -176,20 +177,27 @@ BY_LEVELS = [
 @pytest.fixture
 def levels(monkeypatch):
     """Return how many levels each proof speaks of."""
-    counts, prove = [], LevelProof.prove
+    counts, sooner, prove = [], LevelProof.prove_soon, LevelProof.prove
 
-    def counted(proof, *arguments):
+    def counted_soon(proof, budget, first):
         counts.append(len(proof.cutoffs))
-        return prove(proof, *arguments)
+        return sooner(proof, budget, first)
 
+    def counted(proof, budget, first):
+        counts.append(len(proof.cutoffs))
+        return prove(proof, budget, first)
+
+    monkeypatch.setattr(LevelProof, "prove_soon", counted_soon)
     monkeypatch.setattr(LevelProof, "prove", counted)
     return counts
 
 
+@pytest.mark.parametrize("before_looking", [0, 50, LevelLimits().before_looking])
 @pytest.mark.parametrize(("structure", "seed"), BY_LEVELS)
-def test_a_front_level_by_level_claims_nothing_that_is_wrong(levels, structure, seed):
+def test_a_front_level_by_level_claims_nothing_that_is_wrong(levels, structure, seed, before_looking):
     case = make(structure, seed)
-    a = Answer(case, run(case, tuned(tree=LEVELS)), answer(structure, seed).reference)
+    limits = {"by_levels": replace(LEVELS["by_levels"], before_looking=before_looking)}
+    a = Answer(case, run(case, tuned(tree=LEVELS | limits)), answer(structure, seed).reference)
     # The first look covers signed objectives within the gap at times.
     assert levels or len(a.front.designs) < 3 or len(a.case.objectives) != 2 or not case.positive
     wrong = faults(a)
@@ -218,7 +226,7 @@ def reference(structure: str, seed: int) -> Reference:
 def test_levels_that_are_given_up_claim_nothing_that_is_wrong(levels, effort, points, structure, seed):
     given_up = {
         "boxes": effort,
-        "by_levels": LevelLimits(soon=0, stays_open=0.0, first=20, first_of_one=50),
+        "by_levels": LevelLimits(soon=0, stays_open=0.0, first=20, first_of_one=50, before_looking=effort),
         "further": SearchEffort(seconds=60.0 if points == 20 else 0.0, spell=100, patience=2),
         "few_combinations": 0,  # what stays open is left to chance, and said so
     }
@@ -226,6 +234,19 @@ def test_levels_that_are_given_up_claim_nothing_that_is_wrong(levels, effort, po
     a = Answer(case, run(case, tuned(tree=LEVELS | given_up)), reference(structure, seed))
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])
+
+
+@pytest.mark.parametrize(("before_looking", "looked"), [(0, True), (LevelLimits().before_looking, False)])
+def test_levels_that_few_boxes_settle_are_not_looked_at(monkeypatch, before_looking, looked):
+    improved, look = [], JointHeuristics.first
+    monkeypatch.setattr(JointHeuristics, "first", lambda *given: improved.append(1) or look(*given))
+    case = of_two("discrete", 2, 20)
+    limits = {"by_levels": replace(LEVELS["by_levels"], before_looking=before_looking)}
+    a = Answer(case, run(case, tuned(tree=LEVELS | limits), time_limit=PATIENT), reference("discrete", 2))
+    assert bool(improved) == looked
+    assert not faults(a)
+    assert a.front.certificate.kind == "global"
+    assert a.front.complete
 
 
 @pytest.fixture
@@ -249,7 +270,9 @@ def fills(monkeypatch):
 )
 def test_what_lies_between_levels_is_found_until_it_is_enough_or_all(fills, structure, seed, points, enough):
     case = of_two(structure, seed, points)
-    a = Answer(case, run(case, tuned(tree=LEVELS), time_limit=PATIENT), reference(structure, seed))
+    # Where few boxes settle the first levels, these find all that there is.
+    limits = {"by_levels": replace(LEVELS["by_levels"], before_looking=0)}
+    a = Answer(case, run(case, tuned(tree=LEVELS | limits), time_limit=PATIENT), reference(structure, seed))
     assert any(before < after for before, after in fills)
     wrong = faults(a)
     assert not wrong, "\n".join([f"{structure}-{seed}: {a.front.certificate}", *wrong])

@@ -6,6 +6,7 @@ objectives could still be good has no cap; with the first objective capped outri
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,10 +115,10 @@ class LevelProof:
         self.known_before = {x.tobytes() for x in known.phi}
 
     def look(self) -> None:
-        """Look for good designs of the levels, of which nothing is proven."""
+        """Look for good designs of the levels of which it is not proven what is best."""
         search = self.search
         search.pool = search.form.boxes.root()
-        if len(search.pool):
+        if len(search.pool) and self.unproven.any():
             search.heuristics.first(search.rule(self.unproven), search.pool)
 
     def found(self) -> list[Candidate]:
@@ -125,6 +126,10 @@ class LevelProof:
         own = self.search.instance.combinations.own
         new = [c for c in self.search.known if c.phi.tobytes() not in self.known_before]
         return [Candidate(own(c.combination), c.variables, c.phi) for c in new]
+
+    def prove_soon(self, budget: TurnBudget, first: float) -> None:
+        """Search by turns, and solve no combination but those of boxes; as for :meth:`prove`."""
+        self._prove(budget, first, lambda: None)
 
     def prove(self, budget: TurnBudget, first: float) -> None:
         """Search by turns for what is better at any level; plain boxes begin.
@@ -135,6 +140,9 @@ class LevelProof:
         first : float
             Boxes of the first turns, per level.
         """
+        self._prove(budget, first, self._look)
+
+    def _prove(self, budget: TurnBudget, first: float, between: Callable[[], None]) -> None:
         search = self.search
         search.pool = search.form.boxes.root()
         if not len(search.pool):
@@ -144,7 +152,7 @@ class LevelProof:
             lambda: self._begun(JointTree(search, search.form, search.known, search.pool)),
             lambda: self._begun(search.in_infeasibility_mode()),
         )
-        by_turns(ways, budget, first, self._look)
+        by_turns(ways, budget, first, between)
 
     def levels(self) -> list[Level]:
         """Return what is proven of each level; what is open is told by the lower bounds of its boxes."""

@@ -6,6 +6,7 @@ Nothing need be covered between the levels: each design stands by its own level,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from synth.search.stages.best_by_turns import prove_end
 from synth.search.stages.first_designs import search_neighbourhoods
 from synth.search.stages.spreading import different
 from synth.search.stages.trees import leave_open
+from synth.search.turns import TurnBudget
 
 
 def seek_levels(state: FrontState) -> None:
@@ -121,14 +123,26 @@ def _prove(state: FrontState, first: np.ndarray, to_beat: np.ndarray, rule: Prun
 
 
 def _look_at(state: FrontState, first: np.ndarray) -> None:
-    """Look for designs at levels, of which nothing is proven."""
+    """Look for designs at levels.
+
+    Where few boxes tell what is best, designs need not be looked for: where hardly anything is feasible, as between
+    the last few makeable designs of a front, solving combinations takes a hundred times as long as the proof.
+    """
+    limits = state.task.limits
     for some in _in_numbers(state, len(first)):
         anything = np.full(len(first[some]), np.inf)
         cutoffs = Cutoffs(first=first[some], to_beat=anything, tolerance=float(state.rule.tolerance[SOUGHT]))
         levels = state.levels_within(cutoffs.told_apart())
         state.begin_tree(None)
-        levels.look()
-        _take(state, levels)
+        try:
+            levels.prove_soon(
+                TurnBudget(limits.by_levels.before_looking, replace(limits.further, seconds=0.0)),
+                limits.by_levels.first,
+            )
+            levels.look()
+        finally:
+            state.proof.levels += [level for level in levels.levels() if not len(level.corners)]
+            _take(state, levels)
 
 
 def _take(state: FrontState, levels: LevelProof) -> None:
