@@ -114,6 +114,9 @@ class LevelLimits:
         For each level that is open, in the first turn of a way of bounding; each turn that closes something doubles it.
     first_of_one : int
         The same for the best in one objective.
+    before_looking_at_one : int
+        For the best in one objective, before a few combinations near to the designs known are searched to the bottom
+        where these are few.
     before_looking : int
         For all levels at which designs are to be looked for, before combinations are solved at them: a looking round
         takes as long as some millions.
@@ -127,7 +130,8 @@ class LevelLimits:
     stays_open: float = 0.5
     first: int = 5_000
     first_of_one: int = 5_000
-    before_looking: int = 500_000
+    before_looking_at_one: int = 500_000
+    before_looking: int = 1_000_000
     picture: int = 8
     rounds: int = 8
 

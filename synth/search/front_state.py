@@ -236,6 +236,7 @@ class FrontState:
         self.spare: list[Candidate] = []  # designs that stand as well, but are more than were asked for
         self.given = GivenFront.nothing(task.m)
         self.by_levels = False  # whether a front at once has turned out to cost too much
+        self.looked_harder = False  # whether a few combinations were searched to the bottom
         self._shared: SharedBounds | None = None
         self.sampled = False  # whether parts were drawn for what several levels leave open
         self.may_find_more = True  # unless a try was given up

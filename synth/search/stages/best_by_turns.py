@@ -85,8 +85,16 @@ class BestTree:
         return self.state.clock.open_of(self.left, self.under_way)
 
 
-def prove_end(state: FrontState, k: int) -> BestTree | None:
+def prove_end(state: FrontState, k: int, look_harder: Callable[[], None]) -> BestTree | None:
     """Prove what is best in one objective of a front, and note what is proven; designs go into the archive.
+
+    Parameters
+    ----------
+    state : FrontState
+    k : int
+        Number of the objective.
+    look_harder : callable
+        Called where the first boxes have not closed all: with a better design known others may close soon.
 
     Returns
     -------
@@ -108,14 +116,24 @@ def prove_end(state: FrontState, k: int) -> BestTree | None:
         return trees[-1]
 
     state.counters.scalar_problems += 1
-    budget = state.turn_budget()
+    budget, limits = state.turn_budget(), state.task.limits.by_levels
+    soon = TurnBudget(min(limits.before_looking_at_one, budget.boxes), replace(budget.effort, seconds=0.0))
     try:
-        by_turns((plain, other), budget, state.task.limits.by_levels.first_of_one, lambda: None)
+        by_turns((plain, other), soon, limits.first_of_one, lambda: None)
+        budget.looked = soon.looked
+        if all(len(t.left) for t in trees):
+            look_harder()
+            begun = tuple(map(_itself, trees)) if len(trees) > 1 else (_itself(trees[0]), other)
+            by_turns(begun, budget, limits.first_of_one, lambda: None)
     finally:
         state.budget.take(budget)
         if trees:
             state.proof.levels += _ends(state, k, trees)
     return trees[-1] if all(len(t.left) for t in trees) else None
+
+
+def _itself(tree: BestTree) -> Callable[[], BestTree]:
+    return lambda: tree
 
 
 def _ends(state: FrontState, k: int, trees: list[BestTree]) -> list[Level]:

@@ -28,13 +28,20 @@ def seek_levels(state: FrontState) -> None:
     state.by_levels = True
     if not _prove_ends(state):
         # Designs are hard to find, or boxes hard to close: better designs help with both.
-        search_neighbourhoods(state)
+        _look_harder(state)
     if len(state.form.archive):
         first = state.form.archive.phi[:, CAPPED]
         wanted = state.task.more_than_asked + state.task.limits.by_levels.picture
         _look_at(state, np.linspace(first.min(), first.max(), wanted + 2)[1:-1])
     elif state.proof.closed:
         state.proof.open_combinations = 0.0
+
+
+def _look_harder(state: FrontState) -> None:
+    """Search a few combinations to the bottom, once."""
+    if not state.looked_harder:
+        state.looked_harder = True
+        search_neighbourhoods(state)
 
 
 def prove_levels(state: FrontState, staircase: NonImprovement) -> bool:
@@ -94,7 +101,7 @@ def _prove_ends(state: FrontState) -> bool:
     for k in (CAPPED, SOUGHT):
         ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
         if not any(len(level.corners) or level.tolerance[k] <= tolerance[k] for level in ends):
-            left = prove_end(state, k)
+            left = prove_end(state, k, lambda: _look_harder(state))
             ends = [level for level in proof.levels if level.sought == k and np.all(np.isinf(level.within))]
             if left is not None:
                 leave_open(state, left, state.cover_within(tolerance))
