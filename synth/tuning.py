@@ -614,6 +614,8 @@ class BranchingSettings:
         to no row.
     questions_first : float
         The same for questions that are answered together: each has a best value of its own.
+    late : float
+        The same for what the family declares to be split last.
     anywhere : float
         What influences anywhere count beside those at the designs known.
     auxiliary_of : int
@@ -632,6 +634,7 @@ class BranchingSettings:
     enough: int = 8
     parts_first: float = 3.0
     questions_first: float = 6.0
+    late: float = 0.01
     anywhere: float = 0.1
     auxiliary_of: int = 2
     most_auxiliary: int = 1

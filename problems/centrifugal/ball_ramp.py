@@ -62,6 +62,8 @@ class CentrifugalBallRamp(DesignProblem):
         springs = blocks.declare_springs(
             d, slot="return_spring", symbol="sp", count_symbol="N_s", text="they push the pressure plate back"
         )
+        # All four make the spring force at contact, and hardly anything else.
+        d.split_last("return_spring", "return_springs", "spring_preload_deflection", "plate_gap")
         lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
 
         end = centrifugal.orbit_radius(rest, balls.ratio, gap)

@@ -219,8 +219,14 @@ class BranchingWeights:
         """Return what scores are made of, for influences (limits + objectives, inputs)."""
         first_auxiliary = influence.shape[1] - len(self._question.auxiliary)
         moving = np.concatenate([influence[:, : self._question.n], influence[:, first_auxiliary:]], axis=1)
-        steep: np.ndarray = np.maximum(moving, self._floor).astype(np.float32)
-        return ScoreTables(steep, [self._spread(tree, influence) for tree in self._trees])
+        steep = np.maximum(moving, self._floor)
+        steep[:, : self._question.n] *= [self._share(v.name) for v in self._question.model.variables]
+        spreads = [self._share(t.factor.name) * self._spread(t, influence) for t in self._trees]
+        return ScoreTables(steep.astype(np.float32), [s.astype(np.float32) for s in spreads])
+
+    def _share(self, name: str) -> float:
+        """Return how much a variable or factor counts for where to split: little if others make up for it."""
+        return self._settings.late if name in self._question.model.declaration.late else 1.0
 
     def _spread(self, tree: ClusterTree, influence: np.ndarray) -> np.ndarray:
         """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""

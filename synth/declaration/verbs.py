@@ -280,6 +280,7 @@ class Declaration:
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
         self.advices: list[Advice] = []
+        self.late: tuple[str, ...] = ()
         self._symbols: dict[str, str] = {}
 
     # -- names ---------------------------------------------------------------------------------
@@ -490,6 +491,15 @@ class Declaration:
         self.slots[slot] = part
         return part
 
+    def split_last(self, *names: str) -> None:
+        """Tell the search to split these variables, counts and parts last.
+
+        For unknowns that make up for one another, as number, rate and deflection of springs do for their force: each
+        of them alone seems to decide limits that see the force only, so that boxes are split over and over along what
+        the best design hardly depends on. It steers the search and proves nothing.
+        """
+        self.late += names
+
     def row(self, table: str, designation: str) -> Part:
         """Return one fixed row of a table (not a slot), for options whose figures stand in a table."""
         self.catalogs.table(table).row_index(designation)
@@ -668,6 +678,9 @@ class Declaration:
     def finish(self) -> None:
         """Check what can only be checked when everything is declared."""
         known = {name for name, _, _ in self.quantities()}
+        for name in self.late:
+            if name not in {*self.variables, *self.counts, *self.choices, *self.slots}:
+                raise DeclarationError(f"{self.problem}: {name} is split last, but is no variable, count or part")
         for objective in self.objectives.values():
             if objective.name not in known:
                 raise DeclarationError(

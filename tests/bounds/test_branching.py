@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from synth.tuning import TUNING
 from tests.sample_problems.strut import designs_of, strut_form
 
 
@@ -94,3 +95,21 @@ def test_influences_are_slopes_between_logarithms():
         np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-12)
     assert np.all(form.bounding.goal_sizes > 0)
     np.testing.assert_array_equal(strut_form().bounding._influences.anywhere, influences.anywhere)
+
+
+def test_what_is_declared_to_be_split_last_counts_little(monkeypatch):
+    form = strut_form()
+    bounding, points = form.bounding, designs_of(form, np.random.default_rng(3), 200)
+    bounding.branching.focus(*points[:2])
+    before = bounding.branching.tables
+    declared = bounding.question.model.declaration
+    monkeypatch.setattr(declared, "late", ("width", "plate"))
+    bounding.branching.focus(*points[:2])
+    after, share = bounding.branching.tables, TUNING.branching.late
+    names = [v.name for v in bounding.question.model.variables]
+    factors = [f.name for f in bounding.question.factors]
+    for k, name in enumerate(names):
+        expected = before.steep[:, k] * (share if name == "width" else 1.0)
+        np.testing.assert_allclose(after.steep[:, k], expected, rtol=1e-6)
+    for name, was, now in zip(factors, before.spreads, after.spreads, strict=True):
+        np.testing.assert_allclose(now, was * (share if name == "plate" else 1.0), rtol=1e-6)

@@ -453,6 +453,18 @@ def test_objectives_name_a_quantity_and_a_sense():
         d.finish()
 
 
+def test_what_is_split_last_is_an_unknown():
+    d = declaration()
+    d.variable("width", "mm", 1, 2)
+    d.count("pieces", 1, 3)
+    d.split_last("width", "pieces")
+    assert d.late == ("width", "pieces")
+    d.finish()
+    d.split_last("mass")
+    with pytest.raises(DeclarationError, match="mass is split last, but is no variable, count or part"):
+        d.finish()
+
+
 def test_a_quantity_can_only_need_a_guard():
     for guard in (True, False):
         d = declaration()
