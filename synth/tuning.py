@@ -131,7 +131,7 @@ class LevelLimits:
     first: int = 5_000
     first_of_one: int = 5_000
     before_looking_at_one: int = 500_000
-    before_looking: int = 1_000_000
+    before_looking: int = 500_000
     picture: int = 8
     rounds: int = 8
 

@@ -61,9 +61,6 @@ class CentrifugalReversed(LeverClutch):
         )
         leg = self._declare_leg(d)
         lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
-        # All of these make the spring force, and hardly anything else.
-        d.split_last("clamp_spring", "clamp_springs", "spring_preload_deflection")
-        d.split_last("return_spring", "return_springs", "return_preload_deflection")
         lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
         lever_blocks.refuse_room(
             d, duty=duty, least_leg=lever.worn_travel / lever.weights.angle_limit, name="plate_arm"
