@@ -213,7 +213,9 @@ def declare_body(
         ("cover_thickness", centrifugal.COVER, "t_cover", "Cover over the flyweights"),
     ):
         d.constant(name, "mm", 1000 * value, symbol=symbol, text=text, source=UNSOURCED)
-    d.constant("least_work", "J", LEAST_WORK, symbol="Q_min", text="Heat that wear is computed with at least")
+    d.constant(
+        "least_work", "J", LEAST_WORK, symbol="Q_min", text="Heat that wear is computed with at least", source=UNSOURCED
+    )
     text = "Friction discs beyond the first, with a plate for each"
     d.step("further_discs_mass", "kg", discs, symbol="m_fd", text=text, source="geometry")
     d.step("boss_mass", "kg", bosses, symbol="m_boss", text="A boss on either shaft", source="geometry")
