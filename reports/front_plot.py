@@ -19,32 +19,51 @@ LABELLED = 20  # designs up to which every point has its rank beside it
 WIDE, HIGH = 640, 400  # of one panel, in points of the drawing
 LEFT, RIGHT, TOP, BOTTOM = 78, 24, 18, 58
 TICKS = 6
+ROOM = 0.04  # beside the outermost values, as a share of the range
+WIDE_RANGE = 20  # largest over smallest value from which on an axis is logarithmic
+MANY_DECADES = 2000
 FONTS = "system-ui, Noto Sans, DejaVu Sans, sans-serif"
 Place: TypeAlias = Callable[[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis: ends and ticks in the unit that is shown."""
+    """One axis: ends and ticks in the unit that is shown, by logarithms where values span much."""
 
     name: str
     unit: str
     low: float
     high: float
     ticks: tuple[float, ...]
+    log: bool = False
 
     @staticmethod
     def of(name: str, unit: str, values: Sequence[float]) -> Axis:
         """Return an axis with round ticks on which all values have room."""
         low, high = min(values), max(values)
+        if low > 0 and high / low >= WIDE_RANGE:
+            return Axis._logarithmic(name, unit, low, high)
         span = (high - low) or abs(high) or 1.0
         step = _round_step(span / TICKS)
-        first, last = math.floor((low - 0.04 * span) / step), math.ceil((high + 0.04 * span) / step)
+        first, last = math.floor((low - ROOM * span) / step), math.ceil((high + ROOM * span) / step)
+        if low >= 0:
+            first = max(first, 0)
         ticks = tuple(k * step for k in range(first, last + 1))
         return Axis(name, unit, ticks[0], ticks[-1], ticks)
 
+    @staticmethod
+    def _logarithmic(name: str, unit: str, low: float, high: float) -> Axis:
+        decades = range(math.floor(math.log10(low)) - 1, math.ceil(math.log10(high)) + 2)
+        steps = (1, 2, 5) if high / low < MANY_DECADES else (1,)
+        every = [step * 10.0**decade for decade in decades for step in steps]
+        first = max(t for t in every if t <= low / (1 + ROOM))
+        last = min((t for t in every if t >= high * (1 + ROOM)), default=every[-1])
+        return Axis(name, unit, first, last, tuple(t for t in every if first <= t <= last), True)
+
     def share(self, value: float) -> float:
         """Return where on the axis a value lies, from 0 to 1."""
+        if self.log:
+            return math.log(value / self.low) / math.log(self.high / self.low)
         return (value - self.low) / (self.high - self.low)
 
     def title(self) -> str:
@@ -156,7 +175,7 @@ def _point(design: Design, x: float, y: float, said: str, chosen: Sequence[int],
     )
     drawn = f"<title>{escape(words)}</title>{ring if knee else ''}{dot}"
     if linked:
-        return f'<a href="#design-{design.rank}" aria-label="{escape(words)}">{drawn}</a>'
+        return f'<a href="#design-{design.rank}">{drawn}</a>'
     return f"<g>{drawn}</g>"
 
 

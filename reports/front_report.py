@@ -123,7 +123,7 @@ class _Report:
         )
 
     def _data(self) -> str:
-        """Return the table of all designs, in six digits, where not all are told in full."""
+        """Return the table of all designs, in five digits, where not all are told in full."""
         if len(self.full) == len(self.front.designs):
             return ""
         columns, rows = self.front.table()
@@ -486,8 +486,8 @@ def _plot_caption(front: ParetoFront) -> str:
 
 
 def _short(x: Any) -> Any:
-    """Return a cell of a table as JSON knows it, numbers in six digits."""
-    return float(f"{x:.6g}") if isinstance(x, float) and math.isfinite(x) else finite(x)
+    """Return a cell of a table as JSON knows it, numbers in five digits."""
+    return float(f"{x:.5g}") if isinstance(x, float) and math.isfinite(x) else finite(x)
 
 
 def _near_row(row: Mapping[str, str]) -> TableRow:
