@@ -120,6 +120,8 @@ def textbook(tree: Expression) -> Expression:
     if tree[0] == "+":
         kept = [t for t in tree[1] if not (t[0] == "n" and 0 < abs(t[1]) <= NEGLIGIBLE)] or tree[1]
         return kept[0] if len(kept) == 1 else ["+", kept]
+    if tree[0] == "^" and tree[1][0] == "neg" and tree[2][0] == "n" and tree[2][1] % 2 == 0:
+        return ["^", tree[1][1], tree[2]]
     if tree[0] == "neg" and tree[1][0] == "+":
         return _turned(tree[1])
     if tree[0] == "neg" and tree[1][0] == "*":
