@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from reports.formula.layout import (
     BESIDE,
+    TIMES,
     Amount,
     Call,
     Cases,
@@ -18,9 +19,10 @@ from reports.formula.layout import (
     Word,
 )
 from reports.formula.symbols import symbol_parts
-from reports.numbers import printed
+from reports.numbers import Shown, printed
 
 WIDEST = 74.0  # digits side by side that a line of a page holds
+MOST_UNDER = 0.5  # of a line: what stands under a bar beside which the rest is broken
 SMALL = 0.72  # size of what is raised, lowered, or stands in a fraction inside a line
 
 
@@ -57,19 +59,41 @@ def broken(layout: Layout, widest: float = WIDEST) -> list[Layout]:
 
     What has no place to break stays one line, however wide.
     """
-    if width(layout) <= widest or not isinstance(layout, Row):
+    if width(layout) <= widest:
         return [layout]
+    row = layout if isinstance(layout, Row) else Row((layout,))
     for signs in (("+", "−"), ("·", BESIDE.text)):
-        pieces = _pieces(layout, signs)
+        pieces = _pieces(row, signs)
         if len(pieces) > 1:
-            return [line for packed in _packed(pieces, widest) for line in _again(packed, signs, widest)]
-    return [layout]
+            lines = [line for packed in _packed(pieces, widest) for line in _again(packed, signs, widest)]
+            return [part for line in lines for part in _inside(line, widest)]
+    return _inside(layout, widest)
 
 
-def _pieces(row: Row, signs: tuple[str, ...]) -> list[list[Layout]]:
+def _inside(line: Layout, widest: float) -> list[Layout]:
+    """Break a line that is still too wide inside its widest part: a bracket, or what stands over a bar."""
+    if width(line) <= widest:
+        return [line]
+    items = line.items if isinstance(line, Row) else (line,)
+    place = max(range(len(items)), key=lambda k: width(items[k]))
+    part, before, after = items[place], items[:place], items[place + 1 :]
+    if isinstance(part, Fraction) and width(part.under) <= MOST_UNDER * widest and width(part.over) > widest:
+        # What is over a bar cannot be broken; beside one over what is under it, it can.
+        over = part.over.items if isinstance(part.over, Row) else (part.over,)
+        if any(isinstance(x, Sign) and x.text in ("+", "−") for x in over):
+            over = (Fence(part.over),)
+        return broken(Row((*before, Fraction(Amount(Shown("1")), part.under), TIMES, *over, *after)), widest)
+    if isinstance(part, Fence) and not part.bars and isinstance(part.inner, Row):
+        opened = Row((*before, Word("("), *part.inner.items, Word(")"), *after))
+        return _packed(_pieces(opened, ("+", "−"), (place + 2, place + 1 + len(part.inner.items))), widest)
+    return [line]
+
+
+def _pieces(row: Row, signs: tuple[str, ...], places: tuple[int, int] = (1, 1_000)) -> list[list[Layout]]:
+    """Return what stands before and behind signs; of those between two places."""
     pieces: list[list[Layout]] = [[]]
     for position, item in enumerate(row.items):
-        if position and isinstance(item, Sign) and item.text in signs:
+        if places[0] <= position < places[1] and isinstance(item, Sign) and item.text in signs:
             pieces.append([])
         pieces[-1].append(item)
     return pieces

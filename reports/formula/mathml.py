@@ -99,7 +99,8 @@ def _amount(layout: Amount) -> str:
         many = True
     if number.unit:
         unit = unit_text(number.unit)
-        space = "" if unit == "°" else '<mspace width="0.17em"/>'
+        wide = "0.45em" if unit[0].isdigit() else "0.17em"  # 36 1/min, not 361/min
+        space = "" if unit == "°" else f'<mspace width="{wide}"/>'
         found += f"{space}<mtext>{escape(unit)}</mtext>"
         many = True
     return f"<mrow>{found}</mrow>" if many else found

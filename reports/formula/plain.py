@@ -18,7 +18,7 @@ from reports.formula.layout import (
     Word,
 )
 
-SIGNS = {"−": "-", "·": "*", "≤": "<=", "≠": "!="}
+SIGNS = {"−": "-", "·": "*", "≤": "<=", "≥": ">=", "≠": "!="}
 
 
 def plain(layout: Layout) -> str:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from reports.formula.layout import (
     BESIDE,
+    MINUS,
     Amount,
     Call,
     Cases,
@@ -20,7 +23,7 @@ from reports.formula.layout import (
 from reports.formula.symbols import symbol_parts
 from reports.numbers import unit_text
 
-SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
+SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=": "=", "+": "+", "<": "<"}
 NAMED = {"ln", "sin", "cos", "tan", "sinh", "cosh", "tanh", "min", "max"}
 
 
@@ -42,16 +45,23 @@ def typst_math(layout: Layout) -> str:
         return _letter(layout.symbol)
     if isinstance(layout, Amount):
         return _amount(layout)
+    if isinstance(layout, Word) and layout.text in ("(", ")"):
+        return f" \\{layout.text} "
     if isinstance(layout, Word):
         return f" {string(f' {layout.text} ' if layout.text in ('and', 'or', 'not') else layout.text)} "
     if isinstance(layout, Sign):
         return " thin " if layout == BESIDE else f" {SIGNS[layout.text]} "
     if isinstance(layout, Row):
-        return "".join(map(typst_math, layout.items))
+        return _row(layout.items)
     if isinstance(layout, Fraction):
-        return f" frac({typst_math(layout.over)}, {typst_math(layout.under)}) "
+        parts = [typst_math(layout.over), typst_math(layout.under)]
+        if _is_high(layout.over) or _is_high(layout.under):
+            parts = [f"inline({part})" for part in parts]  # each fraction in another one is set smaller otherwise
+        return f" frac({', '.join(parts)}) "
     if isinstance(layout, Power):
-        return f" attach({typst_math(layout.base)}, t: {typst_math(layout.exponent)}) "
+        if layout.base == Word("e") and _is_high(layout.exponent):
+            return f" exp lr(({typst_math(layout.exponent)})) "  # a fraction that is raised is too small to be read
+        return f" attach({typst_math(layout.base)}, t: {typst_math(layout.exponent).strip()}) "
     if isinstance(layout, Root):
         return f" sqrt({typst_math(layout.inner)}) "
     if isinstance(layout, Fence):
@@ -59,24 +69,40 @@ def typst_math(layout: Layout) -> str:
         return f" abs({inside}) " if layout.bars else f" lr(({inside})) "
     if isinstance(layout, Call):
         name = layout.name if layout.name in NAMED else f"op({string(layout.name)})"
-        return f" {name} lr(({' ; '.join(map(typst_math, layout.arguments))})) ".replace(" ; ", ' #";" ')
+        inside = '#"; "'.join(typst_math(x).strip() for x in layout.arguments)
+        return f" {name} lr(({inside})) "
     assert isinstance(layout, Cases)
     rows = [
-        f'{typst_math(value)} quad & "otherwise"'
+        f'inline({typst_math(value)}) quad & inline("otherwise")'
         if condition is None
-        else f'{typst_math(value)} quad & "if" thick {typst_math(condition)}'
+        else f'inline({typst_math(value)}) quad & inline("if" thick {typst_math(condition)})'
         for value, condition in layout.rows
     ]
     return f" cases({', '.join(rows)}) "
 
 
+def _row(items: Sequence[Layout]) -> str:
+    if len(items) > 1 and items[0] == MINUS:
+        return f" -{_row(items[1:]).strip()} "  # a sign that stands first belongs to what follows
+    return "".join(map(typst_math, items))
+
+
+def _is_high(layout: Layout) -> bool:
+    """Tell whether a layout has a fraction or cases in it, which stand above each other."""
+    if isinstance(layout, Row):
+        return any(map(_is_high, layout.items))
+    if isinstance(layout, Call):
+        return any(map(_is_high, layout.arguments))
+    return isinstance(layout, (Fraction, Cases)) or (isinstance(layout, (Fence, Root)) and _is_high(layout.inner))
+
+
 def _letter(symbol: str) -> str:
     parts = symbol_parts(symbol)
     base = f"italic({string(parts.base)})" if parts.italic else f"upright({string(parts.base)})"
-    before = "upright(Delta) " if parts.difference else ""
+    before = "upright(Delta)" if parts.difference else ""
     if not parts.subscripts:
         return f" {before}{base} "
-    below = ' #"," '.join(
+    below = '#","'.join(
         f"italic({string(x)})" if len(x) == 1 and not x.isdigit() else f"upright({string(x)})" for x in parts.subscripts
     )
     return f" {before}attach({base}, b: {below}) "
@@ -91,5 +117,6 @@ def _amount(layout: Amount) -> str:
         found += f" dot.op attach(10, t: {number.exponent})"
     if number.unit:
         unit = unit_text(number.unit)
-        found += ("" if unit == "°" else " thin ") + f" upright({string(unit)})"
+        space = "" if unit == "°" else "thick thin" if unit[0].isdigit() else "thin"  # 36 1/min, not 361/min
+        found += f" {space} upright({string(unit)})"
     return f" {found} "
