@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from reports.formula.layout import (
@@ -27,15 +28,33 @@ SIGNS = {"−": "-", "·": "dot.op", "≤": "<=", "≥": ">=", "≠": "!=", "=":
 NAMED = {"ln", "sin", "cos", "tan", "sinh", "cosh", "tanh", "min", "max"}
 
 
+# Characters that no font has or that turn the direction of writing, and halves of characters.
+UNSEEN = re.compile("[\x00-\x08\x0b-\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+
+
+def written_out(character: str) -> str:
+    """Return what stands in place of a character that cannot be shown.
+
+    Examples
+    --------
+    >>> written_out("漢")
+    '[U+6F22]'
+    """
+    return f"[U+{ord(character):04X}]"
+
+
 def string(text: str) -> str:
-    r"""Return a text as a string of Typst.
+    r"""Return a text as a string of Typst; what cannot be seen is written out.
 
     Examples
     --------
     >>> string('a "b" #read(1)')
     '"a \\"b\\" #read(1)"'
+    >>> string("a\x07b")
+    '"a[U+0007]b"'
     """
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "").replace("\t", " ")
+    seen = UNSEEN.sub(lambda found: written_out(found[0]), text)
+    escaped = seen.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\r", "").replace("\t", " ")
     return f'"{escaped}"'
 
 
