@@ -50,6 +50,7 @@ from reports.sheet.html import asset
 
 PAGE = 175.0  # mm between the margins
 DIGIT = 1.6  # mm that a digit takes in a formula of a table
+SURELY = 2.4  # mm that a digit takes at most: what is narrower is not measured
 MOST_SHRUNK = 1.25  # times its column, as wide as a formula of a table may be and be set smaller
 BELOW = "as below"  # stands where a formula is too wide for its column
 LINE_OF_TEXT = 74.0  # digits of a formula that stand in a line of text
@@ -244,9 +245,11 @@ class _Writer:
     def _cell(self, cell: Cell, column: Column, wide: float) -> str:
         """Return a cell of a table; ``wide`` is the column's width in mm."""
         if isinstance(cell, (Amount, Letter)) or (column.number and isinstance(cell, str) and len(cell) <= LONG_WORD):
-            return f"fit(box({self._inline(cell)}))"
+            digits = len(cell) if isinstance(cell, str) else width(cell)
+            narrow = digits * SURELY <= wide
+            return f"box({self._inline(cell)})" if narrow else f"fit(box({self._inline(cell)}))"
         if isinstance(cell, LAYOUTS) and not isinstance(cell, Word):
-            return self._lines(cell, wide / DIGIT)
+            return _high_equation(cell) if width(cell) * SURELY <= wide else self._lines(cell, wide / DIGIT)
         parts = cell if isinstance(cell, tuple) else (cell,)
         told = [
             self._lines(p, wide / DIGIT) if _is_wide(p, wide / DIGIT) else self._inline(p) for p in parts if p != ""
