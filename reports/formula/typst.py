@@ -136,6 +136,6 @@ def _amount(layout: Amount) -> str:
         found += f" dot.op attach(10, t: {number.exponent})"
     if number.unit:
         unit = unit_text(number.unit)
-        space = "" if unit == "°" else "thick thin" if unit[0].isdigit() else "thin"  # 36 1/min, not 361/min
-        found += f" {space} upright({string(unit)})"
+        space = "" if unit == "°" else " thick thin " if unit[0].isdigit() else " thin "  # 36 1/min, not 361/min
+        found += f"{space}upright({string(unit)})"
     return f" {found} "

@@ -60,6 +60,7 @@ PIECE = 6  # letters of such a word that stay together
 MUCH = 1500  # letters from which on something may go over two pages
 LONGEST_LINE = 88  # letters of a listing that fit
 RUNNING = 56  # letters of the title on every page
+RUNNING_FACT = 36  # letters of project, number and revision there
 REPEATED = 500  # letters of the head of a table that are said again on each page
 LONGEST_SAID = 8000  # letters of a text that only machines read; those of PDF/A have 32767 bytes
 LONGEST_FACT = 500  # letters of the title, author and keywords in the properties of a file
@@ -197,7 +198,7 @@ class _Writer:
             "kind": one_text(_shortened(document.kind, RUNNING // 2)),
             "heading-title": _text(document.title),
             "running-title": one_text(_shortened(document.title, RUNNING)),
-            "running-facts": one_text(" · ".join(_shortened(word, RUNNING // 2) for word in running if word)),
+            "running-facts": one_text(" · ".join(_shortened(word, RUNNING_FACT) for word in running if word)),
             "program": one_text(_shortened(document.program, RUNNING)),
             "facts": _list(f"({_text(label)}, {_text(words)})" for label, words in document.facts),
             "logo": one_text(self.logo) if self.logo else "none",

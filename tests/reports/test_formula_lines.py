@@ -54,3 +54,4 @@ def test_a_unit_that_begins_with_a_digit_stands_apart_from_its_number():
     assert "thick" in typst_math(speed)
     assert "0.45em" in mathml(speed)
     assert "thick" not in typst_math(Amount(Shown("3", 0, "mm")))
+    assert typst_math(Amount(Shown("90", 0, "deg"))).strip() == 'upright("90")upright("°")'

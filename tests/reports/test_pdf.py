@@ -165,6 +165,16 @@ def test_it_is_for_archives_and_for_those_who_hear_it():
     assert [(mark.get_title(), mark.level) for mark in document.get_toc()] == [("First", 0), ("Second", 1)]
 
 
+def test_formulas_drawings_and_heads_of_tables_are_said():
+    data = pdf(every_block())
+    formulas, figures = data.count(b"/S/Formula"), data.count(b"/S/Figure")
+    assert formulas > 4
+    assert figures == 2  # the drawing and the logo
+    assert data.count(b"/Alt") == formulas + figures
+    assert data.count(b"/S/TH/") + data.count(b"/S/TH\n") == 4  # three columns and a group
+    assert b"/JavaScript" not in data
+
+
 def test_the_same_document_gives_the_same_bytes_at_any_time():
     told = every_block()
     undated = Document(told.kind, told.title, (("Date", "31. 2. 2026"),), told.blocks, told.program)
