@@ -15,6 +15,7 @@ from reports.front_report import FrontReportRequest, front_report
 from reports.sheet.blocks import Document
 from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
 from reports.sheet.html import html
+from reports.sheet.pdf import pdf_with_notes
 from reports.sheet.record import sheet_record
 from synth.errors import InputError
 from synth.results import Design, ParetoFront
@@ -117,7 +118,7 @@ def documents(
         if "html" in formats:
             files[f"{name}.html"] = html(document)
         if "pdf" in formats:
-            files[f"{name}.pdf"], told = import_module("reports.sheet.pdf").pdf_with_notes(document, fonts)
+            files[f"{name}.pdf"], told = pdf_with_notes(document, fonts)
             notes += [note for note in told if note not in notes]
     return files, notes
 

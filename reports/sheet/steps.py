@@ -84,7 +84,8 @@ class Steps:
                 inserted = self._inserted(own, q.expression, value, in_si=not closes)
                 lines += [inserted] if inserted != results[0] else []
             lines += results if lines[-1] != results[-1] else []
-            notes += [self._condition(condition, answer, not closes) for condition, answer in met[:CONDITIONS]]
+            told = {repr(condition): (condition, answer) for condition, answer in met}  # each once
+            notes += [self._condition(*decided, not closes) for decided in list(told.values())[:CONDITIONS]]
             if not closes:
                 notes.append("Numbers in SI: the units of this formula do not close.")
         symbol = Letter(q.symbol)

@@ -35,7 +35,7 @@ def report(
     length: Annotated[str, typer.Option(help="Of the sheets: summary, normal or full.")] = "normal",
     fonts: Annotated[
         list[Path] | None,
-        typer.Option("--font-path", help="Folder of fonts for PDF; repeat it.", metavar="DIR"),
+        typer.Option("--font-path", help="A font, or a folder of fonts, for PDF; repeat it.", metavar="PATH"),
     ] = None,
     quiet: Quiet = False,
 ) -> None:
