@@ -24,7 +24,9 @@ POINTS = 12
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]
 
 
-@pytest.fixture(scope="module", params=STRUCTURES, ids=lambda p: f"{p[0]}-{p[1]}")
+@pytest.fixture(
+    scope="module", params=[pytest.param(x, marks=pytest.mark.slow) for x in STRUCTURES], ids=lambda p: f"{p[0]}-{p[1]}"
+)
 def solved(request):
     """Return a calculation with what the engine says of points, some of which are feasible and some are not."""
     family, structure = request.param

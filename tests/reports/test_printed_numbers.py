@@ -13,6 +13,7 @@ from synth.analysis.calculation import calculation_of
 from tests.conformance.cases import CASES, question
 from tests.reports.printed import NUMBER, UNIT, difference
 
+pytestmark = pytest.mark.slow
 ENOUGH = 2e-4
 ALONE = re.compile(rf"= -?{NUMBER}( {UNIT})?")
 STRUCTURES = [(f, s) for f, data in CASES.items() for s in data.option_sets]

@@ -12,6 +12,7 @@ import synth
 from tests.analysis.independent import recomputed
 from tests.terminal.entry import at_once
 
+pytestmark = pytest.mark.slow
 SPEC = """
 family: multi_plate_clutch
 requirements: {load_torque: 600 N*m, driver_speed: 254 rpm, driven_inertia: 30 kg*m2}
