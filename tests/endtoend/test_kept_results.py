@@ -112,7 +112,7 @@ def test_a_search_that_is_stopped_stands_beside_the_earlier_result(out: Path, nu
     assert kept == before
     assert json.loads(stopped["stopped/front.json"])["interrupted"] == "interrupted"
     assert "stopped/designs.csv" in stopped
-    assert f"written to {out / 'stopped'}: designs.csv" in said
+    assert f"written to {out / 'stopped'}: calculation.json, designs.csv" in said
     assert f"the earlier result in {out} stays as it was" in said
     # Stopped once more, what was stopped before stays too; a finished search takes the place of the result alone.
     assert at_once("run", HOIST, "-o", out, "--time-limit", "0.01", "-q").returncode == 4
