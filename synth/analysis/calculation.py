@@ -189,7 +189,8 @@ def _inputs(model: Model, instance: Instance, rows: Mapping[str, float]) -> list
     for v in d.variables.values():
         found.append(_searched(v, "variable", (v.lower, v.upper)))
     for c in d.counts.values():
-        found.append(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))))
+        step = float(c.values[1] - c.values[0]) if len(c.values) > 1 else None
+        found.append(replace(_searched(c, "count", (float(c.values[0]), float(c.values[-1]))), step=step))
     for choice in d.choices.values():
         found.append(replace(_searched(choice, "choice", None), labels=choice.labels))
     found += _of_rows(model, instance.catalogs, rows)

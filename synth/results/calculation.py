@@ -20,7 +20,7 @@ from synth.files import read_json
 from synth.results.design import Design
 from synth.results.expression import Expression, value_of
 from synth.results.plain import digest_of, finite
-from synth.row_cells import CODE_OF, cell_value, text_code
+from synth.row_cells import CODE_OF, cell_value, named_column, text_code
 
 CALCULATION_FORMAT = 1
 CALCULATION = "calculation.json"
@@ -52,6 +52,8 @@ class NamedQuantity:
         SI; what may be stated or is searched.
     group : str
         Of a requirement: what it belongs to, in the words of the family.
+    step : float, optional
+        Of a count: from one value to the next.
     slot, columns : str, tuple of str
         Of a part or row: where it is found; the first column that has a value counts.
     labels : tuple of str
@@ -69,6 +71,7 @@ class NamedQuantity:
     needs: tuple[str, ...] = ()
     bounds: tuple[float, float] | None = None
     group: str = ""
+    step: float | None = None
     slot: str = ""
     columns: tuple[str, ...] = ()
     labels: tuple[str, ...] = ()
@@ -86,6 +89,11 @@ class NamedQuantity:
         if not self.is_text:
             return None
         return next((text or "nothing" for text in self.labels if text_code(text) == number), None)
+
+    @property
+    def column(self) -> str:
+        """Name of the first column that it is found in, as its table has it."""
+        return named_column(self.columns[0])
 
     @property
     def is_text(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import casadi as ca
@@ -117,6 +118,14 @@ def test_units_close_or_the_formula_is_one_for_si(solved):
     for q in quantities.values():
         if q.kind == "helper" and q.unit:
             assert dimension_of(q.expression, quantities) is not None
+
+
+def test_counts_have_a_step_and_parts_a_column_as_its_table_names_it(solved):
+    for q in solved[0].quantities.values():
+        if q.kind == "count":
+            assert (q.bounds[1] - q.bounds[0]) / q.step == pytest.approx(round((q.bounds[1] - q.bounds[0]) / q.step))
+        elif q.kind == "part":
+            assert re.fullmatch(r"\w+", q.column)
 
 
 def test_a_branch_in_force_gives_the_same_number(solved):
