@@ -1,0 +1,342 @@
+"""Formulas of a calculation as formulas of a spreadsheet: named cells in place of quantities.
+
+Only functions that every spreadsheet has had for decades are used: no LET, no LAMBDA, no array formulas. Where a
+spreadsheet reads signs otherwise than mathematics does there are brackets: ``-a^2`` is (-a)^2 there, and ``a^b^c`` is
+(a^b)^c.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from fractions import Fraction
+
+from synth.results.expression import Expression, parts_of, with_parts
+from synth.units import parse_unit
+
+LONGEST = 2000  # characters; Excel takes 8192, people read fewer
+DEEPEST = 60  # brackets inside each other; Excel takes 64 functions
+MANY = 6  # parts of a sum or product from which on halves of it are told alone
+WIDTH = 5  # decimals of a number from which on it is looked for among fractions
+
+# How firmly what stands there must hold together: a term, a factor, what is divided by, what is raised.
+ANY, TERM, FACTOR, DIVISOR, BASE = range(5)
+
+Helper = Callable[[Expression], str]
+
+SAME_NAME = frozenset(
+    "exp ln sqrt sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh erf abs sign min max".split()
+)
+SIGN_OF = {"<": "<", "<=": "<=", "==": "=", "!=": "<>"}
+CONDITIONS = frozenset((*SIGN_OF, "and", "or", "not"))
+# What a spreadsheet refuses for some arguments, and so may be an error instead of a number.
+MAY_FAIL = frozenset(("exp", "ln", "sqrt", "asin", "acos", "sinh", "cosh", "acosh", "atanh", "log1p", "expm1", "fmod"))
+
+PI = parse_unit("deg").ratio * 180
+DENOMINATORS = (1, 2, 3, 4, 6, 7, 8, 9, 12, 16, 24, 30, 32, 60, 64, 180)
+NUMERATORS = (1, 2, 3, 4, 5, 7, 8, 11, 16, 32)
+
+
+def write(
+    expression: Expression,
+    names: Mapping[str, str],
+    helper: Helper | None = None,
+    doubtful: Collection[str] = (),
+) -> str:
+    """Return a tree as the formula of a cell, without the sign of equality in front.
+
+    Parameters
+    ----------
+    expression : Expression
+    names : mapping
+        Quantity -> what the spreadsheet calls it: a defined name, or a cell.
+    helper : callable, optional
+        Puts a tree into a cell of its own and returns that. Without it a formula that needs its argument twice writes
+        it twice, and one that is too long is refused.
+    doubtful : collection of str
+        Quantities whose cell may hold an error. A comparison with what does not exist is not true (unequal: true), as
+        everywhere in this program; a spreadsheet would hand the error on.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ValueError
+        The formula is longer than :data:`LONGEST`, and there is no helper.
+
+    Examples
+    --------
+    >>> x, y = ["q", "x"], ["q", "y"]
+    >>> write(["neg", ["^", x, ["n", 2.0]]], {"x": "wire.d"})
+    '-(wire.d^2)'
+    >>> write(["+", [["*", [["n", 2.0], x], [y]], ["neg", ["+", [x, y]]]]], {"x": "x", "y": "y"})
+    '2*x/y-(x+y)'
+    >>> write(["f", "atan2", [y, x]], {"x": "x", "y": "y"})
+    'ATAN2(x,y)'
+    >>> write(["if", ["<=", x, y], ["n", 1 / 3], ["n", 0.39269908169872414]], {"x": "x", "y": "y"})
+    'IF(x<=y,1/3,PI()/8)'
+    """
+    known = dict(names)
+    while True:
+        text = _Writer(known, helper, frozenset(doubtful)).number(expression)
+        if len(text) <= LONGEST and _depth(text) <= DEEPEST:
+            return text
+        if helper is None:
+            raise ValueError(f"a formula of {len(text)} characters needs cells for its parts")
+        expression = _shorter(expression, known, helper)
+
+
+def number_text(value: float) -> str:
+    """Return a number as formulas have it: a fraction, or a multiple of pi, where it is one.
+
+    A spreadsheet reads 15 digits; so 1/3 is more than a short way to write it.
+
+    Examples
+    --------
+    >>> [number_text(x) for x in (0.25, 2 / 3, 4 * math.pi, 1e-7, 600.0, -0.1, 6.02e23)]
+    ['0.25', '2/3', '4*PI()', '1E-07', '600', '-0.1', '6.02E+23']
+    """
+    if value < 0:
+        return "-" + number_text(-value)
+    if float(value).is_integer() and value < 1e15:
+        return str(int(value))
+    plain = repr(float(value)).replace("e", "E")
+    if len(plain) <= WIDTH + 2 or not 1e-4 < value < 1e4:
+        return plain
+    for power, word in ((0, ""), (1, "PI()"), (2, "PI()^2")):
+        for under in DENOMINATORS:
+            for over in NUMERATORS:
+                if abs(over * math.pi**power / under - value) <= 2e-16 * value:
+                    front = [str(over)] if over > 1 or not word else []
+                    return "*".join([*front, *([word] if word else [])]) + (f"/{under}" if under > 1 else "")
+    return plain
+
+
+def to_si_text(cell: str, unit: str) -> str:
+    """Return the formula for the SI value of a cell in a unit, with the factor written out.
+
+    Examples
+    --------
+    >>> to_si_text("C5", "mm"), to_si_text("C5", "1/min"), to_si_text("C5", "degC"), to_si_text("C5", "N*m")
+    ('C5/1000', 'C5*PI()/30', 'C5+273.15', 'C5')
+    """
+    factor, offset = _factor(unit)
+    return f"{cell}{factor}+{offset}" if offset else f"{cell}{factor}"
+
+
+def from_si_text(cell: str, unit: str) -> str:
+    """Return the formula for the value in a unit of a cell that holds it in SI.
+
+    Examples
+    --------
+    >>> from_si_text("E5", "mm"), from_si_text("E5", "1/min"), from_si_text("E5", "degC"), from_si_text("E5", "-")
+    ('E5*1000', 'E5*30/PI()', 'E5-273.15', 'E5')
+    """
+    factor, offset = _factor(unit, turned=True)
+    return f"({cell}-{offset}){factor}" if offset and factor else f"{cell}-{offset}" if offset else f"{cell}{factor}"
+
+
+def _factor(unit: str, turned: bool = False) -> tuple[str, str]:
+    """Return what follows the cell, and what is added: the exact factor of a unit as people write it."""
+    if unit in ("", "-"):
+        return "", ""
+    read = parse_unit(unit)
+    offset = repr(read.offset) if read.offset else ""
+    for power in (0, 1, -1):
+        ratio = read.ratio / PI**power
+        if max(ratio.numerator, ratio.denominator) < 10**15:
+            break
+    else:
+        ratio, power = Fraction(float(read.ratio)), 0
+        return (("/" if turned else "*") + number_text(float(ratio))), offset
+    if turned:
+        ratio, power = 1 / ratio, -power
+    over = ([str(ratio.numerator)] if ratio.numerator > 1 else []) + (["PI()"] if power > 0 else [])
+    under = ([str(ratio.denominator)] if ratio.denominator > 1 else []) + (["PI()"] if power < 0 else [])
+    return "".join(f"*{x}" for x in over) + "".join(f"/{x}" for x in under), offset
+
+
+def _depth(text: str) -> int:
+    """Return how many brackets stand inside each other."""
+    deepest = depth = 0
+    for letter in text:
+        depth += (letter == "(") - (letter == ")")
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _shorter(tree: Expression, known: dict[str, str], helper: Helper) -> Expression:
+    """Return a tree with parts of it in cells of their own, which it calls by name; the names are added to those known.
+
+    Raises
+    ------
+    ValueError
+        Nothing in it can be told alone.
+    """
+
+    def alone(part: Expression) -> Expression:
+        if part[0] in SIGN_OF:  # what is compared is told alone, not the comparison
+            return with_parts(part, [alone(side) if parts_of(side) else side for side in part[1:]])
+        if part[0] in CONDITIONS:
+            return with_parts(part, [["!=", told(["if", x, ["n", 1.0], ["n", 0.0]]), ["n", 0.0]] for x in part[1:]])
+        return told(part)
+
+    def told(part: Expression) -> Expression:
+        cell = helper(part)
+        known[cell] = cell
+        return ["q", cell]
+
+    def halves(several: list[Expression], joined: Callable[[list[Expression]], Expression]) -> list[Expression]:
+        half = len(several) // 2
+        return [alone(joined(several[:half])), alone(joined(several[half:]))] if len(several) >= MANY else several
+
+    parts = parts_of(tree)
+    if len(parts) >= MANY and tree[0] in ("+", "f"):
+        return _joined(tree, halves(parts, lambda some: _joined(tree, some)))
+    if tree[0] == "*" and max(map(len, tree[1:])) >= MANY:
+        return ["*", *(halves(side, lambda some: ["*", some, []]) for side in tree[1:])]
+    if not any(parts_of(part) for part in parts):
+        raise ValueError("a formula of few names is too long: the names are")
+    return with_parts(tree, [alone(part) if parts_of(part) else part for part in parts])
+
+
+def _joined(tree: Expression, parts: list[Expression]) -> Expression:
+    """Return other parts joined as those of a sum or a function are."""
+    return ["+", parts] if tree[0] == "+" else ["f", tree[1], parts]
+
+
+class _Writer:
+    """Text of trees; each method returns what holds together as firmly as it is asked to."""
+
+    def __init__(self, names: Mapping[str, str], helper: Helper | None, doubtful: frozenset[str]) -> None:
+        self.names, self.helper, self.doubtful = names, helper, doubtful
+
+    def number(self, tree: Expression, firm: int = ANY) -> str:
+        """Return a tree that is a number."""
+        kind = tree[0]
+        if kind == "q":
+            return self.names[tree[1]]
+        if kind == "n":
+            return self._constant(tree[1], firm)
+        if kind == "+":
+            return _bracketed(self._sum(tree[1]), firm >= FACTOR)
+        if kind == "neg":
+            return _bracketed("-" + self._negated(tree[1]), firm >= TERM)
+        if kind == "*":
+            return _bracketed(self._product(tree[1], tree[2]), firm >= DIVISOR)
+        if kind == "^":
+            text = f"{self.number(tree[1], BASE)}^{self.number(tree[2], BASE)}"
+            return _bracketed(text, firm >= BASE)
+        if kind == "if":
+            return f"IF({self.condition(tree[1])},{self.number(tree[2])},{self.number(tree[3])})"
+        if kind in CONDITIONS:
+            return f"IF({self.condition(tree)},1,0)"
+        return self._function(tree[1], tree[2], firm)
+
+    def condition(self, tree: Expression) -> str:
+        """Return a tree that is true or false."""
+        kind = tree[0]
+        if kind in ("and", "or"):
+            return f"{kind.upper()}({self.condition(tree[1])},{self.condition(tree[2])})"
+        if kind == "not":
+            return f"NOT({self.condition(tree[1])})"
+        if kind not in SIGN_OF:
+            return f"{self.number(tree, TERM)}<>0"
+        text = f"{self.number(tree[1], TERM)}{SIGN_OF[kind]}{self.number(tree[2], TERM)}"
+        if self._fails(tree[1]) or self._fails(tree[2]):
+            return f"IFERROR({text},{'TRUE' if kind == '!=' else 'FALSE'})"
+        return text
+
+    def _constant(self, value: float, firm: int) -> str:
+        if not math.isfinite(value):
+            return "NA()" if math.isnan(value) else f"{'-' if value < 0 else ''}1E+308"
+        text = number_text(value)
+        whole = not any(sign in text for sign in "*/^")
+        return _bracketed(text, firm >= TERM if value < 0 else firm >= DIVISOR and not whole)
+
+    def _sum(self, terms: list[Expression]) -> str:
+        text = self.number(terms[0])
+        for term in terms[1:]:
+            if term[0] == "neg":
+                text += "-" + self.number(term[1], FACTOR)
+            elif term[0] == "n" and term[1] < 0:
+                text += self._constant(term[1], ANY)
+            else:
+                text += "+" + self.number(term, TERM)
+        return text
+
+    def _negated(self, tree: Expression) -> str:
+        """Return what stands behind a minus: a sign goes before a power there, so a power stands in brackets."""
+        plain = tree[0] in ("q", "f", "if") or (tree[0] == "n" and tree[1] >= 0)
+        text = self.number(tree, BASE)
+        return text if plain or text.startswith("(") else f"({text})"
+
+    def _product(self, over: list[Expression], under: list[Expression]) -> str:
+        text = "*".join(self.number(x, FACTOR) for x in over or [["n", 1.0]])
+        if len(under) == 1:
+            return f"{text}/{self.number(under[0], DIVISOR)}"
+        return text + ("/(" + "*".join(self.number(x, FACTOR) for x in under) + ")" if under else "")
+
+    def _function(self, name: str, arguments: list[Expression], firm: int) -> str:
+        if name in ("log1p", "expm1"):
+            return self._near_one(name, arguments[0])
+        if name == "atan2":  # mathematics has the height first, spreadsheets the length
+            return f"ATAN2({self.number(arguments[1])},{self.number(arguments[0])})"
+        if name == "hypot":
+            return f"SQRT({'+'.join(f'{self.number(x, BASE)}^2' for x in arguments)})"
+        if name == "floor":
+            return f"INT({self.number(arguments[0])})"
+        if name == "ceil":
+            return _bracketed(f"-INT({self.number(['neg', arguments[0]])})", firm >= TERM)
+        if name == "fmod":  # MOD has the sign of the divisor
+            a, b = (self.number(x, DIVISOR) for x in arguments)
+            return _bracketed(f"{a}-{b}*TRUNC({a}/{b})", firm >= FACTOR)
+        if name == "copysign":
+            size = self.number(arguments[0])
+            return f"IF({self.number(arguments[1], TERM)}<0,-ABS({size}),ABS({size}))"
+        assert name in SAME_NAME, name
+        return f"{name.upper()}({','.join(map(self.number, arguments))})"
+
+    def _near_one(self, name: str, argument: Expression) -> str:
+        """Return ln(1 + x) or e^x - 1 so that small x keep all their digits.
+
+        Notes
+        -----
+        W. Kahan: what is lost in 1 + x is lost in (1 + x) - 1 as well, so that their quotient mends it.
+        """
+        x = self._cell(argument)
+        if name == "log1p":
+            return f"IF(1+{x}=1,{x},LN(1+{x})*{x}/((1+{x})-1))"
+        u = self._cell(["f", "exp", [argument]])
+        # Far from 1 nothing is lost, and the logarithm of nothing does not exist.
+        return f"IF({u}=1,{x},IF(OR({u}<0.5,{u}>2),{u}-1,({u}-1)*{x}/LN({u})))"
+
+    def _cell(self, tree: Expression) -> str:
+        """Return what can be named several times."""
+        if tree[0] == "q" or self.helper is None:
+            return self.number(tree, BASE)
+        return self.helper(tree)
+
+    def _fails(self, tree: Expression) -> bool:
+        """Tell whether the cell of a tree may hold an error."""
+        kind = tree[0]
+        if kind == "q":
+            return tree[1] in self.doubtful
+        if any(map(self._fails, parts_of(tree))):
+            return True
+        if kind == "*":
+            return any(x[0] != "n" or x[1] == 0 for x in tree[2])
+        if kind == "^":
+            return not (tree[2][0] == "n" and tree[2][1] > 0 and float(tree[2][1]).is_integer())
+        return kind == "f" and tree[1] in MAY_FAIL
+
+
+def may_fail(expression: Expression, doubtful: Collection[str]) -> bool:
+    """Tell whether the cell of a tree may hold an error, given the quantities whose cells may."""
+    return _Writer({}, None, frozenset(doubtful))._fails(expression)
+
+
+def _bracketed(text: str, wanted: bool) -> str:
+    return f"({text})" if wanted else text
