@@ -27,6 +27,8 @@ ERRORS = {"nan": "#N/A", "inf": "#DIV/0!", "-inf": "#DIV/0!"}
 BLUE, BAND, RULE = "#1F3A5F", "#E4EAF1", "#C9D1DB"
 INPUT, FOLLOWS, GREY = "#FFF4CC", "#FFFBEA", "#6B7280"
 GOOD, BAD = "#1B7F4B", "#B3261E"
+MARKED, FULL = "#FFE9A8", "#F6B26B"
+NEARLY = 0.9  # share of a limit from which it is coloured as nearly used up
 FONT = "Calibri"
 
 INDENTED = {"align": "left", "indent": 1}  # a number is not to run into the text beside it
@@ -34,6 +36,8 @@ HEAD = {"bold": True, "bg_color": BLUE, "font_color": "#FFFFFF", "text_wrap": Tr
 STYLES: Mapping[str, Mapping[str, Any]] = {
     "title": {"bold": True, "font_size": 16, "font_color": BLUE, **INDENTED},
     "state": {"bold": True, "font_size": 13, **INDENTED},
+    "title_line": {"bold": True, "font_size": 16, "font_color": BLUE},
+    "state_line": {"bold": True},
     "section": {"bold": True, "bg_color": BAND, "font_color": BLUE, **INDENTED},
     "head": {**HEAD, **INDENTED},
     "head_right": {**HEAD, "align": "right"},
@@ -87,23 +91,28 @@ class Book:
         self._formats: dict[tuple[str, str], Any] = {}
         self._sheets: list[Sheet] = []
 
-    def sheet(self, name: str, widths: Sequence[float], locked: bool = True, landscape: bool = True) -> Sheet:
+    def sheet(self, name: str, widths: Sequence[float], locked: bool = True, wide: bool = False) -> Sheet:
         """Return a new sheet with columns of these widths [characters].
 
         Parameters
         ----------
         locked : bool
             Whether it is protected, without a password; cells for inputs stay open.
+        wide : bool
+            Whether it is too wide for one page.
         """
         sheet = self._book.add_worksheet(name)
         for column, width in enumerate(widths):
             sheet.set_column(column, column, width)
         sheet.hide_gridlines(2)
         sheet.set_paper(9)
-        if landscape:
-            sheet.set_landscape()
+        sheet.set_landscape()
         sheet.set_margins(0.4, 0.4, 0.5, 0.6)
-        sheet.fit_to_pages(1, 0)
+        if wide:
+            sheet.set_print_scale(60)
+            sheet.repeat_columns(0)
+        else:
+            sheet.fit_to_pages(1, 0)
         sheet.set_footer("&L&8clutchsynth&C&8&A&R&8&P / &N")
         if locked:
             sheet.protect("", {"format_columns": True, "format_rows": True, "select_locked_cells": True})
@@ -140,7 +149,7 @@ class Sheet:
 
     def __init__(self, book: Book, own: Any, name: str, widths: Sequence[float]) -> None:
         self.book, self.own, self.name = book, own, name
-        self._widths, self._heights = widths, dict[int, float]()
+        self.widths, self._heights = widths, dict[int, float]()
         self.last = 1
         self._joined = set[tuple[int, int]]()
 
@@ -204,14 +213,14 @@ class Sheet:
     def wide(self, row: int, first: int, last: int, text: str) -> None:
         """Join the cells of a row, to be written afterwards with a text of this length."""
         self.own.merge_range(row, first, row, last, "", self.book.style("text"))
-        self._grow(row, LINE * lines_of(text, sum(self._widths[first : last + 1])))
+        self._grow(row, LINE * lines_of(text, sum(self.widths[first : last + 1])))
         self._joined.add((row, first))
 
     def _needs_room(self, row: int, column: int, text: str, style: str) -> None:
-        if STYLES[style].get("text_wrap") and (row, column) not in self._joined and column < len(self._widths):
+        if STYLES[style].get("text_wrap") and (row, column) not in self._joined and column < len(self.widths):
             size = STYLES[style].get("font_size", 11) / 11
             broad = size * (BROAD if STYLES[style].get("bold") else 1)
-            self._grow(row, LINE * size * lines_of(text, self._widths[column] / broad))
+            self._grow(row, LINE * size * lines_of(text, self.widths[column] / broad))
 
     def _grow(self, row: int, height: float) -> None:
         self._heights[row] = max(self._heights.get(row, LINE), height)
@@ -221,6 +230,21 @@ class Sheet:
         for row, height in self._heights.items():
             if height > LINE:
                 self.own.set_row(row, round(height, 1))
+
+    def scale(self, column: int, first: int, last: int, cells: str = "") -> None:
+        """Colour shares by their size, from white over yellow to orange where all is used.
+
+        Parameters
+        ----------
+        column, first, last : int
+            The cells, one below the other.
+        cells : str, optional
+            Addresses of some of them.
+        """
+        rule: dict[str, Any] = {"type": "3_color_scale", "min_type": "num", "mid_type": "num", "max_type": "num"}
+        rule |= {"min_value": 0, "mid_value": NEARLY, "max_value": 1}
+        rule |= {"min_color": "#FFFFFF", "mid_color": MARKED, "max_color": FULL}
+        self.own.conditional_format(first, column, last, column, rule | ({"multi_range": cells} if cells else {}))
 
     def place(self, row: int, column: int) -> str:
         """Return a cell as formulas of any sheet call it."""

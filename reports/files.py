@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,8 @@ from reports.sheet.design_sheet import LENGTHS, SheetRequest, design_sheet
 from reports.sheet.html import html
 from reports.sheet.pdf import pdf_with_notes
 from reports.sheet.record import sheet_record
+from reports.workbook import live_workbook
+from reports.workbook_front import front_workbook
 from synth.errors import InputError
 from synth.results import Design, ParetoFront
 from synth.results.calculation import Calculation
@@ -155,7 +156,6 @@ class _Files:
         )
         self._document(document, "report")
         if "xlsx" in request.formats:
-            front_workbook = import_module("reports.workbook_front").front_workbook
             self.files["designs.xlsx"] = front_workbook(front, request.calculation)
         for design in chosen:
             self._sheet(design, names[design.rank or 0])
@@ -174,8 +174,10 @@ class _Files:
             content = sheet_record(request.calculation, design)
             self.files[f"{name}_sheet.json"] = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
         if "xlsx" in request.formats:
-            live_workbook = import_module("reports.workbook").live_workbook
-            self.files[f"{name}_live.xlsx"] = live_workbook(request.calculation, design, request.rows, request.about)
+            proven = "" if request.front is None else request.front.certificate.sentence()
+            self.files[f"{name}_live.xlsx"] = live_workbook(
+                request.calculation, design, request.rows, request.about, proven
+            )
 
 
 def chosen_by(front: ParetoFront, words: Sequence[str]) -> list[Design]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from reports.excel_formula import from_si_text, number_text
-from reports.excel_sheets import BAD, GOOD, GREY, Sheet, cell
+from reports.excel_sheets import BAD, GOOD, GREY, MARKED, Sheet, cell
 from reports.workbook_cells import Formulas, in_unit
 from synth.feasibility import TOLERANCE, holds, residual
 from synth.results.calculation import CalculatedDesign, Calculation, LimitRule, LimitVerdict
@@ -21,7 +21,6 @@ SIGNS = {"at_most": "≤", "at_least": "≥", "equal": "="}
 HOLDS, VIOLATED, NOT_GIVEN, NOT_TOLD = "holds", "VIOLATED", "not checked: not given", "not told: behind "
 ENDLESS, NOTHING = "∞", "–"
 BEYOND = "beyond what can be told as a share"
-FULL = 0.9  # share of a limit from which it is coloured like one that is nearly used up
 
 
 @dataclass(frozen=True)
@@ -195,21 +194,8 @@ def _coloured(sheet: Sheet, limits: Sequence[LimitRule], last: int) -> None:
     own, book = sheet.own, sheet.book
     scaled = [cell(row, USED) for row, x in enumerate(limits, start=1) if x.sense != "equal"]
     if scaled:
-        scale = {
-            "type": "3_color_scale",
-            "min_type": "num",
-            "min_value": 0,
-            "min_color": "#FFFFFF",
-            "mid_type": "num",
-            "mid_value": FULL,
-            "mid_color": "#FFE9A8",
-            "max_type": "num",
-            "max_value": 1,
-            "max_color": "#F6B26B",
-            "multi_range": " ".join(scaled),
-        }
-        first = int(scaled[0].lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) - 1
-        own.conditional_format(first, USED, first, USED, scale)
+        first = next(row for row, x in enumerate(limits, start=1) if x.sense != "equal")
+        sheet.scale(USED, first, first, " ".join(scaled))
     if last:
         for word, form in (
             (VIOLATED, {"bg_color": BAD, "font_color": "#FFFFFF", "bold": True}),
@@ -233,7 +219,7 @@ def _remarks(sheet: Sheet, row: int, calculation: Calculation, formulas: Formula
         sheet.formula(here, VERDICT, shown, "applies" if applying[number - 1] else NOTHING, "verdict")
         sheet.text(here, TEXT, x.message)
         sheet.text(here, SOURCE, x.source, "small")
-    form = sheet.book.added(bg_color="#FFE9A8", bold=True)
+    form = sheet.book.added(bg_color=MARKED, bold=True)
     last = row + len(calculation.remarks)
     rule = {"type": "cell", "criteria": "==", "value": '"applies"', "format": form}
     sheet.own.conditional_format(row + 1, VERDICT, last, VERDICT, rule)
