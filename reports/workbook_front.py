@@ -78,8 +78,10 @@ def _widths(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> list[float]:
     widths = []
     for k, head in enumerate(heads):
         words = max(len(word) for word in head.replace("_", "_ ").split() or [""])
-        texts = max((len(str(line[k])) for line in rows if isinstance(line[k], str)), default=0)
-        widths.append(min(max(9, 1.2 * words + 2, len(head) / 2 + 4, texts / 2 + 6), LARGEST))
+        told = [line[k] for line in rows if isinstance(line[k], str)]
+        texts = max(map(len, told), default=0)
+        whole = max((len(word) for text in told for word in text.split()), default=0)  # a designation is not broken
+        widths.append(min(max(9, 1.2 * words + 2, len(head) / 2 + 4, texts / 2 + 6, 1.1 * whole + 2), LARGEST))
     return widths
 
 
