@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from synth.search.front_state import FrontState
 from synth.search.joint.levels import Cutoffs
 from synth.search.proven_gap import Level, LevelBound
+from synth.search.stages import levels as stage
+from synth.search.stages.proving import proven_at_gap
 from synth.search.turns import TurnBudget, by_turns
 from synth.tuning import SearchEffort
+from tests.asking import pose
+from tests.sample_problems.strut import NEEDED, RODS, Strut
 
 LOGS = np.array([True, True])
 
@@ -136,3 +142,24 @@ def test_turns_end_where_neither_tree_has_boxes_to_split() -> None:
     ahead = Work(1e5, 0.9)
     by_turns([lambda: Stuck(1e12, 0.5), lambda: ahead], TurnBudget(1e9, SearchEffort()), 100, lambda: None)
     assert not ahead.extent
+
+
+@pytest.mark.parametrize("apart", [0.0, 1.0])
+def test_one_design_that_is_best_in_both_objectives_needs_no_levels(
+    apart: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing can lie between the ends; looking for it would take longer than proving them."""
+    looked: list[np.ndarray] = []
+    monkeypatch.setattr(stage, "_prove_ends", lambda _: True)
+    monkeypatch.setattr(stage, "_look_at", lambda _, first: looked.append(first))
+    state = FrontState(pose(Strut(), NEEDED, catalogs={"rods": RODS}, points=4).search().state.task)
+    state.set_pool()
+    form = state.form
+    points = form.makeable.nearest(np.tile(form.upper, (form.instance.combinations.count, 1)))
+    rows, phi = form.points.feasible_rows(points, np.arange(len(points)))
+    two = np.array([phi[0], phi[0]])
+    two[1, :2] += [apart, -apart]
+    form.archive.add(rows[:2], points[rows[:2]], two)
+    stage.seek_levels(state)
+    assert proven_at_gap(state) == (apart == 0)
+    assert bool(looked) == (apart > 0)
