@@ -60,6 +60,14 @@ class CentrifugalReversed(LeverClutch):
             d, slot="clamp_spring", symbol="sp", count_symbol="N_s", text="between disc 1 and the housing"
         )
         leg = self._declare_leg(d)
+        # They make the forces at contact and at the stop, and make up for one another; a sharp band sees them apart.
+        d.split_last(
+            "return_spring",
+            "return_springs",
+            "return_preload_deflection",
+            "spring_preload_deflection",
+            unless=("engagement_band", "idle_margin"),
+        )
         lining = blocks.declare_lining(d, family=self.name, duty=duty, rules=rules)
         lever_blocks.limit_contact(d, lever=lever, plate_arm=leg.arm, longest=PLATE_ARM[1], name="plate_arm")
         lever_blocks.refuse_room(

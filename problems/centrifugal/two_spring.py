@@ -259,6 +259,13 @@ class CentrifugalTwoSpring(DesignProblem):
             count_symbol="N_1",
             text="they push the pressure plate off the lining (R1)",
         )
+        # The contact speed sees their force alone; room and stroke of the clamp springs decide with radius and ramp.
+        d.split_last(
+            "return_spring",
+            "return_springs",
+            "return_preload_deflection",
+            unless=("engagement_band", "idle_margin"),
+        )
         clamping = blocks.declare_springs(
             d,
             slot="clamp_spring",

@@ -226,7 +226,11 @@ class BranchingWeights:
 
     def _share(self, name: str) -> float:
         """Return how much a variable or factor counts for where to split: little if others make up for it."""
-        return self._settings.late if name in self._question.model.declaration.late else 1.0
+        model, goals = self._question.model, self._question.goals[: self._question.bounded]
+        unless, asked = model.declaration.late.get(name), {goal.node for goal in goals}
+        if unless is None or any(model.quantity_node[objective] in asked for objective in unless):
+            return 1.0
+        return self._settings.late
 
     def _spread(self, tree: ClusterTree, influence: np.ndarray) -> np.ndarray:
         """Return how far limits and objectives spread over each cluster (clusters, limits + objectives)."""

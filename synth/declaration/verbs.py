@@ -280,7 +280,7 @@ class Declaration:
         self.objectives: dict[str, Objective] = {}
         self.refusals: list[Refusal] = []
         self.advices: list[Advice] = []
-        self.late: tuple[str, ...] = ()
+        self.late: dict[str, tuple[str, ...]] = {}
         self._symbols: dict[str, str] = {}
 
     # -- names ---------------------------------------------------------------------------------
@@ -491,14 +491,15 @@ class Declaration:
         self.slots[slot] = part
         return part
 
-    def split_last(self, *names: str) -> None:
+    def split_last(self, *names: str, unless: Sequence[str] = ()) -> None:
         """Tell the search to split these variables, counts and parts last.
 
         For unknowns that make up for one another, as number, rate and deflection of springs do for their force: each
         of them alone seems to decide limits that see the force only, so that boxes are split over and over along what
-        the best design hardly depends on. It steers the search and proves nothing.
+        the best design hardly depends on. It steers the search and proves nothing. ``unless`` names objectives that
+        see more of these unknowns than their force: where one of them is asked for, nothing is split last.
         """
-        self.late += names
+        self.late |= dict.fromkeys(names, tuple(unless))
 
     def row(self, table: str, designation: str) -> Part:
         """Return one fixed row of a table (not a slot), for options whose figures stand in a table."""
@@ -681,6 +682,9 @@ class Declaration:
         for name in self.late:
             if name not in {*self.variables, *self.counts, *self.choices, *self.slots}:
                 raise DeclarationError(f"{self.problem}: {name} is split last, but is no variable, count or part")
+        for name in {name for names in self.late.values() for name in names}:
+            if name not in self.objectives:
+                raise DeclarationError(f"{self.problem}: {name} decides what is split last, but is no objective")
         for objective in self.objectives.values():
             if objective.name not in known:
                 raise DeclarationError(

@@ -103,7 +103,7 @@ def test_what_is_declared_to_be_split_last_counts_little(monkeypatch):
     bounding.branching.focus(*points[:2])
     before = bounding.branching.tables
     declared = bounding.question.model.declaration
-    monkeypatch.setattr(declared, "late", ("width", "plate"))
+    monkeypatch.setattr(declared, "late", {"width": (), "plate": ()})
     bounding.branching.focus(*points[:2])
     after, share = bounding.branching.tables, TUNING.branching.late
     names = [v.name for v in bounding.question.model.variables]
@@ -113,3 +113,7 @@ def test_what_is_declared_to_be_split_last_counts_little(monkeypatch):
         np.testing.assert_allclose(after.steep[:, k], expected, rtol=1e-6)
     for name, was, now in zip(factors, before.spreads, after.spreads, strict=True):
         np.testing.assert_allclose(now, was * (share if name == "plate" else 1.0), rtol=1e-6)
+    # Where an objective is asked for that sees more of them, nothing is late.
+    monkeypatch.setattr(declared, "late", {"width": ("mass",), "plate": ("mass",)})
+    bounding.branching.focus(*points[:2])
+    np.testing.assert_array_equal(bounding.branching.tables.steep, before.steep)

@@ -458,7 +458,12 @@ def test_what_is_split_last_is_an_unknown():
     d.variable("width", "mm", 1, 2)
     d.count("pieces", 1, 3)
     d.split_last("width", "pieces")
-    assert d.late == ("width", "pieces")
+    assert d.late == {"width": (), "pieces": ()}
+    d.finish()
+    d.split_last("pieces", unless=("width",))
+    with pytest.raises(DeclarationError, match="width decides what is split last, but is no objective"):
+        d.finish()
+    d.objective("width")
     d.finish()
     d.split_last("mass")
     with pytest.raises(DeclarationError, match="mass is split last, but is no variable, count or part"):
