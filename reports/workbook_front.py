@@ -23,7 +23,7 @@ STATES = {
     Status.FAILED: "FAILED",
 }
 OF_ROWS = ("designation", "table", "hash", "confidence", "source")
-LARGEST = 28  # characters; width of a column of numbers
+LARGEST = 28  # characters; width of a column of texts
 
 
 def front_workbook(front: ParetoFront, calculation: Calculation | None = None) -> bytes:
@@ -74,14 +74,12 @@ def _is_number(value: Any) -> bool:
 
 
 def _widths(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> list[float]:
-    """Return widths of columns: heads are broken after their words, texts may take two lines."""
+    """Return widths of columns: heads are broken between words only, long texts take several lines."""
     widths = []
     for k, head in enumerate(heads):
-        words = max(len(word) for word in head.replace("_", "_ ").split() or [""])
-        told = [line[k] for line in rows if isinstance(line[k], str)]
-        texts = max(map(len, told), default=0)
-        whole = max((len(word) for text in told for word in text.split()), default=0)  # a designation is not broken
-        widths.append(min(max(9, 1.2 * words + 2, len(head) / 2 + 4, texts / 2 + 6, 1.1 * whole + 2), LARGEST))
+        longest = max((len(word) for word in head.split()), default=0)
+        texts = max((len(str(line[k])) for line in rows if isinstance(line[k], str)), default=0)
+        widths.append(max(9, 1.2 * longest + 2, min(1.1 * texts + 2, LARGEST)))
     return widths
 
 
@@ -99,6 +97,7 @@ def _designs(book: Book, front: ParetoFront) -> None:
     sheet = book.sheet("designs", _widths(heads, lines), locked=False, wide=True)
     sheet.text(0, 0, front.frame.title, "title_line")
     sheet.text(1, 0, _state(front), "state_line")
+    sheet.own.set_row(0, 24)
     last = _table(sheet, 3, heads, lines)
     sheet.own.freeze_panes(4, 1)
     sheet.own.repeat_rows(3)

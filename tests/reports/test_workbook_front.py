@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import sys
+import time
 from dataclasses import replace
 
 import openpyxl
@@ -10,6 +12,9 @@ import pytest
 
 import synth
 from reports.workbook_front import front_workbook
+from synth import InputError
+from synth.model.problem import DesignProblem
+from synth.units import header
 from tests.analysis.test_calculation import Beam
 
 ASKED = {"mass_carried": "100 kg"}
@@ -72,3 +77,104 @@ def test_texts_never_become_formulas(front, text):
 def test_the_same_front_gives_the_same_bytes(front):
     calculation = synth.calculation(front)
     assert front_workbook(front, calculation) == front_workbook(front, calculation)
+
+
+# -- two objectives, a table, units -------------------------------------------------------------------
+
+
+class Strut(DesignProblem):
+    """A strut of a metal, light or stiff."""
+
+    name, title, sources = "strut", "=cmd()", ("any <b>textbook</b>",)
+
+    def declare(self, d):
+        force = d.requirement("force", "kN", lower=1, symbol="F", text="=1+1", source="the drive", group="duty")
+        length = d.requirement("length", "mm", 500, lower=10, symbol="l", text="Length")
+        d.requirement("warm", "degC", 20, symbol="T", text="Temperature")
+        diameter = d.variable("diameter", "mm", 5, 200, symbol="d", text="Diameter")
+        metal = d.part("metal", "metals", text="Material")
+        area = d.derive("area", "mm2", 0.785398 * diameter**2, symbol="A", text="Section")
+        d.derive("mass", "kg", area * length * metal.density, symbol="m", text="Mass")
+        d.derive("give", "um", force * length / (metal.E * area), symbol="u", text="Compression")
+        d.at_most("stress", force / area, metal.yield_Re, "N/mm2", text="Stress", source="statics")
+        d.objective("mass", "min")
+        d.objective("give", "min")
+
+
+STRUT = {"force": "40 kN"}
+
+
+@pytest.fixture(scope="module")
+def struts():
+    return synth.synthesize(Strut, STRUT, parts={"metal": ["S185", "42CrMo4"]}, points=4)
+
+
+@pytest.fixture(scope="module")
+def content(struts):
+    return front_workbook(struts, synth.calculation(struts))
+
+
+@pytest.fixture(scope="module")
+def book(content):
+    return openpyxl.load_workbook(io.BytesIO(content))
+
+
+def rows_of(sheet, first):
+    return [[cell.value for cell in row] for row in sheet.iter_rows(min_row=first)]
+
+
+def test_limits_are_shares_with_colours_and_both_sides(struts, book):
+    sheet = book["limits"]
+    heads, *found = rows_of(sheet, 3)
+    assert heads[:2] == ["rank", "stress"]
+    assert heads[3:] == ["found: stress ≤ [N/mm2]", "allowed: stress ≤ [N/mm2]"]
+    for told, design in zip(found, struts.designs, strict=True):
+        assert told[:2] == [design.rank, pytest.approx(design.utilisation["stress"])]
+        assert told[3] * 1e6 == pytest.approx(design.limits["stress"][0])
+    kinds = [rule.type for rules in sheet.conditional_formatting for rule in rules.rules]
+    assert "colorScale" in kinds
+
+
+def test_parts_and_requirements_stand_in_their_units(struts, book):
+    lines = rows_of(book["requirements"], 1)
+    told = {line[0]: line[1:4] for line in lines}
+    assert told["force"] == [40, "kN", "typed"]
+    assert told["warm"] == [20, "degC", "default"]
+    section, heads, *found = rows_of(book["parts"], 1)
+    assert section[0] == "metal"
+    assert header("yield_Re", "N/mm2") in heads
+    for line in found:
+        row = next(design.parts["metal"] for design in struts.designs if str(design.parts["metal"]) == line[0])
+        assert line[heads.index("yield_Re [N/mm2]")] * 1e6 == pytest.approx(row["yield_Re"])
+        ranks = [f"#{design.rank}" for design in struts.designs if str(design.parts["metal"]) == line[0]]
+        assert line[1] == ", ".join(ranks)
+
+
+def test_it_is_the_same_again_also_of_a_front_that_was_loaded(struts, content, tmp_path):
+    assert front_workbook(struts, synth.calculation(struts)) == content
+    struts.save(tmp_path)
+    loaded = synth.load_front(tmp_path)
+    told = openpyxl.load_workbook(io.BytesIO(front_workbook(loaded, synth.calculation(loaded))))
+    assert rows_of(told["designs"], 1) == rows_of(openpyxl.load_workbook(io.BytesIO(content))["designs"], 1)
+    assert any(line[0] == "checksum" for line in rows_of(told["certificate"], 1))
+
+
+def test_without_a_calculation_what_parts_say_is_in_si(struts):
+    book = openpyxl.load_workbook(io.BytesIO(front_workbook(struts)))
+    assert "yield_Re [SI]" in rows_of(book["parts"], 2)[0]
+    assert "not known here" in book["sources"]["A1"].value
+
+
+def test_many_designs_are_written_quickly(struts):
+    first = struts.designs[0]
+    many = replace(struts, designs=[replace(first, rank=rank, note="<b>=1") for rank in range(1, 201)])
+    started = time.process_time()
+    written = front_workbook(many, synth.calculation(struts))
+    assert time.process_time() - started < 2  # 0.1 s; others may be at work
+    assert len(written) < 200_000
+
+
+def test_without_the_extra_it_is_one_sentence(struts, monkeypatch):
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
+    with pytest.raises(InputError, match=r"^--xlsx needs the extra excel: pip install 'clutchsynth\[excel\]'$"):
+        front_workbook(struts)
