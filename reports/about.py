@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,6 @@ LABELS = {
     "project": "Project",
     "customer": "Customer",
     "number": "Number",
-    "title": "Title",
     "author": "Author",
     "checked_by": "Checked by",
     "revision": "Revision",
@@ -82,9 +82,10 @@ class About:
         for key, value in told.items():
             if key not in known:
                 raise InputError("about", str(key), f"one of {', '.join(known)}", ("about", str(key)))
+            if value is not None and not isinstance(value, (str, date)):
+                right = f"a text in quotes, for example {key}: '1.10' (YAML reads 1.10 as the number 1.1)"
+                raise InputError(f"about: {key}", value, right, ("about", str(key)))
             text = "" if value is None else str(value)
-            if isinstance(value, (Mapping, list)):
-                raise InputError(f"about: {key}", value, "a text", ("about", str(key)))
             if len(text) > MOST_LETTERS:
                 raise InputError(f"about: {key}", text, f"at most {MOST_LETTERS} letters", ("about", str(key)))
             values[key] = text

@@ -58,9 +58,10 @@ def comparison_report(
         )
     first = next(iter(fronts.values()), None)
     count = f"{len(designs)} designs" if len(designs) != 1 else "one design"
+    searched = f"{len(fronts)} families searched" if len(fronts) != 1 else "one family searched"
     return Document(
         kind="Comparison of families",
-        title=about.title or f"{len(content['families'])} families: {count}",
+        title=about.title or f"{searched}: {count}",
         facts=about.facts(),
         blocks=tuple(blocks),
         program=program_name(first),
@@ -99,7 +100,8 @@ def _ranked(
     rows = []
     for x in designs:
         family = x["family"]
-        named = Link(titles[family], links[family]) if family in links else titles[family]
+        place = f"{links[family]}#design-{x['own_rank']}"
+        named = Link(f"{titles[family]} #{x['own_rank']}", place)
         score = "" if x["score"] is None else significant(float(x["score"]), 4)
         values = [printed(shown(float(x["objectives"][n]), units.get(n, "-"))) for n in content["objectives"]]
         rows.append(TableRow((f"#{x['rank']}", score, named, *values, str(x.get("note") or ""))))

@@ -175,6 +175,9 @@ class _Files:
             self.files[f"{name}_sheet.json"] = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
         if "xlsx" in request.formats:
             proven = "" if request.front is None else request.front.certificate.sentence()
+            if design.robust:
+                worst = f"; over the range that scatters the worst limit is {design.robust.worst_limit}"
+                proven += f". NOMINAL POINT ONLY: this workbook does not compute what scatters{worst}"
             self.files[f"{name}_live.xlsx"] = live_workbook(
                 request.calculation, design, request.rows, request.about, proven
             )

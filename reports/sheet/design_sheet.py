@@ -121,7 +121,9 @@ class _Sheet:
         ]
         if options:
             blocks.append(
-                TableBlock.of("Options", (Column("option", width=2), Column("in force", width=2), Column("")), options)
+                TableBlock.of(
+                    "Options", (Column("option", width=2), Column("in force", width=2), Column("from")), options
+                )
             )
         groups = _grouped(usual)
         told = tuple((label, tuple(self._input_row(q) for q in members)) for label, members in groups)
@@ -195,7 +197,9 @@ class _Sheet:
         if broken:
             return f"Violated: {', '.join(broken)}."
         tight = [x.name for x in ranked if (self.outcome.verdicts[x.name].used or 0) >= TIGHT and x.sense != "equal"]
-        return f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
+        told = f"The design is at the limit of {', '.join(tight)}." if tight else "No limit is reached."
+        worst = self.design.robust.worst_limit if self.design.robust else ""
+        return f"At the nominal point: {told} Over the range that scatters the worst is {worst}." if worst else told
 
     def _limit_row(self, x: LimitRule, verdict: LimitVerdict) -> TableRow:
         condition = self.steps.limit_condition(x.value, x.limit, x.sense)
@@ -206,7 +210,7 @@ class _Sheet:
         if verdict.failed:
             told = f"not checked: {', '.join(verdict.failed)} fails"
             return TableRow((name, condition, "", "", told))
-        numbers = self.steps.limit_numbers(verdict.value, verdict.limit, x.sense, x.unit)
+        numbers = self.steps.limit_numbers(verdict, x.sense, x.unit)
         used = "" if verdict.used is None else percent(verdict.used)
         words: Cell = "holds" if verdict.holds else Strong("VIOLATED")
         if x.source and "unsourced" in x.source:
@@ -287,6 +291,7 @@ class _Sheet:
         notes: list[Cell] = [
             "Numbers are shown to five digits, more where a difference needs them; the calculation carries sixteen. "
             "A pocket calculator may differ in the last digit shown.",
+            "A limit holds within a millionth of its size; sides that differ by less are shown alike.",
             "Formulas are read back from the graph that was solved: the sheet cannot say anything else than the model.",
         ]
         if self.steps.negligible:
@@ -404,6 +409,7 @@ SIZE_COLUMNS = (
     Column("value", number=True, width=1.3),
     Column("", width=2.5),
 )
+OPTION_COLUMNS = (Column("option", width=2), Column("in force", width=2), Column("from"))
 PART_COLUMNS = (Column("meaning", width=4), Column("symbol"), Column("value", number=True, width=1.5))
 LIMIT_COLUMNS = (
     Column("limit", width=2.6),

@@ -24,7 +24,8 @@ from reports.formula.lines import broken
 from reports.formula.plain import plain
 from reports.numbers import DIGITS, Shown, UnitIn, shown
 from reports.sheet.blocks import Cell, StepBlock, said
-from synth.results.calculation import CalculatedDesign, Calculation, NamedQuantity
+from synth.feasibility import TOLERANCE
+from synth.results.calculation import CalculatedDesign, Calculation, LimitVerdict, NamedQuantity
 from synth.results.dimensions import dimension_of
 from synth.results.expression import Expression, in_force, names_in, value_of
 from synth.units import parse_unit, to_si
@@ -157,18 +158,21 @@ class Steps:
         sides = [self.symbols.lay(textbook(side)) for side in (value, limit)]
         return Row((sides[0], Sign(SENSES[sense]), sides[1]))
 
-    def limit_numbers(self, value: float, limit: float, sense: str, unit: str) -> Layout:
-        """Return both sides of a limit in numbers; enough digits to see that they differ."""
-        return Row((Amount(apart(value, limit, unit)), Sign(SENSES[sense]), Amount(apart(limit, value, unit))))
+    def limit_numbers(self, verdict: LimitVerdict, sense: str, unit: str) -> Cell:
+        """Return both sides of a limit in numbers, with enough digits to see that one is missed."""
+        both = ((verdict.value, verdict.limit), (verdict.limit, verdict.value))
+        sides = [Amount(apart(x, other, unit, verdict.holds)) for x, other in both]
+        return said(sides[0], f" {SENSES[sense]} ", sides[1])  # apart, so that a narrow column breaks between them
 
 
 SENSES = {"at_most": "≤", "at_least": "≥", "equal": "="}
 
 
-def apart(value: float, other: float, unit: str) -> Shown:
-    """Return a number with enough digits to see that it is not the other one, if that is so."""
+def apart(value: float, other: float, unit: str, holds: bool) -> Shown:
+    """Return a number with enough digits to see that it is not the other one; what a limit tolerates is none."""
+    same = value == other or (holds and abs(value - other) <= TOLERANCE * max(abs(value), abs(other)))
     for digits in MORE_DIGITS:
-        if value == other or shown(value, unit, digits) != shown(other, unit, digits):
+        if same or shown(value, unit, digits) != shown(other, unit, digits):
             return shown(value, unit, digits)
     return shown(value, unit, MORE_DIGITS[-1])
 

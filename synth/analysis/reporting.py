@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,12 @@ from synth.analysis.designs import part_row
 from synth.analysis.restate import question_of
 from synth.errors import InputError
 from synth.files import read_json, read_text
-from synth.output_folder import REPORT_FILES, save_files
+from synth.output_folder import save_files
 from synth.plain_text import csv_cell
 from synth.question.instance import Instance
 from synth.results import Design, ParetoFront, design_columns, design_row
 from synth.results.drawings import report as report_named
+from synth.results.front_record import FRONT_FILE
 from synth.results.loading import COMPARISON, load_front
 
 FORMATS = ("html", "pdf", "xlsx", "json")
@@ -71,20 +73,77 @@ def report(
         Something asked is wrong, or an extra is not installed; then nothing is written.
     """
     place = Path(folder)
+    _refuse_another_front(front, place)
+    how = ReportOptions.read(formats, about, length, fonts, about_folder)
+    chosen = list(design) if isinstance(design, (list, tuple)) else [design]
+    files, notes = _of_front(front, chosen, full, how, problem, catalogs)
+    save_files(place, files)
+    return place, list(files), notes
+
+
+@dataclass(frozen=True)
+class ReportOptions:
+    """How a report is written; fields as for :func:`report`."""
+
+    formats: tuple[str, ...]
+    about: Any
+    length: str
+    fonts: tuple[Path, ...]
+    about_folder: Path | None
+
+    @staticmethod
+    def read(
+        formats: str | Sequence[str], about: Any, length: str, fonts: Sequence[str | Path], about_folder: Path | None
+    ) -> ReportOptions:
+        """Return what was asked for.
+
+        Raises
+        ------
+        InputError
+            No format is named.
+        """
+        words = (formats,) if isinstance(formats, str) else tuple(formats)
+        if not words:
+            raise InputError("formats", list(words), f"some of {', '.join(FORMATS)}", ("formats",))
+        return ReportOptions(words, about, length, tuple(Path(x) for x in fonts), about_folder)
+
+    def asked(self) -> dict[str, Any]:
+        """Return it as reports take it."""
+        return {
+            "formats": list(self.formats),
+            "about": self.about,
+            "about_folder": self.about_folder,
+            "length": self.length,
+            "fonts": list(self.fonts),
+        }
+
+
+def _of_front(
+    front: ParetoFront, chosen: Sequence[Any], full: int, how: ReportOptions, problem: Any = None, catalogs: Any = None
+) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return the files of the report of a front, and what else is to be told."""
     if full < 0 or full != int(full):
         raise InputError("full", full, "a whole number from 0", ("full",))
     asked: dict[str, Any] = {
         "calculation": calculation_of(question_of(front, problem, catalogs)) if problem else calculation(front),
         "front": front,
-        "chosen": [str(x) for x in (design if isinstance(design, (list, tuple)) else [design])],
+        "chosen": [str(x) for x in chosen],
         "full": int(full),
     }
-    if "xlsx" in formats:
+    if "xlsx" in how.formats:
         asked["rows"] = _offered(front, problem, catalogs)
     if front.folder is not None:
         asked |= _beside(Path(front.folder), front)
+    return _made(asked, how)
+
+
+def _refuse_another_front(front: ParetoFront, place: Path) -> None:
+    """Refuse a folder that holds another front: its files would speak of two machines."""
     own = front.folder is not None and Path(front.folder).resolve() == place.resolve()
-    return _written(asked, place, formats, about, length, fonts, about_folder, replaces=not own)
+    if not own and (place / FRONT_FILE).is_file():
+        there = read_json(place / FRONT_FILE, "output", "a folder for reports")
+        if not isinstance(there, Mapping) or there.get("digest") != (front.record or {}).get("digest"):
+            raise InputError("output", str(place), "another folder: this one holds another front")
 
 
 def report_design(
@@ -100,76 +159,97 @@ def report_design(
     about_folder: Path | None = None,
 ) -> tuple[Path, list[str], list[str]]:
     """Write the calculation sheet of one design that was checked; arguments and returns as for :func:`report`."""
+    how = ReportOptions.read(formats, about, length, fonts, about_folder)
+    place = Path(folder)
+    # The sheet of a front's design says how far the front is proven; this one must not take its place.
+    name = f"{name}_checked" if (place / FRONT_FILE).is_file() else name
     asked: dict[str, Any] = {"calculation": calculation_of(instance), "design": design, "name": name}
-    if "xlsx" in formats:
+    if "xlsx" in how.formats:
         asked["rows"] = _rows(instance)
-    return _written(asked, Path(folder), formats, about, length, fonts, about_folder, replaces=False)
+    files, notes = _made(asked, how)
+    save_files(place, files)
+    return place, list(files), notes
 
 
 def report_comparison(
-    source: Path, folder: Path, *, formats: Sequence[str] = ("html",), about: Any = None, **how: Any
+    source: Path,
+    folder: Path,
+    *,
+    design: Sequence[str] = ("1",),
+    full: int = 5,
+    formats: Sequence[str] = ("html",),
+    about: Any = None,
+    length: str = "normal",
+    fonts: Sequence[str | Path] = (),
+    about_folder: Path | None = None,
 ) -> tuple[Path, list[str], list[str], bool]:
     """Write the report of several families that were asked the same, and that of each family in a folder of its name.
 
-    Arguments as for :func:`report`, of which ``design`` and ``full`` are meant of each family. Returns folder, files,
-    what else is to be told, and whether there are designs.
+    Arguments as for :func:`report`; ranks and knee are those of the common front. Returns folder, files, what else is
+    to be told, and whether there are designs.
 
     Raises
     ------
     InputError
-        As for :func:`report`, or the comparison cannot be read.
+        As for :func:`report`, or the comparison cannot be read; then nothing is written.
     """
     right = "a comparison.json as clutchsynth has written it"
     content = read_json(source / COMPARISON, "comparison", right)
     try:
-        names = [(str(x["family"]), str(x["folder"])) for x in content["families"] if x["folder"]]
-        feasible = bool(content["designs"])
+        places = {str(x["family"]): str(x["folder"]) for x in content["families"] if x["folder"]}
+        fronts = {family: load_front(source / place) for family, place in places.items()}
+        listed = [_listed(x, fronts) for x in content["designs"]]
     except (KeyError, TypeError) as error:
-        raise InputError(
-            f"comparison {source / COMPARISON}", str(error), f"{right}; this one is not complete"
-        ) from error
-    fronts = {family: load_front(source / place) for family, place in names}
-    written, notes, links = list[str](), list[str](), dict[str, str]()
-    for family, place in names:
-        _, files, told = report(fronts[family], folder / place, formats=formats, about=about, **how)
-        written += [f"{place}/{name}" for name in files]
+        where = f"comparison {source / COMPARISON}"
+        raise InputError(where, str(error), f"{right}; this one is not complete") from error
+    how = ReportOptions.read(formats, about, length, fonts, about_folder)
+    chosen = _chosen_of_all(listed, design)
+    files: dict[str, str | bytes] = {}
+    notes, links = list[str](), dict[str, str]()
+    for family, place in places.items():
+        ranks = [x["own_rank"] for x in chosen if x["family"] == family]
+        made, told = _of_front(fronts[family], ranks, full, how)
+        files |= {f"{place}/{name}": file for name, file in made.items()}
         notes += [note for note in told if note not in notes]
-        first = next(name for name in files if name.startswith("report."))
-        links[family] = f"{place}/{first}"
+        links |= {family: f"{place}/{next(name for name in made if name.startswith('report.'))}"}
     make = report_named("comparison")
     assert make is not None
-    asked = {"content": content, "fronts": fronts, "links": links, "formats": list(formats), "about": about}
-    fonts = [Path(x) for x in how.get("fonts", ())]
-    files, told = make({**asked, "about_folder": how.get("about_folder"), "fonts": fonts})
-    save_files(folder, files)
+    asked = {"content": {**content, "designs": listed}, "fronts": fronts, "links": links}
+    own, told = make({**asked, **how.asked()})
     notes += [note for note in told if note not in notes]
-    return folder, [*files, *written], notes, feasible
+    save_files(folder, {**own, **files})
+    return folder, [*own, *files], notes, bool(listed)
 
 
-def _written(
-    asked: dict[str, Any],
-    place: Path,
-    formats: Sequence[str],
-    about: Any,
-    length: str,
-    fonts: Sequence[str | Path],
-    about_folder: Path | None,
-    replaces: bool,
-) -> tuple[Path, list[str], list[str]]:
+def _listed(told: Mapping[str, Any], fronts: Mapping[str, ParetoFront]) -> dict[str, Any]:
+    """Return a design of a common front with the rank that it has in its family."""
+    family, wanted = told["family"], told["objectives"]
+    for own in fronts[family].designs:
+        if all(own.values.get(name) == value for name, value in wanted.items()):
+            return {**told, "own_rank": own.rank}
+    raise KeyError(f"design #{told['rank']} of {family}")
+
+
+def _chosen_of_all(listed: Sequence[Mapping[str, Any]], words: Sequence[str]) -> list[Mapping[str, Any]]:
+    """Return the designs of a common front that are named by rank, or as its knee."""
+    if not listed and list(words) == ["1"]:
+        return []
+    known = {str(x["rank"]): x for x in listed}
+    known |= {"knee": x for x in reversed(listed) if "knee" in str(x.get("note"))}  # noqa: B035
+    for word in words:
+        if word not in known:
+            right = f"a rank from 1 to {len(listed)} of the common front" if listed else "a front with designs"
+            raise InputError("design", word, right + (" or knee" if "knee" in known else ""), ("design",))
+    return [known[word] for word in words]
+
+
+def _made(asked: Mapping[str, Any], how: ReportOptions) -> tuple[dict[str, str | bytes], list[str]]:
+    """Return the files of a report by name, and what else is to be told."""
     make = report_named("files")
     if make is None:
         raise InputError("report", None, "the package reports, which clutchsynth is installed with")
-    asked |= {
-        "formats": list(formats),
-        "about": about,
-        "about_folder": about_folder,
-        "length": length,
-        "fonts": [Path(x) for x in fonts],
-    }
-    files, notes = make(asked)
-    earlier = [p.name for pattern in REPORT_FILES for p in place.glob(pattern)] if replaces else []
-    save_files(place, files, earlier)
-    return place, list(files), notes
+    files, notes = make({**asked, **how.asked()})
+    return dict(files), list(notes)
 
 
 def _beside(folder: Path, front: ParetoFront) -> dict[str, Any]:

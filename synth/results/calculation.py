@@ -343,7 +343,9 @@ class Calculation:
         try:
             fits = content["digest"] == digest_of({k: v for k, v in content.items() if k != "digest"})
             if not fits:
-                raise InputError(field, None, f"{RIGHT}; it was changed after it was saved: its checksum does not fit")
+                raise InputError(
+                    field, "a changed file", f"{RIGHT}; its checksum does not fit: it was changed after it was saved"
+                )
             return Calculation(
                 family=content["family"],
                 title=content["title"],
@@ -376,7 +378,9 @@ def load_calculation(folder: Path, digest: str) -> Calculation:
     path = folder / CALCULATION
     found = Calculation.from_json(read_json(path, "calculation", RIGHT), f"calculation {path}")
     if found.digest != digest:
-        raise InputError(f"calculation {path}", None, f"{RIGHT} with this front; it belongs to another one")
+        raise InputError(
+            f"calculation {path}", found.digest[:12], f"{RIGHT} with this front; it belongs to another one"
+        )
     return found
 
 

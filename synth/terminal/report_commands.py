@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from synth.errors import InputError
 from synth.terminal.options import Quiet
 from synth.terminal.session import INFEASIBLE, check_output, tell_written
 
@@ -46,6 +47,8 @@ def report(
         "fonts": fonts or [],
         **_about(about),
     }
+    if fonts and not as_pdf:
+        raise InputError("--font-path", str(fonts[0]), "--pdf as well: only PDF takes fonts")
     if folder is not None:
         check_output(folder)
     if source.suffix in FILES and source.is_file() and source.name != "front.json":

@@ -197,3 +197,82 @@ def test_python_writes_the_same(front_folder, tmp_path):
     assert at_once("report", front_folder, "-o", tmp_path / "a", "-q").returncode == 0
     synth.load_front(front_folder).report(tmp_path / "b")
     assert (tmp_path / "a" / "report.html").read_bytes() == (tmp_path / "b" / "report.html").read_bytes()
+
+
+def test_files_of_others_are_left_alone(front_folder, tmp_path):
+    (tmp_path / "notes.html").write_text("mine")
+    (tmp_path / "design_07_sheet.html").write_text("mine")
+    assert at_once("report", front_folder, "-o", tmp_path, "--json", "-q").returncode == 0
+    assert at_once("report", front_folder, "-o", tmp_path, "-q").returncode == 0
+    assert (tmp_path / "notes.html").read_text() == (tmp_path / "design_07_sheet.html").read_text() == "mine"
+    assert (tmp_path / "design_01_sheet.json").is_file()
+
+
+def test_the_folder_of_another_front_is_refused(front_folder, tmp_path):
+    (tmp_path / "spec.yaml").write_text(SPEC.replace("600 N*m", "500 N*m"))
+    assert at_once("run", tmp_path / "spec.yaml", "-o", tmp_path / "other", "-q").returncode == 0
+    before = {p.name: p.read_bytes() for p in (tmp_path / "other").iterdir()}
+    done = at_once("report", front_folder, "-o", tmp_path / "other")
+    assert done.returncode == 2
+    assert "this one holds another front" in done.stderr
+    assert {p.name: p.read_bytes() for p in (tmp_path / "other").iterdir()} == before
+
+
+def test_a_design_of_a_front_checked_alone_does_not_replace_its_sheet(front_folder, tmp_path):
+    synth.load_front(front_folder).save(tmp_path)
+    assert at_once("report", tmp_path, "-q").returncode == 0
+    before = (tmp_path / "design_01_sheet.html").read_bytes()
+    assert at_once("report", tmp_path / "design_01.yaml", "-q").returncode == 0
+    assert (tmp_path / "design_01_sheet.html").read_bytes() == before
+    assert (tmp_path / "design_01_checked_sheet.html").is_file()
+
+
+@pytest.mark.parametrize("entry", ["number: 007", "revision: 1.10", "project: yes", "note: [1]"])
+def test_what_yaml_reads_as_something_else_is_refused(front_folder, tmp_path, entry):
+    (tmp_path / "about.yaml").write_text(entry + "\n")
+    done = at_once("report", front_folder, "-o", tmp_path / "out", "--about", tmp_path / "about.yaml")
+    assert done.returncode == 2
+    assert "a text in quotes" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_fonts_without_pdf_are_refused(front_folder, tmp_path):
+    done = at_once("report", front_folder, "-o", tmp_path / "out", "--font-path", tmp_path)
+    assert done.returncode == 2
+    assert "only PDF takes fonts" in done.stderr
+
+
+SEVERAL = """
+family: [multi_plate_clutch, disc_clutch, cone_clutch]
+requirements: {load_torque: 60 N*m, driver_speed: 1000 1/min, driven_inertia: 0.5 kg*m2}
+points: 3
+"""
+
+
+def test_ranks_of_a_comparison_are_those_of_the_common_front(tmp_path):
+    (tmp_path / "spec.yaml").write_text(SEVERAL)
+    assert at_once("run", tmp_path / "spec.yaml", "-o", tmp_path / "any", "-q").returncode == 0
+    told = json.loads((tmp_path / "any" / "comparison.json").read_text())
+    last = told["designs"][-1]
+    done = at_once("report", tmp_path / "any", "-o", tmp_path / "out", "--design", f"knee,{last['rank']}")
+    assert done.returncode == 0, done.stderr
+    page = Page((tmp_path / "out" / "report.html").read_text())
+    files = [link.split("#")[0] for link in page.links if not link.startswith("#")]
+    assert files
+    assert all((tmp_path / "out" / name).is_file() for name in files)
+    assert list((tmp_path / "out" / last["family"]).glob("design_*_sheet.html"))
+    refused = at_once("report", tmp_path / "any", "-o", tmp_path / "none", "--design", "99")
+    assert refused.returncode == 2
+    assert "of the common front" in refused.stderr
+    assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize("formats", [[], "html", ["doc"]])
+def test_formats_are_named_or_refused(front_folder, tmp_path, formats):
+    front = synth.load_front(front_folder)
+    if formats == "html":
+        assert (front.report(tmp_path, formats=formats) / "report.html").is_file()
+        return
+    with pytest.raises(synth.InputError, match="formats"):
+        front.report(tmp_path, formats=formats)
+    assert not list(tmp_path.iterdir())
