@@ -11,6 +11,7 @@ from synth.errors import InputError
 from synth.terminal.options import Quiet
 from synth.terminal.session import INFEASIBLE, check_output, tell_written
 
+FULL = 5  # designs that a report tells in full unless it is told otherwise
 FILES = (".yaml", ".yml", ".json")
 
 
@@ -25,8 +26,12 @@ def report(
         Path | None,
         typer.Option("--output", "-o", help="Folder for the files, by default that of the source.", metavar="DIR"),
     ] = None,
-    design: Annotated[str, typer.Option(help="Designs that get sheets: ranks or knee, such as 1,3,knee.")] = "1",
-    full: Annotated[int, typer.Option(help="Designs that report.html tells in full.", min=0)] = 5,
+    design: Annotated[
+        str | None, typer.Option(help="Designs that get sheets, such as 1,3,knee; by default the first.")
+    ] = None,
+    full: Annotated[
+        int | None, typer.Option(help="Designs that report.html tells in full, 5 by default.", min=0)
+    ] = None,
     as_pdf: Annotated[bool, typer.Option("--pdf", help="PDF as well (extra pdf).")] = False,
     as_xlsx: Annotated[bool, typer.Option("--xlsx", help="Live workbooks and designs.xlsx (extra excel).")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Sheets for programs as well.")] = False,
@@ -52,10 +57,15 @@ def report(
     if folder is not None:
         check_output(folder)
     if source.suffix in FILES and source.is_file() and source.name != "front.json":
+        for flag, value in (("--design", design), ("--full", full)):
+            if value is not None:
+                raise InputError(flag, value, f"the folder of a front with it: {source.name} is one design")
         target = folder or source.parent
         place, names, notes, feasible = _of_design(source, target, asked)
     else:
-        place, target, names, notes, feasible = _of_front(source, folder, design, full, asked)
+        place, target, names, notes, feasible = _of_front(
+            source, folder, design or "1", FULL if full is None else full, asked
+        )
     for note in notes:
         typer.echo(f"clutchsynth: {note}", err=True)
     if not quiet:

@@ -236,6 +236,15 @@ def test_what_yaml_reads_as_something_else_is_refused(front_folder, tmp_path, en
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("flag", [("--design", "2"), ("--full", "3")])
+def test_what_a_single_design_does_not_have_is_refused(tmp_path, flag):
+    (tmp_path / "weak.yaml").write_text(DESIGN)
+    done = at_once("report", tmp_path / "weak.yaml", *flag)
+    assert done.returncode == 2
+    assert "weak.yaml is one design" in done.stderr
+    assert not (tmp_path / "weak_sheet.html").exists()
+
+
 def test_fonts_without_pdf_are_refused(front_folder, tmp_path):
     done = at_once("report", front_folder, "-o", tmp_path / "out", "--font-path", tmp_path)
     assert done.returncode == 2
